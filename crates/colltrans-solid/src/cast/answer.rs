@@ -1,17 +1,26 @@
-//! The answers to questions that only solids answer.
+//! Implementation of the queries that only solids answer.
+//!
+//! The clearance is computed in stages, each of which runs if the earlier ones do not decide:
+//!
+//! 1. the bounding boxes of both bodies;
+//! 2. the certificate of the cast of their hulls, if both bodies are convex;
+//! 3. the facets around the contact of the hulls;
+//! 4. a test for an overlap, then a best-first search for the least gap.
+//!
+//! Boxes that touch, and hulls whose contact is slightly behind, change this order, see [`answer_without_search`].
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::boxes::{self, told_by_boxes};
-use super::hulls::{Guessed, Hulls};
-use super::proof::least_of_leaves;
+use super::boxes::{BoxAnswer, answer_by_boxes};
+use super::hulls::{ContactGuess, Hulls};
+use super::proof::leaf_gap_bound;
 use super::tolerance::least_tolerance_from;
 use super::{
     Cover, SolidCast, SolidCertificate, SolidFree, SolidOverlap, SolidScene, StartOverlap,
 };
-use super::{StartProof, StopProof, check_left, default_tolerance, verify};
+use super::{StartProof, StopProof, check_thickness, default_tolerance, verify};
 use crate::body::{AsSolid, Solid};
 use crate::solve::bound::Reason;
 use crate::solve::contact::{SolidContact, contact, true_place};
@@ -53,12 +62,12 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
 
     fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
         let (mut scene, mut steps) = (None, SolidSteps::default());
-        let place = match told_at_once(self, &mut scene, &mut steps)? {
-            AtOnce::Answer(answer) => return Ok(answer),
-            AtOnce::Overlapping(place) => Some(place),
-            AtOnce::Nothing => None,
+        let place = match answer_without_search(self, &mut scene, &mut steps)? {
+            EarlyAnswer::Answer(answer) => return Ok(answer),
+            EarlyAnswer::Overlapping(place) => Some(place),
+            EarlyAnswer::Undecided => None,
         };
-        let scene = scene_once(self, &mut scene)?;
+        let scene = get_or_build_scene(self, &mut scene)?;
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
@@ -69,14 +78,14 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
                 None => Aim::Stop,
             },
         };
-        let found = first(scene, aim, limit(self, scene), workspace, &mut steps);
-        Ok(answer(self, scene, found.as_ref(), steps))
+        let found = search_least_gap(scene, aim, gap_limit(self, scene), workspace, &mut steps);
+        Ok(answer_from_search(self, scene, found.as_ref(), steps))
     }
 
     fn certified_clearance(&self) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
         let (mut scene, mut steps) = (None, SolidSteps::default());
-        let told = told_at_once(self, &mut scene, &mut SolidSteps::default())?;
-        let scene = scene_once(self, &mut scene)?;
+        let early = answer_without_search(self, &mut scene, &mut SolidSteps::default())?;
+        let scene = get_or_build_scene(self, &mut scene)?;
         let bodies = [self.moving(), self.fixed()];
         let start = self.prove_start(scene, &mut steps);
         let mut certificate = SolidCertificate {
@@ -97,22 +106,22 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         let cut = |nodes, reason| {
             cuts.insert(nodes, reason);
         };
-        let mut search = Search::new(scene, aim, limit(self, scene), cut);
+        let mut search = Search::new(scene, aim, gap_limit(self, scene), cut);
         let found = search.run(&mut Workspace::default());
         let end = search.limit;
         steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
-        let answer = match told {
-            AtOnce::Answer(answer) => answer,
-            _ => answer(self, scene, found.as_ref(), steps),
+        let answer = match early {
+            EarlyAnswer::Answer(answer) => answer,
+            _ => answer_from_search(self, scene, found.as_ref(), steps),
         };
         if let Clearance::Blocked { contact, .. } = &answer {
             let shrunk_distance = contact.shrunk_distance.value;
             certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
         }
-        certificate.lower = proven(scene, aim, end, &certificate.cover) / scene.setting.length;
+        certificate.lower = proven_gap(scene, aim, end, &certificate.cover) / scene.setting.length;
         if certificate.lower <= 0.0 {
-            // Nothing contributes less than 0.
+            // No pair contributes less than 0, so one entry for both roots suffices.
             certificate.lower = 0.0;
             certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
         }
@@ -120,16 +129,16 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     }
 
     fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact> {
-        if !has(self, triangles) {
+        if !contain_triangles(self, triangles) {
             return None;
         }
         let scene = self.asked();
         let later = self.options.overlapping == Some(true)
             && self.options.start_overlap == StartOverlap::Ignore;
         let aim = if later { Aim::LaterStop } else { Aim::Stop };
-        let search = Search::new(&scene, aim, limit(self, &scene), |_, _| ());
+        let search = Search::new(&scene, aim, gap_limit(self, &scene), |_, _| ());
         let found = search.of_pair(triangles)?;
-        // Nothing stops a body before 0.
+        // Distances of contacts are at least 0.
         Some(contact(&scene, &found, found.bounded(&scene).clamped(), SolidSteps::default()))
     }
 
@@ -140,7 +149,8 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         normal: DVec3,
         shift: DVec3,
     ) -> Option<Bounded> {
-        has(self, triangles).then(|| true_place(&self.scene(0.0), triangles, shrunk, normal, shift))
+        contain_triangles(self, triangles)
+            .then(|| true_place(&self.scene(0.0), triangles, shrunk, normal, shift))
     }
 
     fn overlaps(&self) -> bool {
@@ -149,7 +159,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
 
     fn start_overlap(&self) -> Option<SolidOverlap> {
         let mut steps = SolidSteps::default();
-        let place = place_of_overlap(self, &self.asked(), &mut steps)?;
+        let place = find_start_overlap(self, &self.asked(), &mut steps)?;
         Some(self.overlap_at(place, steps))
     }
 
@@ -159,7 +169,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
 
     fn first_contact_in(&self, workspace: &mut Workspace) -> Result<Outcome<Solid>, QueryError> {
         let (scene, mut steps) = (self.scene(0.0), SolidSteps::default());
-        let found = first(&scene, Aim::Least, f64::INFINITY, workspace, &mut steps);
+        let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, &mut steps);
         Ok(match found {
             Some(found) => Outcome::Contact(contact(&scene, &found, found.bounded(&scene), steps)),
             None => Outcome::Separated(SolidFree { separation: separation(&scene), steps }),
@@ -173,7 +183,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded> {
         let scene = self.reversed().scene(0.0);
         let steps = &mut SolidSteps::default();
-        let found = first(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
+        let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
         Some(found.bounded(&scene).negated().clamped())
     }
 }
@@ -192,9 +202,9 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
     #[inline]
     fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
         let tolerance = self.tolerance();
-        // One that was given was checked then.
+        // A tolerance in the options was checked when it was set.
         if self.options.tolerance.is_none() {
-            check_left(self, tolerance)?;
+            check_thickness(self, tolerance)?;
         }
         Ok(self.scene(tolerance))
     }
@@ -206,14 +216,14 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
     }
 
     fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
-        // An overlap that is the answer is looked for, to be named.
+        // An overlap that is the answer is searched for, because the answer contains its place.
         let options = self.options();
         let is_answer =
             options.overlapping == Some(true) && options.start_overlap == StartOverlap::Refuse;
         if options.overlapping.is_some() && !is_answer {
             return StartProof::Assumed;
         }
-        if let Some(place) = sunk(self, Hulls::of(self).as_ref(), scene, steps) {
+        if let Some(place) = hull_overlap(self, Hulls::of_cast(self).as_ref(), scene, steps) {
             return StartProof::Overlapping(place);
         }
         let mut entries = Vec::new();
@@ -232,55 +242,59 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
     }
 }
 
-/// Returns the length from which on gaps are of no interest.
-fn limit(cast: &Cast<'_, Solid>, scene: &Scene) -> f64 {
+/// Returns the length from which on gaps are ignored: the end of the query, or infinity.
+fn gap_limit(cast: &Cast<'_, Solid>, scene: &Scene) -> f64 {
     cast.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
 }
 
-/// What is told of a clearance before any search.
-enum AtOnce {
+/// Result of the stages before a search.
+enum EarlyAnswer {
     Answer(Clearance<Solid>),
-    /// The bodies overlap there.
+    /// The offset bodies overlap at this place.
     Overlapping(Overlap),
-    Nothing,
+    Undecided,
 }
 
-/// What is told of the clearance before any search, the same whether a proof is wanted or not: by boxes, then by
-/// hulls, then by the facets around the contact of those. The scene is made when it is asked for.
-fn told_at_once<'a>(
+/// Runs the stages before a search, whether a proof is requested or not, and builds `scene` if a stage needs it.
+/// Returns [`EarlyAnswer::Undecided`] if a search is necessary.
+fn answer_without_search<'a>(
     cast: &Cast<'a, Solid>,
     scene: &mut Option<Scene<'a>>,
     steps: &mut SolidSteps,
-) -> Result<AtOnce, QueryError> {
-    let by_boxes = told_by_boxes(cast);
-    if let boxes::Told::Passing(answer) = by_boxes {
-        return Ok(AtOnce::Answer(answer));
+) -> Result<EarlyAnswer, QueryError> {
+    let by_boxes = answer_by_boxes(cast);
+    if let BoxAnswer::Free(answer) = by_boxes {
+        return Ok(EarlyAnswer::Answer(answer));
     }
-    // Where boxes touch, the bodies' exact places are asked before their hulls; where hulls overlap by little, facets.
-    let touching = matches!(by_boxes, boxes::Told::Touching);
-    let hulls = if touching { None } else { Hulls::of(cast) };
-    let in_doubt = touching || hulls.as_ref().is_some_and(Hulls::are_sunk);
-    if !in_doubt && let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(cast)) {
-        return Ok(AtOnce::Answer(answer));
+    // If the boxes touch, an exact test of the boxes precedes the hulls. If the contact of the hulls is slightly
+    // behind, the facets around it precede the certificate.
+    let touching = matches!(by_boxes, BoxAnswer::Touching);
+    let hulls = if touching { None } else { Hulls::of_cast(cast) };
+    let is_uncertain = touching || hulls.as_ref().is_some_and(Hulls::has_shallow_contact);
+    if !is_uncertain
+        && let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.transferred_clearance(cast))
+    {
+        return Ok(EarlyAnswer::Answer(answer));
     }
-    let scene = scene_once(cast, scene)?;
-    if touching && overlap::pass(scene, limit(cast, scene)) {
+    let scene = get_or_build_scene(cast, scene)?;
+    if touching && overlap::pass(scene, gap_limit(cast, scene)) {
         steps.nodes += 1;
-        return Ok(AtOnce::Answer(answer(cast, scene, None, *steps)));
+        return Ok(EarlyAnswer::Answer(answer_from_search(cast, scene, None, *steps)));
     }
-    let hulls = if touching { Hulls::of(cast) } else { hulls };
-    if let Some(place) = sunk(cast, hulls.as_ref(), scene, steps) {
-        return Ok(AtOnce::Overlapping(place));
+    let hulls = if touching { Hulls::of_cast(cast) } else { hulls };
+    if let Some(place) = hull_overlap(cast, hulls.as_ref(), scene, steps) {
+        return Ok(EarlyAnswer::Overlapping(place));
     }
-    let told = hulls.and_then(|hulls| {
-        let certain = if in_doubt { hulls.certain(cast) } else { None };
-        certain.or_else(|| guessed_by_hulls(cast, &hulls, scene))
+    let by_hulls = hulls.and_then(|hulls| {
+        let transferred = if is_uncertain { hulls.transferred_clearance(cast) } else { None };
+        transferred.or_else(|| answer_by_hull_contact(cast, &hulls, scene))
     });
-    Ok(told.map_or(AtOnce::Nothing, AtOnce::Answer))
+    Ok(by_hulls.map_or(EarlyAnswer::Undecided, EarlyAnswer::Answer))
 }
 
-/// The bodies shrunk by half the tolerance, which leaves something of them, made once.
-fn scene_once<'a, 's>(
+/// Returns the scene at the tolerance of the query, built by the first call. Returns an error if the tolerance
+/// leaves nothing of a body.
+fn get_or_build_scene<'a, 's>(
     cast: &Cast<'a, Solid>,
     scene: &'s mut Option<Scene<'a>>,
 ) -> Result<&'s Scene<'a>, QueryError> {
@@ -290,8 +304,9 @@ fn scene_once<'a, 's>(
     })
 }
 
-/// Where the bodies overlap, if they do by little, by what is around a contact of their hulls.
-fn sunk(
+/// Finds an overlap among the facets around the contact of the hulls. `None` if these show none, if there are no
+/// hulls, or if the options state that the bodies do not overlap.
+fn hull_overlap(
     cast: &Cast<'_, Solid>,
     hulls: Option<&Hulls>,
     scene: &Scene,
@@ -300,41 +315,42 @@ fn sunk(
     if cast.options.overlapping == Some(false) {
         return None;
     }
-    hulls?.sunk(scene, &mut steps.leaves)
+    hulls?.shallow_overlap(scene, &mut steps.leaves)
 }
 
-/// Where they overlap.
-fn place_of_overlap(
+/// Finds a place at which the bodies overlap, first near the contact of their hulls, then by a search.
+fn find_start_overlap(
     cast: &Cast<'_, Solid>,
     scene: &Scene,
     steps: &mut SolidSteps,
 ) -> Option<Overlap> {
-    let sunk = sunk(cast, Hulls::of(cast).as_ref(), scene, steps);
-    sunk.or_else(|| overlap::find(scene, steps))
+    let near_contact = hull_overlap(cast, Hulls::of_cast(cast).as_ref(), scene, steps);
+    near_contact.or_else(|| overlap::find(scene, steps))
 }
 
-fn guessed_by_hulls(
+/// Computes the clearance from the facets around the contact of the hulls; `None` if these do not decide it.
+fn answer_by_hull_contact(
     cast: &Cast<'_, Solid>,
     hulls: &Hulls,
     scene: &Scene,
 ) -> Option<Clearance<Solid>> {
-    if let Some(answer) = hulls.touching(cast, scene) {
+    if let Some(answer) = hulls.touching_clearance(cast, scene) {
         return Some(answer);
     }
     let mut steps = SolidSteps::default();
-    Some(match hulls.guessed(scene, limit(cast, scene), &mut steps.leaves)? {
-        Guessed::Stop(found, least) => {
-            let told = hulls.stopped_by(cast, &found, least, steps);
-            told.unwrap_or_else(|| answer(cast, scene, Some(&found), steps))
+    Some(match hulls.guess_at_contact(scene, gap_limit(cast, scene), &mut steps.leaves)? {
+        ContactGuess::Stop(found, least) => {
+            let transferred = hulls.clearance_by_facets(cast, &found, least, steps);
+            transferred.unwrap_or_else(|| answer_from_search(cast, scene, Some(&found), steps))
         }
-        Guessed::Free => answer(cast, scene, None, steps),
+        ContactGuess::Free => answer_from_search(cast, scene, None, steps),
     })
 }
 
-/// The least gap that the parts of a cover prove, their rounding taken off, of a search that has ended
-/// with a limit.
-fn proven(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
-    // A little more, for the roundings of the bound on its way into the proof and out of it.
+/// Returns the gap (a length) that the entries of a cover prove, less their rounding errors, after a search that
+/// ended with `limit`. Returns 0 if the cover proves no positive gap or does not fit the bodies.
+fn proven_gap(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
+    // The factor is slightly above 1 to cover the rounding of the bound on its way into the proof and out of it.
     let mut lower = limit - 1.0625 * node_rounding(scene);
     if lower <= 0.0 {
         return 0.0;
@@ -342,15 +358,15 @@ fn proven(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let fits = cover.walk(bodies, |_, nodes, reason| {
         if reason == Reason::Examined {
-            lower = lower.min(least_of_leaves(scene, aim, nodes, limit));
+            lower = lower.min(leaf_gap_bound(scene, aim, nodes, limit));
         }
         true
     });
     if fits.is_ok() { lower } else { 0.0 }
 }
 
-/// What a search has found, as an answer.
-fn answer(
+/// Builds the clearance from the pair of facets that a search has found; it is free if there is none.
+fn answer_from_search(
     cast: &Cast<'_, Solid>,
     scene: &Scene,
     found: Option<&Found>,
@@ -361,18 +377,20 @@ fn answer(
         let separation = to_the_end.then(|| separation(scene)).flatten();
         return Clearance::Free(SolidFree { separation, steps });
     };
-    // Nothing stops a body before 0.
+    // Distances of contacts are at least 0.
     let contact = contact(scene, found, found.bounded(scene).clamped(), steps);
     Clearance::Blocked { distance: contact.translation.lower.max(0.0), contact }
 }
 
-fn has(cast: &Cast<'_, Solid>, triangles: [u32; 2]) -> bool {
+/// Checks whether two triangles, by their positions, exist in the moving and the fixed body.
+fn contain_triangles(cast: &Cast<'_, Solid>, triangles: [u32; 2]) -> bool {
     let counts = [cast.moving(), cast.fixed()].map(|solid| solid.triangles().len());
     triangles.into_iter().zip(counts).all(|(t, count)| (t as usize) < count)
 }
 
-/// The least gap below a limit.
-fn first(
+/// Searches for the pair of facets with the least gap below `limit` (a length); `None` if there is none. Adds the
+/// work to `steps`.
+fn search_least_gap(
     scene: &Scene,
     aim: Aim,
     limit: f64,

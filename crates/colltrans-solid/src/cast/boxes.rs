@@ -1,9 +1,11 @@
-//! What the boxes around two bodies tell of a cast, before anything is searched: that one passes the other, or leaves it
-//! behind, or that they touch, so that nothing but their exact places says more.
+//! Answers of a cast by the bounding boxes of the two bodies, before any search.
+//!
+//! The boxes show that one body passes the other or leaves it behind. They also show that both may touch, in which
+//! case only their exact positions decide.
 
 use glam::DVec3;
 
-use super::{NOISES, SolidCast, SolidFree, check_left};
+use super::{DEFAULT_TOLERANCE_NOISES, SolidCast, SolidFree, check_thickness};
 use crate::body::Solid;
 use crate::solve::scene::permutes;
 use crate::solve::separate::Boxes;
@@ -12,54 +14,63 @@ use colltrans_convex::answer::{Clearance, Separation};
 use colltrans_convex::cast::Cast;
 use colltrans_kernel::noise::Noise;
 
-/// Boxes touch that are apart, or overlap, by so many noises.
-const TOUCHING: f64 = 16.0;
+/// Maximum gap or overlap of boxes that count as touching, in noises.
+const TOUCHING_NOISES: f64 = 16.0;
 
-/// What the boxes tell.
-pub(super) enum Told {
-    /// Nothing stops the moving body.
-    Passing(Clearance<Solid>),
-    /// They touch, to within rounding, and have the axes of the world, up to signs.
+/// Result of the test of the boxes.
+pub(super) enum BoxAnswer {
+    /// Nothing blocks the moving body.
+    Free(Clearance<Solid>),
+    /// The boxes touch to within rounding, and both bodies have the axes of the world up to signs.
     Touching,
-    Nothing,
+    Undecided,
 }
 
-/// What the boxes around the bodies tell, unless a gap is to be kept or the bodies are said to overlap.
-pub(super) fn told_by_boxes(cast: &Cast<'_, Solid>) -> Told {
+/// Tests the boxes of the bodies. Returns [`BoxAnswer::Undecided`] if a minimum gap is set or the options state an
+/// overlap.
+pub(super) fn answer_by_boxes(cast: &Cast<'_, Solid>) -> BoxAnswer {
     let (setting, options) = (&cast.setting, cast.options);
     if options.keep > 0.0 || options.overlapping == Some(true) {
-        return Told::Nothing;
+        return BoxAnswer::Undecided;
     }
     let noise = setting.noise().point();
     let boxes = Boxes::new(setting, &[cast.moving().bounds(), cast.fixed().bounds()]);
-    // Shrunk, they have more room.
-    let slack = TOUCHING * noise + 2.0 * options.tolerance.unwrap_or(NOISES * noise);
-    if let Some(passing) = boxes.across(slack).and_then(|normal| passing(cast, normal)) {
-        return Told::Passing(passing);
+    // The boxes of the offset bodies are smaller.
+    let slack = TOUCHING_NOISES * noise
+        + 2.0 * options.tolerance.unwrap_or(DEFAULT_TOLERANCE_NOISES * noise);
+    if let Some(free) = boxes.across(slack).and_then(|normal| free_by_boxes(cast, normal)) {
+        return BoxAnswer::Free(free);
     }
-    let squared = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
-    if squared && boxes.touch(TOUCHING * noise) { Told::Touching } else { Told::Nothing }
+    let is_axis_aligned = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
+    if is_axis_aligned && boxes.touch(TOUCHING_NOISES * noise) {
+        BoxAnswer::Touching
+    } else {
+        BoxAnswer::Undecided
+    }
 }
 
-/// That nothing stops the moving body, if a plane along the direction, with a normal, parts the boxes.
-fn passing(cast: &Cast<'_, Solid>, normal: DVec3) -> Option<Clearance<Solid>> {
+/// Returns a free clearance if a plane with this normal, parallel to the direction, separates the boxes of the
+/// offset bodies. `None` if its proven margin is not positive or a body would vanish.
+fn free_by_boxes(cast: &Cast<'_, Solid>, normal: DVec3) -> Option<Clearance<Solid>> {
     let tolerance = cast.tolerance();
-    check_left(cast, tolerance).ok()?;
-    let (boxes, noise) = shrunk_boxes(cast, tolerance / 2.0);
+    check_thickness(cast, tolerance).ok()?;
+    let (boxes, noise) = offset_boxes(cast, tolerance / 2.0);
     let margin = boxes.margin(normal, noise);
     let separation = cast.options.before.is_none().then_some(Separation { normal, margin });
     let free = SolidFree { separation, steps: SolidSteps::default() };
     (margin > 0.0).then_some(Clearance::Free(free))
 }
 
-/// Whether the moving body leaves the other one behind, by their boxes, shrunk by an amount.
-pub(super) fn leaves_behind(cast: &Cast<'_, Solid>, amount: f64) -> bool {
-    let (boxes, noise) = shrunk_boxes(cast, amount);
+/// Checks whether the boxes, offset inwards by `amount`, are certainly separated by a side of one of them which the
+/// moving body does not approach.
+pub(super) fn moves_away(cast: &Cast<'_, Solid>, amount: f64) -> bool {
+    let (boxes, noise) = offset_boxes(cast, amount);
     boxes.are_left_behind(noise)
 }
 
-/// The boxes of the bodies, shrunk by an amount, and the noise then.
-fn shrunk_boxes<'c>(cast: &'c Cast<'_, Solid>, amount: f64) -> (Boxes<'c, 'c>, f64) {
+/// Returns the boxes of the bodies offset inwards by `amount` (world units), in the bodies' frames, and the noise
+/// at the size of the offset bodies.
+fn offset_boxes<'c>(cast: &'c Cast<'_, Solid>, amount: f64) -> (Boxes<'c, 'c>, f64) {
     let bodies = [cast.moving(), cast.fixed()];
     let moved: f64 = bodies.map(|body| body.max_offset_displacement(amount)).iter().sum();
     let noise = Noise::of(cast.setting.scale() + moved).point();

@@ -1,4 +1,4 @@
-//! How proofs between solids are written: covers as letters.
+//! Serialised form of certificates between solids: a cover is a string with one letter for each entry.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,13 +7,13 @@ use crate::solve::bound::Reason;
 use crate::solve::nearest::Apart;
 use crate::solve::overlap::Overlap;
 
-/// Reasons of covers. Sealed.
-pub trait Letters: Copy + PartialEq + 'static {
-    /// A letter for each; a split is [`SPLIT`].
+/// Reasons of covers and their letters. Sealed.
+pub trait ReasonLetters: Copy + PartialEq + 'static {
+    /// Letter of each reason; [`SPLIT_LETTER`] is a split.
     const LETTERS: &'static [(Self, char)];
 }
 
-impl Letters for Reason {
+impl ReasonLetters for Reason {
     const LETTERS: &'static [(Self, char)] = &[
         (Self::MovingFacesAway, 'm'),
         (Self::FixedFacesAway, 'f'),
@@ -26,7 +26,7 @@ impl Letters for Reason {
     ];
 }
 
-impl Letters for Apart {
+impl ReasonLetters for Apart {
     const LETTERS: &'static [(Self, char)] = &[
         (Self::AxesOfMoving, 'm'),
         (Self::AxesOfFixed, 'f'),
@@ -37,32 +37,34 @@ impl Letters for Apart {
     ];
 }
 
-const SPLIT: char = 's';
+/// Letter of a pair of nodes that was split.
+const SPLIT_LETTER: char = 's';
 
-impl<R: Letters> From<Cover<R>> for String {
+impl<R: ReasonLetters> From<Cover<R>> for String {
     fn from(cover: Cover<R>) -> Self {
-        let letter = |reason: R| R::LETTERS.iter().find(|l| l.0 == reason).map_or(SPLIT, |l| l.1);
-        cover.0.iter().map(|entry| entry.map_or(SPLIT, letter)).collect()
+        let letter =
+            |reason: R| R::LETTERS.iter().find(|l| l.0 == reason).map_or(SPLIT_LETTER, |l| l.1);
+        cover.0.iter().map(|entry| entry.map_or(SPLIT_LETTER, letter)).collect()
     }
 }
 
-impl<R: Letters> TryFrom<String> for Cover<R> {
+impl<R: ReasonLetters> TryFrom<String> for Cover<R> {
     type Error = String;
 
     fn try_from(letters: String) -> Result<Self, String> {
         let entry = |letter: char| match R::LETTERS.iter().find(|l| l.1 == letter) {
             Some((reason, _)) => Ok(Some(*reason)),
-            None if letter == SPLIT => Ok(None),
-            None => Err(format!("the letter {letter:?} stands for nothing in a cover")),
+            None if letter == SPLIT_LETTER => Ok(None),
+            None => Err(format!("unknown letter {letter:?} in a cover")),
         };
         letters.chars().map(entry).collect::<Result<_, _>>().map(Self)
     }
 }
 
-/// A [`StartProof`] as it is written.
+/// Serialised form of a [`StartProof`].
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Start {
+pub(super) enum StoredStart {
     Assumed,
     Apart(Cover),
     Facets([u32; 2]),
@@ -70,7 +72,7 @@ pub(super) enum Start {
     FixedInside(u32),
 }
 
-impl From<StartProof> for Start {
+impl From<StartProof> for StoredStart {
     fn from(start: StartProof) -> Self {
         match start {
             StartProof::Assumed => Self::Assumed,
@@ -82,14 +84,14 @@ impl From<StartProof> for Start {
     }
 }
 
-impl From<Start> for StartProof {
-    fn from(start: Start) -> Self {
+impl From<StoredStart> for StartProof {
+    fn from(start: StoredStart) -> Self {
         match start {
-            Start::Assumed => Self::Assumed,
-            Start::Apart(cover) => Self::Apart(cover),
-            Start::Facets([f, g]) => Self::Overlapping(Overlap::Facets(f, g)),
-            Start::MovingInside(t) => Self::Overlapping(Overlap::MovingInside(t)),
-            Start::FixedInside(t) => Self::Overlapping(Overlap::FixedInside(t)),
+            StoredStart::Assumed => Self::Assumed,
+            StoredStart::Apart(cover) => Self::Apart(cover),
+            StoredStart::Facets([f, g]) => Self::Overlapping(Overlap::Facets(f, g)),
+            StoredStart::MovingInside(t) => Self::Overlapping(Overlap::MovingInside(t)),
+            StoredStart::FixedInside(t) => Self::Overlapping(Overlap::FixedInside(t)),
         }
     }
 }
@@ -103,33 +105,33 @@ mod file {
     use crate::cast::SolidCertificate;
     use colltrans_convex::cast::CaseError;
 
-    /// What a file of this version calls itself.
+    /// Format name in files of this version.
     const FORMAT: &str = "colltrans proof of a solid 1";
 
     #[derive(Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    struct File<'a> {
+    struct ProofFile<'a> {
         format: String,
         #[serde(flatten)]
         certificate: Cow<'a, SolidCertificate>,
     }
 
     impl SolidCertificate {
-        /// The proof as a file.
+        /// Returns the certificate as a file in JSON.
         ///
         /// # Panics
-        /// Never: all numbers can be written.
+        /// Never: every field can be serialised.
         pub fn to_json(&self) -> String {
-            let file = File { format: FORMAT.into(), certificate: Cow::Borrowed(self) };
-            serde_json::to_string(&file).expect("numbers and letters")
+            let file = ProofFile { format: FORMAT.into(), certificate: Cow::Borrowed(self) };
+            serde_json::to_string(&file).expect("all fields can be serialised")
         }
 
-        /// From what [`Self::to_json`] has written. It is read, not believed.
+        /// Reads a certificate that [`Self::to_json`] has written, without verifying it.
         ///
         /// # Errors
-        /// What is wrong with it.
+        /// The text is not such a file, or has another format name.
         pub fn from_json(text: &str) -> Result<Self, CaseError> {
-            let File { format, certificate } = serde_json::from_str(text)?;
+            let ProofFile { format, certificate } = serde_json::from_str(text)?;
             if format == FORMAT {
                 Ok(certificate.into_owned())
             } else {
@@ -144,11 +146,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_of_either_cover_come_back() {
-        let letters: String = Reason::LETTERS.iter().map(|l| l.1).chain([SPLIT]).collect();
+    fn covers_survive_conversion_to_letters() {
+        let letters: String = Reason::LETTERS.iter().map(|l| l.1).chain([SPLIT_LETTER]).collect();
         let cover = Cover::<Reason>::try_from(letters.clone()).expect("all are known");
         assert_eq!(String::from(cover), letters);
-        let letters: String = Apart::LETTERS.iter().map(|l| l.1).chain([SPLIT]).collect();
+        let letters: String = Apart::LETTERS.iter().map(|l| l.1).chain([SPLIT_LETTER]).collect();
         let cover = Cover::<Apart>::try_from(letters.clone()).expect("all are known");
         assert_eq!(String::from(cover), letters);
         assert!(Cover::<Apart>::try_from("sz".to_owned()).is_err());

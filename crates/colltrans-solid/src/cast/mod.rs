@@ -1,7 +1,12 @@
-//! How far a solid can move from where it is.
+//! Casts of solids: how far a [`Solid`] can move before it blocks, with certificates.
 //!
-//! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
-//! overlap: how much has a file of its own, [`tolerance`].
+//! With a tolerance `L`, both bodies are offset inwards by `L / 2` before the query. If their interiors then have a
+//! common point, or an open shell passes through the other body, the answer is an overlap.
+//!
+//! - [`queries`] declares the queries as traits, `answer` implements them.
+//! - [`boxes`] and [`hulls`] answer queries without a search.
+//! - [`tolerance`] computes the least tolerance of an overlap.
+//! - [`proof`] defines the certificates, [`verify`] verifies them, and `encoding` serialises them.
 
 mod answer;
 mod boxes;
@@ -34,10 +39,10 @@ use colltrans_convex::cast::{Cast, CastBody, common_end};
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::QueryError;
 
-/// Default tolerance, in multiples of the rounding error of a coordinate.
-const NOISES: f64 = 8.0;
+/// Default tolerance of rotated bodies, in noises.
+const DEFAULT_TOLERANCE_NOISES: f64 = 8.0;
 
-/// What an overlap at the start means.
+/// Treatment of an overlap at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -45,38 +50,38 @@ const NOISES: f64 = 8.0;
     serde(rename_all = "snake_case")
 )]
 pub enum StartOverlap {
-    /// It is the answer.
+    /// The clearance is [`Clearance::Overlapping`].
     #[default]
     Refuse,
-    /// Facets that cross now do not block; contacts that begin later do. [`SolidCast::start_overlap`] says
-    /// what was ignored.
+    /// Facets that cross at the start do not block, and contacts that begin later do. [`SolidCast::start_overlap`]
+    /// returns the ignored overlap.
     Ignore,
 }
 
 colltrans_kernel::written::named!(
-    "meaning of an overlap",
+    "treatment of an overlap",
     StartOverlap { Refuse: "refuse", Ignore: "ignore" }
 );
 
-/// Choices of a query between solids. More may be added: begin with the default ones.
+/// Options of a query between solids. More fields may be added, so start from the default options.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidOptions {
-    /// What an overlap at the start means.
+    /// Treatment of an overlap at the start.
     pub start_overlap: StartOverlap,
-    /// Both bodies are shrunk by half of this length. `None` stands for 0 where both poses turn by
-    /// quarter turns, and else for what rounding can do to a fit, `256 u S`.
+    /// Tolerance, a length in world units. Both bodies are offset inwards by half of it. `None` is 0 if both poses
+    /// are quarter turns, and eight noises (`256 u S`) otherwise, because rounding can change a fit by that length.
     pub tolerance: Option<f64>,
-    /// Contacts at this translation or beyond, of the shrunk bodies, are of no interest: the least `shrunk_distance` so
-    /// far, where one body is asked against many. As they are, bodies may meet long before they do shrunk.
+    /// End of the query, in multiples of the direction. Contacts of the offset bodies at this translation or beyond
+    /// are ignored. For a body that is cast against many others, this is the smallest `shrunk_distance` found
+    /// before. The nominal bodies may meet long before the offset ones.
     pub before: Option<f64>,
-    /// Whether the bodies overlap where they are: what [`SolidCast::overlaps`] has said of the same
-    /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:
-    /// it is looked at, as is an overlap that is the answer, to be named.
+    /// Result of [`SolidCast::overlaps`] for the same bodies, poses and tolerance, if it is known. One test then
+    /// serves many directions. With `None` the query tests for an overlap. It does so too for `Some(true)` with
+    /// [`StartOverlap::Refuse`], because the answer contains the place.
     pub overlapping: Option<bool>,
-    /// How near to each other the bodies may come (world units): see
-    /// [`Cast::keeping`]. `0`, the default: until they touch.
+    /// Minimum gap (world units), see [`Cast::keeping`]. With `0`, the default, bodies block when they touch.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")
@@ -85,71 +90,71 @@ pub struct SolidOptions {
 }
 
 impl SolidOptions {
-    /// With a meaning of an overlap at the start.
+    /// Returns the options with another treatment of an overlap at the start.
     #[must_use]
     pub const fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
         Self { start_overlap, ..self }
     }
 
-    /// With a tolerance, a length, or the default one. It is checked where it is used.
+    /// Returns the options with a tolerance in world units, or with the default one. [`Cast::with_options`] checks
+    /// the value.
     #[must_use]
     pub fn with_tolerance(self, tolerance: impl Into<Option<f64>>) -> Self {
         Self { tolerance: tolerance.into(), ..self }
     }
 
-    /// With an end, or without.
+    /// Returns the options with an end of the query in multiples of the direction, or without an end.
     #[must_use]
     pub fn with_before(self, before: impl Into<Option<f64>>) -> Self {
         Self { before: before.into(), ..self }
     }
 
-    /// With a gap to be kept, a length. It is checked where it is used.
+    /// Returns the options with a minimum gap in world units. [`Cast::with_options`] checks the value.
     #[must_use]
     pub const fn with_keep(self, keep: f64) -> Self {
         Self { keep, ..self }
     }
 
-    /// With what is known of an overlap at the start.
+    /// Returns the options with a known result of [`SolidCast::overlaps`], or without one.
     #[must_use]
     pub fn with_overlapping(self, overlapping: impl Into<Option<bool>>) -> Self {
         Self { overlapping: overlapping.into(), ..self }
     }
 }
 
-/// The overlap of two solids.
+/// Overlap of two solids at the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidOverlap {
-    /// One of the places where the bodies, shrunk by half the tolerance each, overlap: facets that
-    /// cross, or a shell that is inside.
+    /// One place of the overlap of the offset bodies: two facets, or a shell inside the other body.
     pub place: Overlap,
-    /// The least tolerance with which they would not overlap, from above; `None` if there is none, as
-    /// where what overlaps is an open shell: see [`SolidCast::least_tolerance`].
+    /// Upper bound of the least tolerance at which the bodies do not overlap. `None` if there is none, for example
+    /// for an overlap with an open shell. See [`SolidCast::least_tolerance`].
     #[cfg_attr(feature = "serde", serde(rename = "depth"))]
     pub least_tolerance: Option<f64>,
     /// Work done.
     pub steps: SolidSteps,
 }
 
-/// Nothing stops the moving body, or it never meets the other one.
+/// Result of a query in which nothing blocks the moving body, or the bodies never meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidFree {
-    /// A plane between the bodies, parallel to the direction, where there is one that rounding can
-    /// tell; not looked for where a query ends at [`SolidOptions::before`].
+    /// Separating plane parallel to the direction. `None` if no plane was found whose margin exceeds the rounding
+    /// errors, or if [`SolidOptions::before`] is set.
     pub separation: Option<Separation>,
     /// Work done.
     pub steps: SolidSteps,
 }
 
-/// Whether solids meet where they are.
+/// Result of a test whether two solids have a common point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidMeeting {
-    /// Two facets with a point in common, or a shell that is inside; `None` if the bodies do not meet.
+    /// Two facets with a common point, or a shell inside the other body. `None` if the bodies do not meet.
     pub place: Option<Overlap>,
     /// Work done.
     pub steps: SolidSteps,
@@ -161,7 +166,7 @@ impl RangeEnd for SolidContact {
     }
 }
 
-/// Solids do not graze: shadows that overlap, by however little, make a contact. There is no such value.
+/// Type without values. Solids do not graze: shadows that overlap make a contact, however small the overlap is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum NoGrazing {}
@@ -186,7 +191,7 @@ impl Body for Solid {
 }
 
 impl Solid {
-    /// This body in a pose, for a [`Cast`].
+    /// Places this body in a pose (body frame to world), for a [`Cast`].
     pub fn at(&self, pose: Pose) -> Placed<'_, Self> {
         Placed { body: self, pose }
     }
@@ -201,7 +206,7 @@ impl CastBody for Solid {
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(QueryError::Tolerance { tolerance });
         }
-        check_left(cast, tolerance)
+        check_thickness(cast, tolerance)
     }
 
     #[inline]
@@ -248,8 +253,8 @@ impl CastBody for Solid {
     }
 }
 
-/// Refuses a tolerance that leaves nothing of a body.
-fn check_left(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryError> {
+/// Checks that the offset of a tolerance leaves something of both bodies, by their boxes.
+fn check_thickness(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryError> {
     for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
         if solid.vanishes(tolerance / 2.0) {
             let extent = solid.thickness();
@@ -259,7 +264,8 @@ fn check_left(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryError> 
     Ok(())
 }
 
-/// The tolerance of bodies for which none was given, whose matrices permute axes, or not.
+/// Returns the tolerance of casts without a given one. It is 0 if both matrices permute axes and change signs
+/// (`permuted`), and eight times `noise` otherwise.
 fn default_tolerance(permuted: bool, noise: f64) -> f64 {
-    if permuted { 0.0 } else { NOISES * noise }
+    if permuted { 0.0 } else { DEFAULT_TOLERANCE_NOISES * noise }
 }

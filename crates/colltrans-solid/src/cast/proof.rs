@@ -1,13 +1,13 @@
-//! What a proof of a clearance is.
+//! Certificates of clearances between solids.
 //!
-//! Above, the pair of facets that attains the answer. Below, the antichain of pairs of nodes at which
-//! the descent through both trees stopped, each with its reason. Which node of a pair is split is a
-//! rule of its own, so the antichain needs no indices: a [`Cover`] lists in preorder whether a pair
-//! was split or why it was not, and covers all pairs of facets by being read to its end. A second one
-//! shows that the interiors are disjoint where the bodies are.
+//! - Upper bound: the pair of facets that attains the answer.
+//! - Lower bound: a [`Cover`], the antichain of pairs of nodes at which the descent through both trees stopped,
+//!   each with its reason. A fixed rule chooses the node to split, so a cover needs no indices. It lists in
+//!   preorder whether a pair was split or why not. A cover that can be read to its end covers all pairs of facets.
+//! - Start: a second cover shows that the surfaces do not cross at the start.
 //!
-//! The lower bound is what the parts of a cover prove with their rounding taken off: bounds of nodes
-//! are off by less than a third of the search's slack, gaps of facets by what they say themselves.
+//! The lower bound is the value that the entries of the cover prove, less their rounding errors. Bounds of nodes
+//! have errors of less than a third of the search's slack. Gaps of facets have bounds of their own errors.
 
 use std::collections::HashMap;
 
@@ -24,9 +24,8 @@ use crate::solve::search::{Aim, node_rounding};
 use crate::solve::separating_axes::SeparatingAxes;
 use colltrans_convex::cast::Cast;
 
-/// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
-/// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
-/// itself.
+/// Certificate of [`Cast::clearance`] between solids, which [`Cast::verify`] verifies without a search. Every pair
+/// of facets lies under one entry of a cover, and every entry is verified separately.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -34,37 +33,38 @@ use colltrans_convex::cast::Cast;
     serde(deny_unknown_fields)
 )]
 pub struct SolidCertificate {
-    /// The tolerance: both bodies are shrunk by half of it.
+    /// Tolerance, a length in world units. Both bodies are offset inwards by half of it.
     pub tolerance: f64,
-    /// Whether the bodies overlap where they are.
+    /// Proof whether the offset bodies overlap at the start.
     pub start: StartProof,
-    /// No pair of facets of the shrunk bodies stops them before, in multiples of the direction; infinite if none ever
-    /// does, 0 for an overlap that is the answer.
+    /// Lower bound of the distance, in multiples of the direction. No pair of facets of the offset bodies blocks
+    /// before. It is infinite if no pair ever blocks, and 0 if the answer is an overlap.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub lower: f64,
-    /// What stops it.
+    /// Pair of facets that blocks the moving body; `None` if nothing blocks, or if the answer is an overlap.
     pub stop: Option<StopProof>,
-    /// Why nothing stops it before.
+    /// Proof that no pair of facets blocks before `lower`.
     pub cover: Cover,
 }
 
-/// The proof of what the bodies do where they are.
+/// Proof whether the offset bodies overlap at the start.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(into = "super::encoding::Start", from = "super::encoding::Start")
+    serde(into = "super::encoding::StoredStart", from = "super::encoding::StoredStart")
 )]
 pub enum StartProof {
-    /// The caller has said it: [`SolidOptions::overlapping`].
+    /// Stated by the caller in [`SolidOptions::overlapping`], without a proof.
     Assumed,
-    /// Their surfaces do not cross; that no shell is inside the other body is checked anew.
+    /// The surfaces do not cross. The cover does not show that no shell is inside the other body; verification
+    /// tests this again.
     Apart(Cover),
-    /// They overlap.
+    /// The bodies overlap at this place.
     Overlapping(Overlap),
 }
 
-/// The pair of facets that stops the moving body.
+/// Pair of facets that blocks the moving body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -72,7 +72,7 @@ pub enum StartProof {
     serde(deny_unknown_fields)
 )]
 pub struct StopProof {
-    /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
+    /// Least gap of the facets of the offset bodies, in multiples of the direction, at least 0. It is the value of
     /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
     #[cfg_attr(feature = "serde", serde(rename = "distance"))]
     pub shrunk_distance: f64,
@@ -80,15 +80,15 @@ pub struct StopProof {
     pub triangles: [u32; 2],
 }
 
-/// For each pair of nodes, in preorder from both roots: `None` if one of them was split, or why not.
+/// List of entries for pairs of nodes, in preorder from both roots: `None` if a node of the pair was split,
+/// otherwise the reason why not.
 ///
-/// Split is the node with the longer diagonal of its box, the moving one if they are equal, and never
-/// a leaf.
+/// The node whose box has the longer diagonal is split, the moving one if they are equal. A leaf is never split.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(into = "String", try_from = "String", bound = "R: super::encoding::Letters")
+    serde(into = "String", try_from = "String", bound = "R: super::encoding::ReasonLetters")
 )]
 pub struct Cover<R = Reason>(pub(crate) Vec<Option<R>>);
 
@@ -104,39 +104,40 @@ impl<R> From<Vec<Option<R>>> for Cover<R> {
     }
 }
 
-/// One entry of a cover: what is said of all pairs of some facets.
+/// Statement of one entry of a cover about all pairs of certain facets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Claim<R = Reason> {
     /// Positions in [`Solid::triangles`] of the moving body.
     pub moving: std::ops::Range<usize>,
-    /// The same of the fixed body.
+    /// Positions in [`Solid::triangles`] of the fixed body.
     pub fixed: std::ops::Range<usize>,
-    /// Why none of the pairs matters.
+    /// Reason why none of the pairs matters.
     pub reason: R,
 }
 
 impl<R: Copy> Cover<R> {
-    /// Entries, splits included.
+    /// Returns the number of entries, splits included.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// Checks whether the cover has no entries.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The entries.
+    /// Returns the entries in preorder.
     pub fn entries(&self) -> &[Option<R>] {
         &self.0
     }
 
-    /// Walks down both trees as the entries say; `check` is asked about every pair that is not split,
-    /// with the entry's number. Stops at the first that it refuses.
+    /// Descends both trees as the entries state, and calls `check` with the number, the nodes and the reason of
+    /// each entry that is not a split.
     ///
     /// # Errors
-    /// The number of the entry that is refused, or at which the cover does not fit the trees.
+    /// Returns the number of the first entry that `check` rejects or that does not fit the trees. If the cover ends
+    /// too early, this is its length.
     pub(crate) fn walk(
         &self,
         bodies: [&Solid; 2],
@@ -157,7 +158,7 @@ impl<R: Copy> Cover<R> {
         if stack.is_empty() { Ok(()) } else { Err(self.0.len()) }
     }
 
-    /// What it says of which facets; `None` if it does not fit the bodies.
+    /// Lists the statements of the cover with their facets; `None` if the cover does not fit the bodies.
     pub(crate) fn claims_of(&self, bodies: [&Solid; 2]) -> Option<Vec<Claim<R>>> {
         let mut claims = Vec::new();
         let walked = self.walk(bodies, |_, nodes, reason| {
@@ -168,7 +169,7 @@ impl<R: Copy> Cover<R> {
         walked.is_ok().then_some(claims)
     }
 
-    /// In preorder, from the pairs of nodes that were not split.
+    /// Builds the cover from the reasons of the pairs of nodes that were not split.
     pub(crate) fn new(bodies: [&Solid; 2], cuts: &HashMap<[u32; 2], R>) -> Self {
         let mut entries = Vec::new();
         let (trees, mut stack) = (bodies.map(Solid::nodes), vec![[0_u32, 0]]);
@@ -186,23 +187,23 @@ impl<R: Copy> Cover<R> {
 }
 
 impl Cover {
-    /// What the cover says of which facets; `None` if it does not fit the bodies.
+    /// Lists the statements of the cover with their facets; `None` if the cover does not fit the bodies.
     pub fn claims(&self, cast: &Cast<'_, Solid>) -> Option<Vec<Claim>> {
         self.claims_of([cast.moving(), cast.fixed()])
     }
 }
 
 impl SolidCertificate {
-    /// What the search was for; `None` if an overlap is the answer.
+    /// Returns the aim of the search that the certificate replaces; `None` if the answer is an overlap.
     #[doc(hidden)]
     #[inline]
-    pub fn aim(&self, asked: SolidOptions) -> Option<Aim> {
+    pub fn aim(&self, options: SolidOptions) -> Option<Aim> {
         let overlapping = match self.start {
-            StartProof::Assumed => asked.overlapping == Some(true),
+            StartProof::Assumed => options.overlapping == Some(true),
             StartProof::Overlapping(_) => true,
             StartProof::Apart(_) => false,
         };
-        match (overlapping, asked.start_overlap) {
+        match (overlapping, options.start_overlap) {
             (false, _) => Some(Aim::Stop),
             (true, StartOverlap::Ignore) => Some(Aim::LaterStop),
             (true, StartOverlap::Refuse) => None,
@@ -210,19 +211,20 @@ impl SolidCertificate {
     }
 }
 
-/// The least gap of pairs of facets of two leaves that count, less its error; what is not below
-/// `limit` may be left out.
-pub(crate) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
+/// Returns a lower bound, a length, of the gaps that count for `aim` between facets of two leaves: the least gap
+/// less its rounding errors. Pairs with gaps of at least `limit` may be left out. Infinity if no pair remains.
+pub(crate) fn leaf_gap_bound(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
     use std::cmp::Ordering::{Greater, Less};
-    let of = |moving: bool, at: u32, wanted| -> Vec<Facet> {
+    let facing_facets = |moving: bool, at: u32, wanted| -> Vec<Facet> {
         let facets = scene.side(moving).solid.nodes()[at as usize].facets();
         facets.filter_map(|t| Facet::facing(scene, moving, t, wanted)).collect()
     };
-    let (front, back) = (of(true, nodes[0], Greater), of(false, nodes[1], Less));
+    let (front, back) =
+        (facing_facets(true, nodes[0], Greater), facing_facets(false, nodes[1], Less));
     let mut least = f64::INFINITY;
     for f in &front {
         for g in &back {
-            // A gap is wanted whatever its size, so that its own error can be taken off.
+            // Gaps somewhat above the limit count too, because their errors are subtracted.
             let end = limit + leaf::SHARP * scene.noise;
             let gap = leaf::gap(scene, f, g, end, aim.wanted());
             let sharp = |gap: Gap| {
@@ -243,8 +245,9 @@ pub(crate) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
     least
 }
 
-/// Whether an entry of the cover that is no pair of leaves holds.
-pub(crate) fn cut_holds(
+/// Checks whether an entry of a cover holds that is not a pair of examined leaves. `lower` is the bound that is
+/// claimed, as a length.
+pub(crate) fn entry_holds(
     (scene, axes): (&Scene, &SeparatingAxes),
     aim: Aim,
     nodes: [u32; 2],

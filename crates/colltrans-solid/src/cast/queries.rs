@@ -1,4 +1,4 @@
-//! The questions that only solids answer, as methods of [`Cast`](colltrans_convex::Cast).
+//! Queries that only solids answer, as methods of [`Cast`](colltrans_convex::Cast).
 
 use glam::DVec3;
 
@@ -15,10 +15,11 @@ use colltrans_convex::setting::error::QueryError;
 
 /// Queries that only a [`Cast`](colltrans_convex::Cast) of two [`Solid`]s supports.
 pub trait SolidCast<'a>: Sized {
-    /// Between bodies of either kind, as solids: a solid against a convex polyhedron, say.
+    /// Builds a cast of two bodies of either kind as solids, for example of a solid and a convex polyhedron.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range; a convex body whose facets [`Solid::from_mesh`] refuses.
+    /// The direction is zero, not finite or out of range, or [`Solid::from_mesh`] rejects the facets of a convex
+    /// body.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -40,8 +41,8 @@ pub trait SolidCast<'a>: Sized {
         direction: DVec3,
     ) -> Result<Self, QueryError>;
 
-    /// Returns the cast with both bodies shrunk by half of this length. Solids have no graze tolerance, since it would
-    /// depend on how finely they are meshed:
+    /// Returns the cast with both bodies offset inwards by half of `tolerance` (world units). Solids have no graze
+    /// tolerance, since it would depend on how finely they are meshed:
     ///
     /// ```compile_fail
     /// # use colltrans::{Cast, Solid};
@@ -51,43 +52,50 @@ pub trait SolidCast<'a>: Sized {
     /// ```
     ///
     /// # Errors
-    /// As [`Cast::with_options`](colltrans_convex::Cast::with_options).
+    /// Those of [`Cast::with_options`](colltrans_convex::Cast::with_options).
     fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError>;
 
-    /// Returns the cast with another meaning of an overlap at the start.
+    /// Returns the cast with another treatment of an overlap at the start.
     #[must_use]
     fn with_start_overlap(self, start_overlap: StartOverlap) -> Self;
 
-    /// The tolerance that is used, as a length.
+    /// Returns the tolerance in effect, given or default, as a length in world units.
     fn tolerance(&self) -> f64;
 
     /// Computes [`Cast::clearance`](colltrans_convex::Cast::clearance) and reuses the queue in `workspace`.
     ///
     /// # Errors
-    /// As [`Cast::clearance`](colltrans_convex::Cast::clearance).
+    /// Those of [`Cast::clearance`](colltrans_convex::Cast::clearance).
     fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError>;
 
-    /// How far the moving body can move from where it is, as [`Self::clearance_in`] says, and the proof of it. Allocates
-    /// what the proof takes: a byte for each pair of nodes.
+    /// Computes the clearance, as [`Self::clearance_in`] does, and its certificate, which takes one byte for each
+    /// pair of nodes.
     ///
-    /// Of convex bodies every answer carries its proof, which the search ends with anyway. Between solids
-    /// it takes a pass over all that the search left out, and as much space: so it is asked for apart.
+    /// Answers for convex bodies always contain their certificate, because the search ends with it. For solids a
+    /// certificate takes another pass over all that the search dismissed, and as much memory. Therefore it is
+    /// computed on request only.
     ///
     /// # Errors
-    /// As [`Cast::clearance`](colltrans_convex::Cast::clearance).
+    /// Those of [`Cast::clearance`](colltrans_convex::Cast::clearance).
     fn certified_clearance(&self) -> Result<(Clearance<Solid>, SolidCertificate), QueryError>;
 
-    /// Where the moving body would be stopped if these two triangles, by their positions in
-    /// [`Solid::triangles`], were all that there is of the bodies; `None` if they do not stop it. What
-    /// blocks along one direction often does so along others too: then the clearance is no larger. Bodies count as
-    /// overlapping only where [`SolidOptions::overlapping`](super::SolidOptions::overlapping) says so.
+    /// Computes the contact that blocks the moving body if both bodies consist only of these triangles, given by
+    /// their positions in [`Solid::triangles`]. `None` if they do not block, or if a position is out of range.
+    ///
+    /// Triangles that block along one direction often block along others too. There the clearance is at most that
+    /// of their contact. Triangles that cross at the start are ignored only if
+    /// [`SolidOptions::overlapping`](super::SolidOptions::overlapping) is `Some(true)` and overlaps are to be
+    /// ignored.
     fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact>;
 
-    /// Where two triangles of these bodies, as they are, meet that stop them after
-    /// [`Solid::shrunk`]: what [`SolidContact::translation`] is to
-    /// [`SolidContact::shrunk_distance`]. `shrunk` is how far the shrunk bodies go, `normal` that of
-    /// their contact, and `shift` how far the contact point of the moving body was moved by shrinking,
-    /// less that of the fixed body. `None` if there are no such triangles.
+    /// Computes where two triangles meet in nominal position that block the bodies after [`Solid::shrunk`]. The
+    /// result relates to `shrunk` as [`SolidContact::translation`] to [`SolidContact::shrunk_distance`]. `None` if
+    /// a position is out of range.
+    ///
+    /// - `triangles`: positions in [`Solid::triangles`] of the moving and the fixed body.
+    /// - `shrunk`: distance of the offset bodies, in multiples of the direction.
+    /// - `normal`: normal of their contact, in the world.
+    /// - `shift`: displacement of the contact point on the moving body by the offset, less that of the fixed body.
     fn true_place(
         &self,
         triangles: [u32; 2],
@@ -96,13 +104,13 @@ pub trait SolidCast<'a>: Sized {
         shift: DVec3,
     ) -> Option<Bounded>;
 
-    /// Whether the interiors of the bodies, shrunk by half the tolerance, have a point in common, or open
-    /// shells pass through what is there.
+    /// Checks whether the interiors of the offset bodies have a common point, or an open shell passes through the
+    /// other body.
     fn overlaps(&self) -> bool;
 
-    /// Where the bodies, shrunk by half the tolerance, overlap, and by how much; `None` if they do not:
-    /// what [`Clearance::Overlapping`] tells, and what an answer with [`StartOverlap::Ignore`] has
-    /// ignored. It costs several times as much as [`Self::overlaps`], for the least tolerance.
+    /// Finds an overlap of the offset bodies and computes its least tolerance; `None` if they do not overlap. The
+    /// result is that of [`Clearance::Overlapping`], or the overlap that [`StartOverlap::Ignore`] ignores. The
+    /// least tolerance takes several times as long as [`Self::overlaps`].
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -122,44 +130,52 @@ pub trait SolidCast<'a>: Sized {
     /// ```
     fn start_overlap(&self) -> Option<SolidOverlap>;
 
-    /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
-    /// if there is none that leaves something of both, as of one that lies deep inside the other. Nor is there one
-    /// where they overlap and one of them has open
-    /// shells: less of a solid does not free a sheet that passes through it. It is more than the least by
-    /// `1e-12` of itself or 8 noises (`256 u S`) at most. How far convex bodies have to
-    /// go back along a direction is another question:
-    /// [`Cast::directional_depth`](colltrans_convex::Cast::directional_depth).
+    /// Computes an upper bound of the least tolerance at which the bodies do not overlap, 0 if the nominal bodies
+    /// do not overlap.
+    ///
+    /// `None` if no such tolerance leaves something of both bodies, for example if one lies deep inside the other.
+    /// Also `None` if they overlap and one has an open shell, because a smaller solid does not free a sheet that
+    /// passes through it.
+    ///
+    /// The bound exceeds the least tolerance by at most 4 noises and the larger of 4 noises and `1e-12` of itself.
+    /// For convex bodies, [`Cast::directional_depth`](colltrans_convex::Cast::directional_depth) is the depth along
+    /// a direction.
     fn least_tolerance(&self) -> Option<f64>;
 
     /// Computes [`Cast::first_contact`](colltrans_convex::Cast::first_contact) and reuses the queue in `workspace`.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`](colltrans_convex::Cast::first_contact).
+    /// Those of [`Cast::first_contact`](colltrans_convex::Cast::first_contact).
     fn first_contact_in(&self, workspace: &mut Workspace) -> Result<Outcome<Solid>, QueryError>;
 
-    /// The translation after which the bodies, as they are, never meet again, in multiples of the
-    /// direction: the last contact of [`Cast::contact_range`](colltrans_convex::Cast::contact_range) alone, and 0 if it
-    /// lies behind; `None` if they never meet. Beyond `upper` they are apart for certain.
+    /// Computes the translation after which the nominal bodies never meet again, in multiples of the direction.
+    /// This is the last contact of [`Cast::contact_range`](colltrans_convex::Cast::contact_range), or 0 if that is
+    /// behind. `None` if the bodies never meet. Beyond `upper` they are certainly apart.
     fn exit(&self) -> Option<Bounded>;
 
     /// Computes [`Self::exit`] and reuses the queue in `workspace`.
     fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded>;
 }
 
-/// The bodies of a query as its searches see them: for the crates that search beside this one.
+/// Scenes (frames and offset bodies) and overlaps of a query, for crates with searches of their own.
 #[doc(hidden)]
 pub trait SolidScene<'a> {
+    /// Builds the scene with both bodies offset inwards by half of `tolerance` (world units).
     fn scene(&self, tolerance: f64) -> Scene<'a>;
 
-    /// The bodies shrunk by half the tolerance.
+    /// Builds the scene at the tolerance of the query.
     fn asked(&self) -> Scene<'a>;
 
-    /// Returns the bodies shrunk by half the tolerance, or an error if nothing is left of one.
+    /// Builds the scene at the tolerance of the query. Returns an error if the default tolerance leaves nothing of
+    /// a body.
     fn asked_of_something(&self) -> Result<Scene<'a>, QueryError>;
 
+    /// Computes the least tolerance of an overlap at a place; the result contains `steps` with this work added.
     fn overlap_at(&self, place: Overlap, steps: SolidSteps) -> SolidOverlap;
 
+    /// Proves whether the bodies of a scene overlap, unless the options state it. Adds the work to `steps`.
     fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof;
 
+    /// Verifies a proof of [`Self::prove_start`].
     fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError>;
 }

@@ -1,13 +1,15 @@
-//! How much solids overlap: the least tolerance with which they do not.
+//! Least tolerance at which two overlapping solids do not overlap.
 //!
-//! The place that shows an overlap is asked first, alone, with which tolerance it is gone. Two facets are parted along a
-//! normal of one of them or across two edges; how far they are apart is nearly linear in the tolerance, so secants
-//! guess where that is 0, and what is decided exactly on either side of the guess holds it. With that the bodies are
-//! asked: where the plane that parts the facets parts all of them, or no others overlap, that is it; else the other place
-//! is next. Where the tolerance is not small, facets may come to overlap again: there it is doubled and halved, and the
-//! bodies are asked each time, unless the last place tells, or of convex ones a plane between them.
+//! 1. Compute the tolerance at which one place of overlap disappears. The gap of two facets, along a normal of one
+//!    or across an edge of each, is nearly linear in the tolerance. Secants estimate where it is 0, and exact tests
+//!    bracket and bisect the tolerance around the estimate.
+//! 2. Test the bodies at that tolerance. It is the result if the plane that separates the facets separates the
+//!    bodies, or if they do not overlap elsewhere. Otherwise repeat step 1 for the next place.
+//! 3. At large tolerances facets may begin to overlap again, so one place is not enough. Then the tolerance is
+//!    doubled and bisected, and each step tests the bodies: first the last place, then a plane between convex
+//!    bodies, then all facets.
 
-use super::{SolidScene, check_left, hulls};
+use super::{SolidScene, check_thickness, hulls};
 use crate::body::Solid;
 use crate::solve::overlap::{self, Overlap};
 use crate::solve::parted;
@@ -16,49 +18,55 @@ use crate::solve::separate;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::cast::Cast;
 
-/// The least tolerance is found to this share of itself, or so many noises; as many more part bodies clearly.
-const ACCURACY: f64 = 1e-12;
-const NOISES: f64 = 4.0;
-/// Doublings and halvings of a tolerance, and secants towards it.
-const MOST_HALVINGS: usize = 128;
-const MOST_SECANTS: usize = 12;
-/// Places of an overlap that are asked for their tolerance, one after the other; then the bodies are asked each time.
-const MOST_PLACES: usize = 24;
+/// Relative accuracy of the least tolerance.
+const RELATIVE_ACCURACY: f64 = 1e-12;
+/// Absolute accuracy of the least tolerance, in noises. A tolerance that is larger by this amount separates facets
+/// clearly.
+const ACCURACY_NOISES: f64 = 4.0;
+/// Maximum number of bisections of a tolerance.
+const MAX_BISECTIONS: usize = 128;
+/// Maximum number of secant steps for one place.
+const MAX_SECANTS: usize = 12;
+/// Maximum number of places that are tested alone, before the bodies are tested at each tolerance.
+const MAX_PLACES: usize = 24;
 
-/// The same of bodies that overlap in a place, which is looked for if none is known.
+/// Computes an upper bound of the least tolerance, 0 if the nominal bodies do not overlap. A known `place` of
+/// overlap saves the first search. `None` if every sufficient tolerance leaves nothing of a body, or if overlapping
+/// bodies have open shells. Adds the work to `steps`.
 pub(crate) fn least_tolerance_from(
     cast: &Cast<'_, Solid>,
     place: Option<Overlap>,
     steps: &mut SolidSteps,
 ) -> Option<f64> {
-    let bare = cast.scene(0.0);
-    let known = place.filter(|&place| overlap::is_overlap(&bare, place));
-    let Some(mut place) = known.or_else(|| overlap::find(&bare, steps)) else {
+    let nominal = cast.scene(0.0);
+    let known = place.filter(|&place| overlap::is_overlap(&nominal, place));
+    let Some(mut place) = known.or_else(|| overlap::find(&nominal, steps)) else {
         return Some(0.0);
     };
     if !(cast.moving().is_closed() && cast.fixed().is_closed()) {
         return None;
     }
-    // Shrunk by more than there is of it, a body is inside out.
-    let vanishes = |tolerance: f64| check_left(cast, tolerance).is_err();
-    let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
-    // As long as shrinking turns nothing inside out, what is free with one tolerance is so with more.
-    let most = 2.0 * cast.moving().shrinking().most.min(cast.fixed().shrinking().most);
+    // A closed body that is offset by more than its thickness turns inside out.
+    let vanishes = |tolerance: f64| check_thickness(cast, tolerance).is_err();
+    let shrunk = |tolerance: f64| nominal.shrunk(tolerance / 2.0, tolerance / 2.0);
+    // As long as the offset turns nothing inside out, a larger tolerance does not create an overlap.
+    let max_offset_tolerance =
+        2.0 * cast.moving().shrinking().most.min(cast.fixed().shrinking().most);
     let mut overlapping = 0.0;
-    for _ in 0..MOST_PLACES {
-        let ends = [overlapping, most];
-        let Some(least) = least_of(&bare, place, ends, &mut steps.leaves) else { break };
+    for _ in 0..MAX_PLACES {
+        let ends = [overlapping, max_offset_tolerance];
+        let Some(least) = place_tolerance(&nominal, place, ends, &mut steps.leaves) else { break };
         if vanishes(least) {
             break;
         }
-        let clear = least + NOISES * bare.noise;
-        if are_parted(&shrunk(clear), place) {
+        let clear = least + ACCURACY_NOISES * nominal.noise;
+        if facets_separate_bodies(&shrunk(clear), place) {
             return Some(clear);
         }
         let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
         (place, overlapping) = (next, least);
     }
-    let convex = !bare.keeps() && hulls::are_convex(cast);
+    let convex = !nominal.keeps() && hulls::are_convex(cast);
     let mut between = None;
     let mut is_free = |tolerance| {
         if vanishes(tolerance) {
@@ -77,71 +85,78 @@ pub(crate) fn least_tolerance_from(
         place = found.unwrap_or(place);
         found.is_none()
     };
-    let ends = doubled([overlapping, bare.size()], bare.noise, &mut is_free)?;
-    let least = halved(ends, bare.noise, is_free);
+    let ends = bracket_by_doubling([overlapping, nominal.size()], nominal.noise, &mut is_free)?;
+    let least = bisect(ends, nominal.noise, is_free);
     (!vanishes(least)).then_some(least)
 }
 
-/// Whether the plane that parts the facets of a place has all of the bodies on either side.
-fn are_parted(scene: &Scene, place: Overlap) -> bool {
+/// Checks whether the plane with the widest gap between the two facets of a place separates the bodies. Returns
+/// `false` for a shell.
+fn facets_separate_bodies(scene: &Scene, place: Overlap) -> bool {
     let plane = overlap::widest(scene, place);
     plane.is_some_and(|(gap, normal)| gap > 0.0 && separate::parts(scene, normal))
 }
 
-/// The tolerance from which on a place shows no overlap, from above, of which one is known with which it does; `None` if
-/// that is beyond the second one. Counts its looks at the place.
-fn least_of(
-    bare: &Scene,
+/// Computes an upper bound of the tolerance from which on a place shows no overlap. At the tolerance `overlapping`
+/// the bodies are known to overlap. `None` if the result is beyond `max_offset_tolerance`. Adds the number of tests
+/// of the place to `tests`.
+fn place_tolerance(
+    nominal: &Scene,
     place: Overlap,
-    [overlapping, most]: [f64; 2],
-    looks: &mut u32,
+    [overlapping, max_offset_tolerance]: [f64; 2],
+    tests: &mut u32,
 ) -> Option<f64> {
-    let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
+    let shrunk = |tolerance: f64| nominal.shrunk(tolerance / 2.0, tolerance / 2.0);
     let mut is_gone = |tolerance| {
-        *looks += 1;
+        *tests += 1;
         tolerance > overlapping && !overlap::is_overlap(&shrunk(tolerance), place)
     };
     let gap = |tolerance| overlap::widest(&shrunk(tolerance), place).map(|(gap, _)| gap);
-    let (ends, noise) = ([overlapping, most], bare.noise);
-    let ends = match guess(gap, overlapping, noise) {
-        Some(guess) if guess < most => around(guess, ends, noise, &mut is_gone)?,
+    let (ends, noise) = ([overlapping, max_offset_tolerance], nominal.noise);
+    let ends = match secant_root(gap, overlapping, noise) {
+        Some(guess) if guess < max_offset_tolerance => {
+            bracket_around(guess, ends, noise, &mut is_gone)?
+        }
         Some(_) => return None,
-        None => doubled(ends, noise, &mut is_gone)?,
+        None => bracket_by_doubling(ends, noise, &mut is_gone)?,
     };
-    Some(halved(ends, noise, is_gone))
+    Some(bisect(ends, noise, is_gone))
 }
 
-/// By secants, where a gap that grows with the tolerance is 0.
-fn guess(gap: impl Fn(f64) -> Option<f64>, from: f64, noise: f64) -> Option<f64> {
+/// Estimates by secants where a gap that grows with the tolerance is 0, starting at the tolerance `from`. `None` if
+/// a gap is `None`, a step is not finite, or the estimate is not above `from`.
+fn secant_root(gap: impl Fn(f64) -> Option<f64>, from: f64, noise: f64) -> Option<f64> {
     let (mut last, mut before) = (from, gap(from)?);
     let mut at = from + before.abs().max(noise);
-    for _ in 0..MOST_SECANTS {
+    for _ in 0..MAX_SECANTS {
         let now = gap(at)?;
         let step = now * (at - last) / (now - before);
         if !step.is_finite() {
             return None;
         }
         (last, before, at) = (at, now, at - step);
-        if step.abs() <= NOISES * noise {
+        if step.abs() <= ACCURACY_NOISES * noise {
             break;
         }
     }
     (at > from).then_some(at)
 }
 
-fn accuracy(tolerance: f64, noise: f64) -> f64 {
-    (ACCURACY * tolerance).max(NOISES * noise)
+/// Returns the accuracy, a length, to which a tolerance is computed.
+fn tolerance_accuracy(tolerance: f64, noise: f64) -> f64 {
+    (RELATIVE_ACCURACY * tolerance).max(ACCURACY_NOISES * noise)
 }
 
-/// Two tolerances near a guess, with the first of which something does not hold and with the second it does, where none
-/// up to the first end does; `None` if it does not up to the last one.
-fn around(
+/// Brackets the tolerance from which on a condition holds, near a guess. The condition does not hold up to the
+/// lower end of the range. Returns a tolerance at which it does not hold and one at which it does. `None` if it
+/// does not hold up to the upper end.
+fn bracket_around(
     guess: f64,
     [mut low, last]: [f64; 2],
     noise: f64,
     holds: &mut impl FnMut(f64) -> bool,
 ) -> Option<[f64; 2]> {
-    let mut width = 0.5 * accuracy(guess, noise);
+    let mut width = 0.5 * tolerance_accuracy(guess, noise);
     let mut high = guess + width;
     if holds(high) {
         while guess - width > low {
@@ -164,8 +179,9 @@ fn around(
     None
 }
 
-/// The same, doubled from the noise, or the first end, on.
-fn doubled(
+/// Brackets the tolerance from which on a condition holds, by doubling the lower end of the range or the noise.
+/// `None` if it does not hold up to the upper end.
+fn bracket_by_doubling(
     [mut low, last]: [f64; 2],
     noise: f64,
     holds: &mut impl FnMut(f64) -> bool,
@@ -180,11 +196,11 @@ fn doubled(
     Some([low, high])
 }
 
-/// Halved between two such, the last one.
-fn halved([mut low, mut high]: [f64; 2], noise: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
-    for _ in 0..MOST_HALVINGS {
+/// Bisects a bracket of [`bracket_around`] or [`bracket_by_doubling`] to the accuracy and returns its upper end.
+fn bisect([mut low, mut high]: [f64; 2], noise: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
+    for _ in 0..MAX_BISECTIONS {
         let middle = low + 0.5 * (high - low);
-        if high - low <= accuracy(high, noise) || middle <= low || middle >= high {
+        if high - low <= tolerance_accuracy(high, noise) || middle <= low || middle >= high {
             break;
         }
         *(if holds(middle) { &mut high } else { &mut low }) = middle;

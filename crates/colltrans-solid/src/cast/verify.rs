@@ -1,6 +1,6 @@
-//! Proofs between solids checked: each entry by itself, without a search.
+//! Verification of certificates between solids, without a search: each entry is verified separately.
 
-use super::proof::{Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves};
+use super::proof::{Cover, SolidCertificate, StartProof, StopProof, entry_holds, leaf_gap_bound};
 use super::{SolidCast, SolidScene};
 use crate::body::Solid;
 use crate::solve::bound::{Reason, apart};
@@ -13,20 +13,25 @@ use crate::solve::separating_axes::SeparatingAxes;
 use colltrans_convex::answer::{CertificateError, Separation, checked_as};
 use colltrans_convex::cast::Cast;
 
-/// A proof between solids: of a clearance, or of a plane between the bodies.
+/// Certificate between solids, of a clearance or of a plane between the bodies.
 #[derive(Debug, Clone, Copy)]
 pub enum SolidProof<'a> {
-    /// Of an answer.
+    /// Certificate of a clearance.
     Clearance(&'a SolidCertificate),
-    /// Of the bodies never meeting.
+    /// Plane which proves that the bodies never meet.
     Separation(&'a Separation),
 }
 
 checked_as!(SolidProof { Clearance(SolidCertificate), Separation(Separation) });
 
-/// No proof of a length is as small: far below the rounding of any body's coordinates.
-const LEAST_LENGTH: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+/// Minimum positive length of a proven bound. It is far below the rounding errors of the coordinates of any body.
+const MIN_LENGTH: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
+/// Verifies the certificate of a clearance. Returns the difference of the distance and its proven lower bound, in
+/// multiples of the direction. Returns 0 if nothing blocks or the answer is an overlap.
+///
+/// # Errors
+/// Returns the first part that is not proven, or a tolerance that differs from that of the cast.
 pub(super) fn verify_clearance(
     cast: &Cast<'_, Solid>,
     certificate: &SolidCertificate,
@@ -40,13 +45,13 @@ pub(super) fn verify_clearance(
     let options = cast.options();
     cast.verify_start(&scene, start)?;
     let Some(aim) = certificate.aim(options) else {
-        let plain = *lower == 0.0 && stop.is_none() && cover.is_empty();
-        return if plain { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
+        let is_empty = *lower == 0.0 && stop.is_none() && cover.is_empty();
+        return if is_empty { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
     };
     verify_cover(&scene, aim, cover, *lower)?;
     let end = options.before.unwrap_or(f64::INFINITY);
     let Some(stop) = stop else {
-        // Nothing before the end, to within rounding.
+        // The bound reaches the end, to within rounding.
         let tolerance = node_rounding(&scene) / scene.setting.length + 4.0 * f64::EPSILON * end;
         let reached = *lower >= end || *lower >= end - 2.0 * tolerance;
         let (proven, claimed) = (*lower, end);
@@ -64,6 +69,11 @@ pub(super) fn verify_clearance(
     }
 }
 
+/// Verifies the proof whether the bodies overlap at the start.
+///
+/// # Errors
+/// Returns an error if the place does not overlap, the proof disagrees with the options, or an entry of the cover
+/// does not hold.
 pub(super) fn verify_start(
     cast: &Cast<'_, Solid>,
     scene: &Scene,
@@ -78,13 +88,13 @@ pub(super) fn verify_start(
     if holds { Ok(()) } else { Err(CertificateError::Start) }
 }
 
-/// Checks that the interiors are disjoint where the bodies are.
+/// Verifies that the interiors are disjoint at the start.
 fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let projected = |moving: bool, at: u32| Projected::new(scene, scene.side(moving), at as usize);
-    let whole = never_overlap(scene, &projected(true, 0), &projected(false, 0));
+    let boxes_disjoint = never_overlap(scene, &projected(true, 0), &projected(false, 0));
     let walked = cover.walk(bodies, |_, nodes, reason| match reason {
-        Reason::Disjoint if nodes == [0, 0] && whole => true,
+        Reason::Disjoint if nodes == [0, 0] && boxes_disjoint => true,
         Reason::Disjoint => apart(scene, &projected(true, nodes[0]), &projected(false, nodes[1])),
         Reason::FaceToFace => {
             !scene.keeps() && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
@@ -96,40 +106,40 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
         _ => false,
     });
     walked.map_err(|entry| CertificateError::Cover { entry })?;
-    if !whole && nested(scene).is_some() {
+    if !boxes_disjoint && nested(scene).is_some() {
         return Err(CertificateError::Start);
     }
     Ok(())
 }
 
-/// Checks that no pair of facets contributes less than a translation.
+/// Verifies that no pair of facets contributes less than `lower`, in multiples of the direction.
 fn verify_cover(
     scene: &Scene,
     aim: Aim,
     cover: &Cover,
     lower: f64,
 ) -> Result<(), CertificateError> {
-    // A length that is lost in the underflow of this product would be none.
-    let lost = lower > 0.0 && lower * scene.setting.length < LEAST_LENGTH;
-    if lower.is_nan() || lower < 0.0 || lost {
+    // A length for which this product underflows proves nothing.
+    let underflows = lower > 0.0 && lower * scene.setting.length < MIN_LENGTH;
+    if lower.is_nan() || lower < 0.0 || underflows {
         return Err(CertificateError::Cover { entry: 0 });
     }
     let bodies = [scene.moving.solid, scene.fixed.solid];
-    // One rounding of the division, and one of this product.
+    // The factor covers one rounding of the division and one of this product.
     let least = (lower * scene.setting.length) * (1.0 - 2.0 * f64::EPSILON);
     let axes = SeparatingAxes::new(scene);
     let walked = cover.walk(bodies, |_, nodes, reason| {
         if reason != Reason::Examined {
-            return cut_holds((scene, &axes), aim, nodes, reason, least);
+            return entry_holds((scene, &axes), aim, nodes, reason, least);
         }
         let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();
-        leaf(0) && leaf(1) && (least <= 0.0 || least_of_leaves(scene, aim, nodes, least) >= least)
+        leaf(0) && leaf(1) && (least <= 0.0 || leaf_gap_bound(scene, aim, nodes, least) >= least)
     });
     walked.map_err(|entry| CertificateError::Cover { entry })
 }
 
-/// Checks that two facets stop the body where it is said; how far off their gap may be, as a length, where they are
-/// to keep one.
+/// Verifies that two facets block the moving body at the claimed distance. Returns the error of their gap, a
+/// length, if a minimum gap is set, and 0 otherwise.
 fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<f64, CertificateError> {
     let [s, t] = stop.triangles;
     let refused = CertificateError::triangles(stop.triangles);

@@ -1,4 +1,4 @@
-//! How much is looked at of solids, and how that grows.
+//! Number of elements that algorithms on solids visit, and its growth with the size of the input.
 
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
@@ -14,36 +14,39 @@ fn rotation() -> DQuat {
     Random::new(5).rotation()
 }
 
-/// An answer and its proof are of one search, also about bodies that are made once more of the same facets.
+/// The certificate comes from the same search as the answer, also for bodies that are built again from the same
+/// facets.
 #[test]
-fn a_proof_takes_no_second_search() {
-    let made = |Mesh { vertices, faces }: &Mesh| Solid::from_mesh(vertices, faces).unwrap();
+fn distance_proof_needs_no_second_search() {
+    let to_solid = |Mesh { vertices, faces }: &Mesh| Solid::from_mesh(vertices, faces).unwrap();
     let meshes = [bumpy_ball(1_000), slab(DVec3::ZERO, DVec3::ONE, [5, 5, 1])];
-    let ([ball, plate], again) = (meshes.each_ref().map(made), meshes.each_ref().map(made));
-    assert!(ball.has_tree_of(&again[0]) && plate.has_tree_of(&again[1]));
+    let ([ball, plate], rebuilt) =
+        (meshes.each_ref().map(to_solid), meshes.each_ref().map(to_solid));
+    assert!(ball.has_tree_of(&rebuilt[0]) && plate.has_tree_of(&rebuilt[1]));
     for far in [0.0, 1.0, 3.0] {
         let pose = Pose::new(rotation(), DVec3::splat(far)).expect("a pose");
         let pair = Pair::new(ball.at(pose), plate.at(Pose::IDENTITY)).expect("a pair");
-        let saved = Pair::new(again[0].at(pose), again[1].at(Pose::IDENTITY)).expect("a pair");
+        let rebuilt_pair =
+            Pair::new(rebuilt[0].at(pose), rebuilt[1].at(Pose::IDENTITY)).expect("a pair");
         let without = looks(|| drop(pair.distance()));
         let with = looks(|| {
             let (_, found) = pair.ask(true).expect("an answer");
-            saved.prove(found).expect("a proof");
+            rebuilt_pair.prove(found).expect("a proof");
         });
-        assert!(with == without && without > 0, "{with} and {without} looks, {far}");
+        assert!(with == without && without > 0, "{with} and {without} visits at {far}");
         let length = 0.999 * pair.distance().expect("an answer").lower;
         let without = looks(|| drop(pair.within(length)));
         let with = looks(|| {
             let (_, found) = pair.decide(length, true).expect("an answer");
-            saved.prove(found).expect("a proof");
+            rebuilt_pair.prove(found).expect("a proof");
         });
         assert_eq!(with, without, "{far}");
     }
 }
 
-/// Boxes of thin triangles in one plane overlap by the thousand.
+/// Bounding boxes of thin triangles in one plane overlap by the thousand.
 #[test]
-fn thin_triangles_of_large_faces() {
+fn shrink_report_of_washer_is_subquadratic() {
     assert_growth("washer", 1_000, |sides| {
         let Mesh { vertices, faces } = washer([1.0, 2.0], [0.0, 1.0], sides);
         let ring = Solid::from_mesh(&vertices, &faces).expect("a washer");
@@ -51,9 +54,9 @@ fn thin_triangles_of_large_faces() {
     });
 }
 
-/// Boxes of the long triangles of a comb's caps overlap those of the walls of all its teeth.
+/// Bounding boxes of the long triangles of a comb's caps overlap those of the walls of all its teeth.
 #[test]
-fn long_triangles_beside_many_walls() {
+fn shrink_report_of_comb_is_subquadratic() {
     let by_ears = |teeth| extruded(&comb_outline(teeth), [0.0, 1.0]);
     let shrink_looks = |Mesh { vertices, faces }: Mesh| {
         let solid = Solid::from_mesh(&vertices, &faces).expect("a comb");
@@ -64,13 +67,13 @@ fn long_triangles_beside_many_walls() {
         ("ears", [200, 1_000].map(|teeth| shrink_looks(by_ears(teeth)))),
     ] {
         let growth = counts[1] as f64 / counts[0] as f64;
-        println!("comb of {what}: {counts:?} looks, {growth:.1} times as many");
-        assert!(growth < 8.0, "comb of {what}: {growth:.1} times as many looks");
+        println!("comb of {what}: {counts:?} visits, growth factor {growth:.1}");
+        assert!(growth < 8.0, "comb of {what}: visits grow by a factor of {growth:.1}");
     }
 }
 
 #[test]
-fn solids_with_faces_of_many_corners() {
+fn building_prism_of_many_sides_is_subquadratic() {
     for (what, radii) in [("round", [1.0, 1.0]), ("jagged", [1.0, 0.6])] {
         assert_growth(what, 2_000, |sides| {
             let outline = ring(sides, 1.0, 0.0).enumerate().map(|(k, p)| p * radii[k % 2]);
@@ -82,22 +85,23 @@ fn solids_with_faces_of_many_corners() {
     }
 }
 
-/// What rounding leaves in doubt of flat bodies that are turned, or of positions that are no round
-/// numbers, is told by twice the usual precision: no determinant of whole numbers.
+/// Rotated flat bodies, and positions that are not round numbers, leave signs undecided. Twice the usual precision
+/// decides them, without determinants of integers.
 #[test]
-fn flat_bodies_need_no_whole_numbers() {
+fn clearance_of_flat_bodies_needs_no_exact_integers() {
     let Mesh { vertices, faces } = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::ONE, [4, 4, 1]);
     let plate = Solid::from_mesh(&vertices, &faces).expect("a slab");
     for turn in [DQuat::IDENTITY, rotation()] {
-        for (height, way) in [(1.0, DVec3::NEG_Z), (1.001, DVec3::NEG_Z), (2.0, DVec3::NEG_Z)] {
+        for (height, direction) in [(1.0, DVec3::NEG_Z), (1.001, DVec3::NEG_Z), (2.0, DVec3::NEG_Z)]
+        {
             let at = turn * DVec3::new(0.3, -0.17, height);
             let above = plate.at(Pose::new(turn, at).expect("a pose"));
             let below = plate.at(Pose::new(turn, DVec3::ZERO).expect("a pose"));
-            let cast = Cast::new(above, below, turn * way).expect("a direction");
-            let ask = || assert!(!cast.clearance().expect("an answer").is_free());
-            // The first query makes the hull.
-            ask();
-            assert_eq!(looks(ask), 0, "{turn} from {height}");
+            let cast = Cast::new(above, below, turn * direction).expect("a direction");
+            let run_query = || assert!(!cast.clearance().expect("an answer").is_free());
+            // The first query builds the hull.
+            run_query();
+            assert_eq!(looks(run_query), 0, "{turn} from {height}");
         }
     }
 }

@@ -1,9 +1,10 @@
-//! The facets around a place of the hulls' contact, as the search would take them: where bodies are shrunk by more than
-//! rounding, or the hulls leave something in doubt.
+//! Answer from the facets around the contact of the hulls, with gaps computed as in the search.
+//!
+//! Used if the bodies are offset by more than rounding, or if the certificate of the hulls proves too little.
 
 use glam::DVec3;
 
-use super::{Hulls, Spot, Surface};
+use super::{Hulls, Surface, SurfacePoint};
 use crate::solve::bound::box_gaps;
 use crate::solve::overlap::{Overlap, is_overlap};
 use crate::solve::projected::Projected;
@@ -12,57 +13,63 @@ use crate::solve::search::{Aim, Found, SLACK, Search};
 use crate::solve::separate::{HEIGHTS, farthest};
 use colltrans_convex::answer::{Contact, Outcome};
 
-/// Facets at a place that are held against each other; how near a place is to a facet's sides for those across to be
-/// among them, in noises.
-const MOST_FACETS: usize = 4;
-const NEAR: f64 = 64.0;
-/// Share of the size up to which bodies that overlap are looked at where their hulls meet.
-const SUNK: f64 = 1e-3;
-/// Vertices that are held against each other for the farthest.
-const MOST_TOP: usize = 32;
+/// Maximum number of facets of one body that are compared.
+const MAX_FACETS: usize = 4;
+/// Distance of the contact point from a side, in noises, up to which the facet across counts too.
+const NEAR_NOISES: f64 = 64.0;
+/// Depth of an overlap, as a share of the size, up to which the facets around the contact are tested.
+const MAX_SHALLOW_DEPTH: f64 = 1e-3;
+/// Maximum number of vertices that are compared for the farthest one.
+const MAX_TOP_VERTICES: usize = 32;
 
-/// What the hulls tell of gaps below a limit.
-pub(in crate::cast) enum Guessed {
-    /// Nothing stops the moving body.
+/// Result of the facets around the contact.
+pub(in crate::cast) enum ContactGuess {
+    /// Nothing blocks the moving body below the limit.
     Free,
-    /// Two facets do, and no gap is less than a length.
+    /// Two facets block, and no gap is less than the length.
     Stop(Found, f64),
 }
 
 impl Hulls<'_> {
-    /// What the facets around their contact tell of gaps below a limit; `None` if that is nothing. Counts pairs of facets.
-    pub(in crate::cast) fn guessed(
+    /// Decides the clearance with gaps below `limit` (a length) by the facets around the contact; `None` if they do
+    /// not decide it. Adds the number of compared pairs to `leaves`.
+    pub(in crate::cast) fn guess_at_contact(
         &self,
         scene: &Scene,
         limit: f64,
         leaves: &mut u32,
-    ) -> Option<Guessed> {
-        match &self.first {
+    ) -> Option<ContactGuess> {
+        match &self.first_outcome {
             Outcome::Contact(contact) if contact.certificate.upper >= 0.0 => {
-                stop(scene, &self.bodies, contact, limit, leaves)
+                blocking_pair(scene, &self.bodies, contact, limit, leaves)
             }
-            Outcome::Contact(_) => {
-                (margin(scene, &self.bodies, self.last()?) > 0.0).then_some(Guessed::Free)
-            }
+            Outcome::Contact(_) => (plane_margin(scene, &self.bodies, self.last_contact()?) > 0.0)
+                .then_some(ContactGuess::Free),
             _ => None,
         }
     }
 
-    /// Whether the bodies overlap by as little, as far as their hulls tell, as facets around their contact may show.
-    pub(in crate::cast) fn are_sunk(&self) -> bool {
-        let Outcome::Contact(contact) = &self.first else { return false };
+    /// Checks whether the first contact of the hulls is certainly behind, by less than [`MAX_SHALLOW_DEPTH`] along
+    /// its normal. The facets around it may then show an overlap.
+    pub(in crate::cast) fn has_shallow_contact(&self) -> bool {
+        let Outcome::Contact(contact) = &self.first_outcome else { return false };
         let proof = &contact.certificate;
         let depth = -proof.lower * proof.normal.dot(self.cast.setting.direction);
-        proof.upper < 0.0 && depth < SUNK * self.cast.setting.scale()
+        proof.upper < 0.0 && depth < MAX_SHALLOW_DEPTH * self.cast.setting.scale()
     }
 
-    /// A place where they do: two of these facets. Counts pairs of them.
-    pub(in crate::cast) fn sunk(&self, scene: &Scene, leaves: &mut u32) -> Option<Overlap> {
-        let Outcome::Contact(contact) = &self.first else { return None };
-        if !self.are_sunk() {
+    /// Finds two facets around such a contact that show an overlap of the bodies of `scene`; `None` if there are
+    /// none. Adds the number of tested pairs to `leaves`.
+    pub(in crate::cast) fn shallow_overlap(
+        &self,
+        scene: &Scene,
+        leaves: &mut u32,
+    ) -> Option<Overlap> {
+        let Outcome::Contact(contact) = &self.first_outcome else { return None };
+        if !self.has_shallow_contact() {
             return None;
         }
-        let [p, q] = around(scene, &self.bodies, contact)?;
+        let [p, q] = facets_around_contact(scene, &self.bodies, contact)?;
         let pairs = p.facets().iter().flat_map(|&f| q.facets().iter().map(move |&g| (f, g)));
         let mut places = pairs.map(|(f, g)| Overlap::Facets(f, g));
         places.find(|&place| {
@@ -73,23 +80,26 @@ impl Hulls<'_> {
 }
 
 impl Surface<'_> {
-    /// No vertex of the solid, shrunk, is farther along a normal than this, up to rounding. What lies lower than one
-    /// vertex by twice what shrinking moves is not; what does not is found from there over edges, as the plateau of a
-    /// support point is.
-    fn reach(&self, scene: &Scene, side: &Side, normal: DVec3, from: u32) -> f64 {
+    /// Computes the maximum height of the offset solid's vertices along a normal of the world, above the origin of
+    /// the body, up to rounding.
+    ///
+    /// Vertices lower than the hull vertex `from` by twice the displacement of the offset and by rounding cannot be
+    /// highest. The others are found from `from` over edges of the hull, as the plateau of a support point is. If
+    /// the hull lacks vertices, or more than [`MAX_TOP_VERTICES`] remain, the tree is searched.
+    fn max_height(&self, scene: &Scene, side: &Side, normal: DVec3, from: u32) -> f64 {
         let Self { body, .. } = self;
         let local = side.matrix.transpose() * normal;
         let height = |v: u32| local.dot(body.hull.vertices()[v as usize]);
         let end = height(from) - 2.0 * side.moved() - scene.noise - body.hull.plateau_depth();
-        let (mut top, mut count, mut next) = ([from; MOST_TOP], 1, 0);
+        let (mut top, mut count, mut next) = ([from; MAX_TOP_VERTICES], 1, 0);
         let mut reach = f64::NEG_INFINITY;
-        while body.whole && next < count {
-            reach = reach.max(local.dot(side.vertex(body.number(top[next]))));
+        while body.has_all_vertices && next < count {
+            reach = reach.max(local.dot(side.vertex(body.solid_vertex(top[next]))));
             for &v in body.hull.neighbours(top[next]) {
                 if height(v) < end || top[..count].contains(&v) {
                     continue;
                 }
-                if count == MOST_TOP {
+                if count == MAX_TOP_VERTICES {
                     return farthest(side, normal);
                 }
                 top[count] = v;
@@ -97,21 +107,27 @@ impl Surface<'_> {
             }
             next += 1;
         }
-        if body.whole { reach } else { farthest(side, normal) }
+        if body.has_all_vertices { reach } else { farthest(side, normal) }
     }
 }
 
-/// How far apart the bodies are along the normal of a contact of their hulls, for certain; negative if they are not.
-fn margin(scene: &Scene, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
+/// Computes a lower bound of the distance of the offset bodies along the normal of a contact of their hulls. It is
+/// not positive if no plane with that normal certainly separates them.
+fn plane_margin(scene: &Scene, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
     let (normal, pair) = (contact.certificate.normal, contact.certificate.pairs[0]);
-    let moving = p.reach(scene, &scene.moving, normal, pair.moving.0);
-    let fixed = q.reach(scene, &scene.fixed, -normal, pair.fixed.0);
+    let moving = p.max_height(scene, &scene.moving, normal, pair.moving.0);
+    let fixed = q.max_height(scene, &scene.fixed, -normal, pair.fixed.0);
     normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
 }
 
-/// No gap of facets is less, but for the rounding of a division, and the bodies do not overlap: by boxes along the direction,
-/// where that is an axis of both, or by a plane between them along the normal of a contact of their hulls.
-pub(super) fn least_gap(scene: &Scene, bodies: &[Surface; 2], contact: &Contact) -> Option<f64> {
+/// Computes a lower bound, a length, of all gaps of facets along the direction, up to the rounding of one division.
+/// It also proves that the bodies do not overlap. The boxes prove it if the direction is an axis of both bodies, or
+/// else a plane with the normal of the hulls' contact. `None` if neither does.
+pub(super) fn gap_lower_bound(
+    scene: &Scene,
+    bodies: &[Surface; 2],
+    contact: &Contact,
+) -> Option<f64> {
     let (proof, length) = (&contact.certificate, scene.setting.length);
     if scene.moving.aligned[2] && scene.fixed.aligned[2] {
         let [p, q] = Projected::roots(scene);
@@ -120,25 +136,26 @@ pub(super) fn least_gap(scene: &Scene, bodies: &[Surface; 2], contact: &Contact)
             return Some(gap);
         }
     }
-    // A little less, for the normal's part along the direction.
-    let margin = margin(scene, bodies, contact) - scene.noise;
+    // One noise covers the component of the normal along the direction.
+    let margin = plane_margin(scene, bodies, contact) - scene.noise;
     (margin > 0.0).then(|| margin * length / proof.normal.dot(scene.setting.direction))
 }
 
-/// What stops the moving body, if it is the facets around a contact of the hulls.
-fn stop(
+/// Finds the blocking pair among the facets around a contact of the hulls. The result is free if the lower bound of
+/// all gaps reaches `limit`, and `None` if no pair attains that bound to within the slack of a search.
+fn blocking_pair(
     scene: &Scene,
     bodies: &[Surface; 2],
     contact: &Contact,
     limit: f64,
     leaves: &mut u32,
-) -> Option<Guessed> {
-    let least = least_gap(scene, bodies, contact)?;
-    // So that a search, which rounds otherwise, finds nothing below the limit either.
+) -> Option<ContactGuess> {
+    let least = gap_lower_bound(scene, bodies, contact)?;
+    // With this slack a search, which rounds differently, finds nothing below the limit either.
     if least >= limit + SLACK * scene.noise {
-        return Some(Guessed::Free);
+        return Some(ContactGuess::Free);
     }
-    let [p, q] = around(scene, bodies, contact)?;
+    let [p, q] = facets_around_contact(scene, bodies, contact)?;
     let pairs = p.facets().iter().flat_map(|&f| q.facets().iter().map(move |&g| [f, g]));
     let mut best: Option<Found> = None;
     for pair in pairs {
@@ -151,47 +168,59 @@ fn stop(
         {
             best = Some(found);
         }
-        // Of steep facets others may tell it better.
+        // Gaps of steep facets have large errors, so another pair may be more accurate.
         if best.is_some_and(|best| best.error <= SLACK * scene.noise) {
             break;
         }
     }
-    best.map(|found| Guessed::Stop(found.among_all(scene), least))
+    best.map(|found| ContactGuess::Stop(found.among_all(scene), least))
 }
 
-/// The facets of both bodies around a contact of their hulls.
-fn around(scene: &Scene, bodies: &[Surface; 2], contact: &Contact) -> Option<[Around; 2]> {
+/// Finds the facets of both bodies around a contact of their hulls; `None` if a body has no facet there.
+fn facets_around_contact(
+    scene: &Scene,
+    bodies: &[Surface; 2],
+    contact: &Contact,
+) -> Option<[FacetGroup; 2]> {
     let proof = &contact.certificate;
-    let around = |k: usize| {
+    let facet_group = |k: usize| {
         let side = [&scene.moving, &scene.fixed][k];
         let vertex = |i: usize| [proof.pairs[i].moving, proof.pairs[i].fixed][k];
         let local = |i: usize| bodies[k].body.hull.vertices()[vertex(i).index()] * proof.weights[i];
         let outward = if side.moving { proof.normal } else { -proof.normal };
-        let spot =
-            Spot { at: local(0) + local(1) + local(2), outward: side.matrix.transpose() * outward };
-        Around::new(&bodies[k], vertex(0).0, &spot, NEAR * scene.noise + 2.0 * side.moved())
+        let point = SurfacePoint {
+            position: local(0) + local(1) + local(2),
+            outward: side.matrix.transpose() * outward,
+        };
+        FacetGroup::new(
+            &bodies[k],
+            vertex(0).0,
+            &point,
+            NEAR_NOISES * scene.noise + 2.0 * side.moved(),
+        )
     };
-    Some([around(0)?, around(1)?])
+    Some([facet_group(0)?, facet_group(1)?])
 }
 
-/// Facets of one body around a place.
-struct Around {
-    facets: [u32; MOST_FACETS],
+/// Facets of one body around a point.
+struct FacetGroup {
+    facets: [u32; MAX_FACETS],
     count: usize,
 }
 
-impl Around {
-    /// The facet there, and those across a side that the place is near, too; from a corner of its face on.
-    fn new(surface: &Surface, corner: u32, spot: &Spot, near: f64) -> Option<Self> {
-        let triangle = surface.facet_at(corner, spot, near)?;
-        let mut around = Self { facets: [triangle; MOST_FACETS], count: 1 };
-        for (k, inside) in surface.inside(triangle, spot, near).into_iter().enumerate() {
+impl FacetGroup {
+    /// Collects the facet at a point, and the facets across its sides within the distance `near` of the point. The
+    /// search begins at the hull vertex `corner`. `None` if no facet is found.
+    fn new(surface: &Surface, corner: u32, point: &SurfacePoint, near: f64) -> Option<Self> {
+        let triangle = surface.facet_at(corner, point, near)?;
+        let mut group = Self { facets: [triangle; MAX_FACETS], count: 1 };
+        for (k, inside) in surface.distances_inside(triangle, point, near).into_iter().enumerate() {
             if inside <= 0.0 {
-                around.facets[around.count] = surface.solid.neighbours()[triangle as usize][k];
-                around.count += 1;
+                group.facets[group.count] = surface.solid.neighbours()[triangle as usize][k];
+                group.count += 1;
             }
         }
-        Some(around)
+        Some(group)
     }
 
     fn facets(&self) -> &[u32] {

@@ -1,7 +1,7 @@
-//! What two nodes bound: whether any pair of their facets can count, and for how little.
+//! Bounds for a pair of nodes: whether any pair of their facets can count, and the least gap that it can have.
 //!
-//! A node is compared by its [`Projected`] bounds, and as a [`Profile`], which says besides how far it
-//! reaches along the query's [separating axes](super::separating_axes).
+//! A node is compared by its [`Projected`] bounds and, as a [`Profile`], by its extents along the query's [separating
+//! axes](super::separating_axes).
 
 use glam::DVec3;
 
@@ -10,10 +10,10 @@ use super::scene::{Corner, Scene, Side};
 use super::separating_axes::Reach;
 use colltrans_convex::body::Aabb;
 
-/// The facets of a leaf are compared with the box of another node if the leaf is longer than it by this factor.
+/// Length ratio above which the facets of a long leaf, instead of its box, are compared with the box of another node.
 const LONG: f64 = 4.0;
 
-/// Why no two facets of a pair of nodes need a further look: what a proof says of them.
+/// Reason in a proof why no two facets of a pair of nodes need to be compared further.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -21,46 +21,47 @@ const LONG: f64 = 4.0;
     serde(rename_all = "snake_case")
 )]
 pub enum Reason {
-    /// No facet of the moving body looks along the direction.
+    /// No facet of the moving body faces along the direction.
     MovingFacesAway,
-    /// No facet of the fixed body looks against the direction.
+    /// No facet of the fixed body faces against the direction.
     FixedFacesAway,
     /// The interiors of their shadows are disjoint.
     ShadowsApart,
-    /// No gap is positive, and no two facets have one of zero all over: they part.
+    /// No gap is positive, and no pair of facets has a gap of zero over its whole common shadow, so the facets
+    /// separate.
     Parting,
     /// The least gap is not smaller than the answer.
     NotBefore,
-    /// Two leaves: each pair of facets was looked at by itself.
+    /// Both nodes are leaves, and each pair of their facets was compared individually.
     Examined,
-    /// They have no point in common where they are.
+    /// The nodes have no point in common at the start.
     Disjoint,
-    /// They lie in one plane and look at each other, so they show no overlap.
+    /// The facets lie in one plane and face each other, so they show no overlap.
     FaceToFace,
 }
 
-/// A node as a search compares it.
+/// The bounds of a node that a search compares.
 #[derive(Clone, Copy)]
 pub(crate) struct Profile<'s> {
     pub(crate) projected: &'s Projected,
-    /// Not asked for where both bodies have the axes of the query: then boxes say as much.
+    /// `None` if both bodies have the axes of the query frame, because boxes give the same bounds then.
     pub(crate) reach: Option<&'s Reach>,
 }
 
 impl Profile<'_> {
-    /// No gap with a node of the fixed body is smaller, by the axes.
+    /// Returns a lower bound of all gaps with a node of the fixed body, from the separating axes.
     fn gap_along_axes(self, fixed: Self) -> f64 {
         self.reach.zip(fixed.reach).map_or(f64::NEG_INFINITY, |(a, b)| a.least_gap(b))
     }
 
-    /// Whether the shadows are apart, by the axes.
+    /// Checks whether the separating axes show disjoint shadows.
     fn is_apart_along_axes(self, fixed: Self) -> bool {
         self.reach.zip(fixed.reach).is_some_and(|(a, b)| a.is_apart(b))
     }
 }
 
-/// Why no pair of facets under two nodes counts for less than `limit`, as far as boxes and facing say;
-/// `parting` pairs, with a negative largest gap, are of no interest if so said.
+/// Returns the reason why no pair of facets under two nodes has a gap below `limit` that counts; `None` if boxes and
+/// facing directions do not show one. If `parting` is set, pairs whose largest gap is negative do not count.
 pub(crate) fn dismissed(a: &Projected, b: &Projected, limit: f64, parting: bool) -> Option<Reason> {
     if a.looks_back() {
         return Some(Reason::MovingFacesAway);
@@ -78,16 +79,17 @@ pub(crate) fn dismissed(a: &Projected, b: &Projected, limit: f64, parting: bool)
     (parting && parts(a, b, largest)).then_some(Reason::Parting)
 }
 
-/// Whether no pair of facets under two nodes counts, whose gaps are at most `largest` by their boxes: none has
-/// a positive gap, nor one that is zero all over, which only level facets have where the boxes meet.
+/// Checks whether no pair of facets under two nodes counts, given that their boxes bound all gaps by `largest`. No gap
+/// may be positive, and none zero over a whole common shadow, which needs level facets in the plane where the boxes
+/// meet.
 fn parts(a: &Projected, b: &Projected, largest: f64) -> bool {
     largest < 0.0 || largest == 0.0 && !(a.may_be_level() && b.may_be_level())
 }
 
-/// The least gap that a pair of facets under two nodes can have, as a length.
+/// Computes a lower bound, as a length, of the gaps of all pairs of facets under two nodes.
 ///
 /// # Errors
-/// Why no pair of facets counts for less than `limit`.
+/// Returns the reason if no pair of facets has a gap below `limit` that counts.
 pub(crate) fn least_gap(
     scene: &Scene,
     p: Profile,
@@ -106,7 +108,7 @@ pub(crate) fn least_gap(
     if p.is_apart_along_axes(q) {
         return Err(Reason::ShadowsApart);
     }
-    // Gaps that are not negative do not part: then there is no need to look from above.
+    // Gaps that are not negative do not separate, so the largest gap is not needed.
     let least = if parting && rough < 0.0 {
         let [least, largest] = slab_gaps(scene, a, b);
         if largest < 0.0 {
@@ -120,7 +122,7 @@ pub(crate) fn least_gap(
     if least >= limit { Err(Reason::NotBefore) } else { Ok(least) }
 }
 
-/// Whether a reason to cut a pair of nodes holds, checked by itself; `limit` as for [`least_gap`].
+/// Checks independently of the search whether a reason to cut a pair of nodes is valid; `limit` as in [`least_gap`].
 pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit: f64) -> bool {
     let (a, b) = (p.projected, q.projected);
     match reason {
@@ -136,20 +138,21 @@ pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit
     }
 }
 
-/// Whether the interiors of the boxes' shadows are disjoint.
+/// Checks whether the interiors of the boxes' shadows are disjoint.
 fn boxes_apart(a: &Projected, b: &Projected) -> bool {
     let (a, b) = (&a.bounds, &b.bounds);
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));
     low.x >= high.x || low.y >= high.y
 }
 
-/// Bounds of all gaps, by the boxes. Bodies of whose boxes the first is not negative do not overlap.
+/// Returns bounds on all gaps from the boxes: the least and the largest. If the least one of two bodies is not
+/// negative, they do not overlap.
 pub(crate) fn box_gaps(a: &Projected, b: &Projected) -> [f64; 2] {
     [b.bounds.low.z - a.bounds.high.z, b.bounds.high.z - a.bounds.low.z]
 }
 
-/// The same by the slabs: a plane along one bounds the heights of its node, and how far the other is
-/// above it.
+/// Returns bounds on all gaps from the slabs, the least and the largest. A plane parallel to a slab bounds the heights
+/// of its node and the height of the other node above it.
 fn slab_gaps(scene: &Scene, a: &Projected, b: &Projected) -> [f64; 2] {
     let (mut least, mut largest) = (f64::NEG_INFINITY, f64::INFINITY);
     let mut add = |low: f64, high: f64, slope: f64| {
@@ -168,7 +171,7 @@ fn slab_gaps(scene: &Scene, a: &Projected, b: &Projected) -> [f64; 2] {
     [least, largest]
 }
 
-/// The lower of these bounds.
+/// Returns the lower bound of [`slab_gaps`].
 fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
     let noise = 2.0 * scene.noise;
     let mut least = f64::NEG_INFINITY;
@@ -186,10 +189,10 @@ fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
     least
 }
 
-/// Checks whether no point of one node is a point of the other, by boxes, slabs, and the facets of long leaves.
+/// Checks whether two nodes have no point in common, by their boxes, slabs, and the facets of long leaves.
 pub(crate) fn apart(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
-    // The boxes of both bodies are boxes of the query frame only where both have its axes.
+    // The boxes of both bodies are boxes of the query frame only if both have its axes.
     !a.bounds.meets(&b.bounds)
         || beyond(scene, (p, a), (q, b))
         || beyond(scene, (q, b), (p, a))
@@ -213,13 +216,13 @@ fn leaf_avoids(
         && node.facets().all(|t| facet_avoids(scene, p.corners(t), p.swell, (q, &other.local)))
 }
 
-/// Checks whether a plane certainly separates a facet, grown by `swell`, from a box of the other body: one that is
+/// Checks whether a plane certainly separates a facet, grown by `swell`, from a box of the other body. The plane is
 /// parallel to a side of the box, to the facet, or to an edge of each.
 ///
-/// The facet is taken to the frame of the box, by the transpose of the box's matrix. Where that matrix is not exactly a
-/// rotation, this moves points by the skew. Rounding: a coordinate of the query frame is off by one noise, and three of them
-/// move a point by less than two; the product with the transpose and the planes add less than one noise each. Together these
-/// are the four noises of the margin.
+/// The transpose of the box's matrix maps the facet to the frame of the box. If the matrix is not exactly a rotation,
+/// this moves points by the skew. The margin of four noises covers rounding: less than two for a point of the query
+/// frame, whose three coordinates have an error of one noise each, and less than one each for the product with the
+/// transpose and for the planes.
 fn facet_avoids(
     scene: &Scene,
     corners: [Corner; 3],
@@ -242,7 +245,8 @@ fn facet_avoids(
         || edges.iter().any(|edge| DVec3::AXES.iter().any(|e| separates(e.cross(*edge))))
 }
 
-/// Whether a node is certainly beyond a side of another's box or slab: of two that are opposite, the one nearer to it.
+/// Checks whether a node is certainly beyond a side of another node's box or slab. Of two opposite sides only the
+/// nearer one is tested.
 pub(crate) fn beyond(
     scene: &Scene,
     (p, a): (&Side, &Projected),
@@ -281,8 +285,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// Long triangles and small ones, with whole coordinates, that often touch; turned as a whole, so that rounding hides
-        /// where they do.
+        /// Long and small triangles with integer coordinates, which often touch. Rotating both together hides the
+        /// contact in rounding errors.
         #[test]
         fn a_long_facet_that_avoids_a_box_has_no_point_in_it(
             long in triangle(40), small in triangle(3), at in [-20..20_i16, -20..20, -20..20],

@@ -1,32 +1,15 @@
-//! From a pair of facets to a contact: points, normal, features, and where it is, with bounds.
+//! From a pair of facets to a contact: points, normal, features, and the translation with bounds.
 //!
-//! Two numbers say how far a body goes that was shrunk, each with its bounds; without a tolerance they
-//! are one.
+//! - [`SolidContact::shrunk_distance`] is the travel of the offset bodies. The pair's gap plus its error is the upper
+//!   bound. The lower bound also covers all other pairs ([`Found::others`]).
+//! - [`SolidContact::translation`] is the travel at which the same two facets meet in nominal position.
+//! - Up to its `lower` the offset bodies do not overlap, which is proven, and the two facets have not met. Beyond its
+//!   `upper` the bodies overlap.
+//! - Other facets of the nominal bodies may overlap earlier by less than the tolerance, and these overlaps are not
+//!   reported.
+//! - Without a tolerance both numbers and their bounds are equal.
 //!
-//! *The shrunk bodies.* A search ends with a pair of facets whose gap `v` is off by at most its own
-//! error `e`, so that `v + e` is an upper bound. Below, all other pairs were left out for one of two
-//! reasons. Either their own gap, less its error, or that of a pair that was the best before, is at
-//! least a number that the search has kept ([`Found::others`]); or a bound, of nodes or of the facets,
-//! was not less than the limit of that time, which was not less than the last one, and bounds of nodes
-//! are off by less than [`node_rounding`](super::search::node_rounding). The least of the three, less one
-//! noise, which is more than what the roundings of these few operations and of the division by the
-//! direction's length can be (some `8 u S` of `32 u S`), is the lower bound.
-//!
-//! *The true place.* The same two facets are looked at once more, as they are. Where they face each
-//! other and their shadows overlap, for certain, their gap is where they meet, to within its error,
-//! and from there on the bodies as they are overlap. Where they do not (the floor of a pocket grows
-//! when its walls are moved back, so that facets at its rim may pass each other as they are), or
-//! where rounding cannot tell in poses that turn, the place is that of their planes at the contact
-//! point, unless these are all but on edge. Then all that is known from above is that the shrunk bodies
-//! overlap beyond their own upper bound, and from below that the two facets do not meet before the least
-//! gap at any corner that their common shadow may have ([`Opposed::least_in_doubt`]); where that says too
-//! little, whole numbers decide after all. Facets that do not look at each other may still meet: no lower bound is larger
-//! than where they do, in rounded numbers. Nor is it larger than that of the shrunk bodies.
-//!
-//! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, which is
-//! proven, and those two facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
-//! bodies as they are: that they may overlap on the way by less than the tolerance is what a tolerance
-//! is for. Without one, both bounds are those of the bodies as given.
+//! Derivation of the bounds: `docs/theory/solid-contact.md`.
 
 use std::cmp::Ordering;
 
@@ -41,68 +24,69 @@ use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::Bounded;
 use colltrans_convex::body::Feature;
 
-/// Where a solid is stopped.
+/// The contact that blocks a solid.
 ///
-/// Points are those of the bodies as they are, not shrunk: the same shares of the facets' corners as
-/// where the shrunk bodies touch. They come together at [`Self::translation`], along the normal, and
-/// sideways to within what shrinking has moved them.
+/// The contact points belong to the nominal bodies. Their weights with respect to the corners of the facets are those
+/// of the points where the offset bodies touch. At [`Self::translation`] they coincide along the normal. Laterally they
+/// may differ by the displacement of the offset.
 ///
-/// What of a body meets there: of all that holds the contact point the face that lies in the contact
-/// plane, else the edge that does, else the smallest, be it a corner, an edge or a face.
+/// The feature of a body is chosen among those that contain the contact point: the face that lies in the contact plane,
+/// otherwise the edge that does, otherwise the smallest of a corner, an edge or a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidContact {
-    /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
-    /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap, and
-    /// for contacts behind, of [`Cast::first_contact`](colltrans_convex::Cast::first_contact).
+    /// Translation at which the blocking facets of the offset bodies meet in nominal position, in multiples of the
+    /// direction. It is negative if these facets overlap in nominal position, and for contacts behind the start, of
+    /// [`Cast::first_contact`](colltrans_convex::Cast::first_contact).
     ///
-    /// Up to `lower` the shrunk bodies do not overlap, and these facets have not met; beyond `upper` the
-    /// bodies overlap: as they are, where these facets meet; else shrunk, and so as they are, if
-    /// shrinking took nothing but material away ([`Solid::shrink_report`](crate::Solid::shrink_report)).
+    /// Up to `lower` the offset bodies do not overlap, and these facets have not met. Beyond `upper` the nominal bodies
+    /// overlap if these facets meet in nominal position. Otherwise the offset bodies overlap there, and so do the
+    /// nominal ones if the offset only removed material ([`Solid::shrink_report`](crate::Solid::shrink_report)).
     pub translation: Bounded,
-    /// How far the bodies go that were shrunk by half the tolerance each, in multiples of the direction:
-    /// beyond the translation by about the tolerance. Without a tolerance it is the same.
+    /// Travel of the bodies that are offset by half the tolerance each, in multiples of the direction. It exceeds the
+    /// translation by about the tolerance, and equals it without a tolerance.
     pub shrunk_distance: Bounded,
-    /// Unit contact normal in the world, from the moving body to the fixed one;
-    /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
+    /// Unit contact normal in the world, from the moving body to the fixed one; `normal . direction > 0`. If corners or
+    /// parallel edges meet, it is one of several normals.
     pub normal: DVec3,
-    /// Contact point on the moving body as it is, in the world, at its start pose.
+    /// Contact point on the nominal moving body, in the world, at its start pose.
     pub point_on_moving: DVec3,
-    /// Contact point on the fixed body as it is, in the world; one of many where edges or facets meet.
+    /// Contact point on the nominal fixed body, in the world; one of many if edges or facets meet.
     pub point_on_fixed: DVec3,
-    /// What of the moving body meets there, by the numbers of its input.
+    /// Feature of the moving body at the contact, numbered as in its input.
     pub moving_feature: Feature,
-    /// What of the fixed body meets there, by the numbers of its input.
+    /// Feature of the fixed body at the contact, numbered as in its input.
     pub fixed_feature: Feature,
-    /// The triangles, as positions in [`Solid::triangles`](crate::Solid::triangles).
+    /// The triangles in contact, as positions in [`Solid::triangles`](crate::Solid::triangles).
     pub triangles: [u32; 2],
-    /// Work done for the answer that it is of.
+    /// Work done for the answer that contains this contact.
     pub steps: SolidSteps,
 }
 
 impl SolidContact {
-    /// Of the first contact of a [reversed](colltrans_convex::Cast::reversed) cast: where the bodies meet last
-    /// along the direction itself, in multiples of it. Beyond `upper` they never meet.
+    /// Returns the translation of the last contact along the direction, if this is the first contact of a
+    /// [reversed](colltrans_convex::Cast::reversed) cast; in multiples of the direction. Beyond `upper` the bodies
+    /// never meet.
     pub fn exit(&self) -> Bounded {
         self.translation.negated()
     }
 }
 
-/// A point of one facet, by the weights of its corners.
+/// A point of a facet, given by the weights of its corners.
 struct Foot {
     vertices: [u32; 3],
     weights: DVec3,
 }
 
 impl Foot {
-    /// The point of the body as it is, in the setting frame.
+    /// Returns the point of the nominal body in the setting frame.
     fn point(&self, side: &Side) -> DVec3 {
         let local = self.mean(|v| side.solid.vertices()[v as usize]);
         side.matrix * local + side.offset[0]
     }
 
-    /// How far shrinking has moved it, in the setting frame.
+    /// Returns the displacement of the point by the offset, in the setting frame.
     fn displacement(&self, side: &Side) -> DVec3 {
         let Some(shrinking) = side.shrinking else { return DVec3::ZERO };
         side.matrix * self.mean(|v| shrinking.field[v as usize] * side.amount)
@@ -115,13 +99,13 @@ impl Foot {
 }
 
 impl Found {
-    /// The gap as a translation with its bounds; see the module's head.
+    /// Returns the gap as a translation with its bounds; see the head of the module.
     pub(crate) fn bounded(&self, scene: &Scene) -> Bounded {
         bounded(scene, (self.gap, self.error), self.others)
     }
 }
 
-/// A gap up to its error, all others being at least `others`, as a translation.
+/// Converts a gap with its error to a translation with bounds, given a lower bound `others` of all other gaps.
 fn bounded(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
     let lower = others.min(gap - error) - scene.noise;
     let upper = gap + error + scene.noise;
@@ -129,7 +113,8 @@ fn bounded(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
     Bounded { value, lower, upper }
 }
 
-/// The contact of a search with the bodies as `scene` has them, which ended at `shrunk_distance`.
+/// Builds the contact of a pair of facets that a search with this scene has found, where the offset bodies meet at
+/// `shrunk_distance`.
 pub(crate) fn contact(
     scene: &Scene,
     found: &Found,
@@ -155,7 +140,7 @@ pub(crate) fn contact(
             let (k, j) = (k as usize, j as usize);
             let (a, b) = ([p[k], p[(k + 1) % 3]], [q[j], q[(j + 1) % 3]]);
             let (s, t) = meeting(a, b);
-            // What is no edge, or no corner, but within a face touches with that.
+            // A side or corner that lies within a face makes contact with the face.
             let flats = (of_f.is_flat(moving.solid, k), of_g.is_flat(fixed.solid, j));
             let normal = match flats {
                 (_, true) => plane(q),
@@ -174,7 +159,7 @@ pub(crate) fn contact(
         }
         Meeting::Near => {
             let corners = [&of_f, &of_g].map(|of| of.corners);
-            // Without a gap nothing is met so.
+            // Only pairs with a minimum gap have this kind of contact.
             let near =
                 scene.keeps().then(|| nearest_after(scene, &corners[0], &corners[1], found.gap));
             let (weights, normal) = near.unwrap_or_default();
@@ -208,13 +193,15 @@ pub(crate) fn contact(
     }
 }
 
-/// Roundings by which a lower bound of the true place may be less than the place without being taken again.
+/// Maximum shortfall, in noises, of the approximate lower bound below the nominal translation. If it is exceeded, the
+/// bound is computed again, exactly.
 const ENOUGH: f64 = 64.0;
-/// Slope, of a contact plane against the direction, up to which it is not moved back.
+/// Cosine of the contact normal and the direction at or below which the contact is not moved back along its plane.
 const STEEPEST: f64 = 1e-3;
 
-/// Where the facets of a contact of shrunk bodies meet as they are, in `bare`; `shift` is what shrinking
-/// has moved the one contact point against the other.
+/// Computes the translation at which the facets of a contact of offset bodies meet in nominal position. `bare` is the
+/// scene without offsets, and `shift` the displacement, by the offset, of the moving contact point relative to the
+/// fixed one.
 pub(crate) fn true_place(
     bare: &Scene,
     pair: [u32; 2],
@@ -235,7 +222,7 @@ pub(crate) fn true_place(
         return known(gap);
     }
     let slope = normal.dot(bare.setting.direction);
-    // Along planes that are all but on edge their meeting says nothing of the bodies.
+    // Two planes nearly parallel to the direction carry no information about where the bodies meet.
     let steep = slope <= STEEPEST * bare.setting.length;
     let noise = bare.noise / bare.setting.length;
     let [back, error] =
@@ -257,16 +244,17 @@ pub(crate) fn true_place(
     Bounded { value, lower, upper: shrunk.upper }
 }
 
-/// How far the origin may be beyond what is told to hold it, in noises: what differences of corners are off by.
+/// Maximum distance, in noises, of the origin from a shadow that counts as containing it: the error of differences of
+/// corners.
 const ROUND: f64 = 4.0;
-/// Shadows that are narrower count as segments, shorter ones as points, in the same unit.
+/// Width of a shadow, in multiples of [`ROUND`] noises, at or below which it counts as a segment.
 const NARROW: f64 = 64.0;
 
-/// Returns a lower bound of the translation at which two triangles meet, whichever way they look; infinity if they never
-/// meet.
+/// Returns a lower bound of the translation at which two triangles meet, whichever way they face; infinity if they
+/// never meet.
 ///
-/// The differences of their corners have a convex hull, which the direction enters at its lowest point above the origin:
-/// in one of the triangles of three differences, or of their sides where the shadow is too narrow to tell.
+/// The direction enters the convex hull of the differences of their corners at the lowest point above the origin. This
+/// point lies in one of the triangles of three differences, or in one of its sides if its shadow is too narrow.
 fn first_meeting(bare: &Scene, pair: [u32; 2]) -> f64 {
     let corners = |side: &Side, t: u32| side.corners(t as usize).map(|corner| corner.at);
     let (f, g) = (corners(&bare.moving, pair[0]), corners(&bare.fixed, pair[1]));
@@ -282,7 +270,8 @@ fn first_meeting(bare: &Scene, pair: [u32; 2]) -> f64 {
     least / bare.setting.length
 }
 
-/// Returns a lower bound of the height of a triangle above the origin; infinity if its shadow is more than `off` beside it.
+/// Returns a lower bound of the height of a triangle above the origin; infinity if the origin is farther than `off`
+/// from its shadow.
 fn height_of(corners: [DVec3; 3], off: f64) -> f64 {
     let flat = corners.map(DVec3::truncate);
     let side = |k: usize| flat[(k + 2) % 3] - flat[(k + 1) % 3];
@@ -293,7 +282,8 @@ fn height_of(corners: [DVec3; 3], off: f64) -> f64 {
         let of_side = |k: usize| height_of_side(corners[(k + 1) % 3], corners[(k + 2) % 3], off);
         return (0..3).map(of_side).fold(f64::INFINITY, f64::min);
     }
-    // Of each corner its weight, and how far the origin is within the side across.
+    // Twice the area of the origin and the side opposite to corner `k`. It determines the weight of the corner, and the
+    // distance of the origin from that side.
     let area = |k: usize| flat[(k + 1) % 3].perp_dot(flat[(k + 2) % 3]) * whole.signum();
     if (0..3).any(|k| area(k) < -off * side(k).length()) {
         return f64::INFINITY;
@@ -303,7 +293,8 @@ fn height_of(corners: [DVec3; 3], off: f64) -> f64 {
     height - off - 2.0 * off / width * (high - low)
 }
 
-/// Returns the same of a segment, which stands for all that is as far beside it as shadows are narrow.
+/// Returns a lower bound of the height, above the origin, of a segment and all points of a narrow triangle beside it;
+/// infinity if the origin is too far from its shadow.
 fn height_of_side(a: DVec3, b: DVec3, off: f64) -> f64 {
     let near = (NARROW + ROUND) * off;
     let along = (b - a).truncate();
@@ -328,18 +319,18 @@ fn range(of: &[DVec3]) -> [f64; 2] {
     of.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends)
 }
 
-/// A normal of the plane through three points.
+/// Returns a normal of the plane through three points.
 fn plane([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// A triangle as the leaf lists it.
+/// A triangle with its corners in the order of [`listed`].
 struct Listed {
     triangle: u32,
     vertices: [u32; 3],
     corners: [Corner; 3],
     places: [DVec3; 3],
-    /// Which way its shadow runs as the body has it.
+    /// Orientation of the shadow in the original order of the corners.
     turn: Ordering,
 }
 
@@ -353,26 +344,26 @@ impl Listed {
         Self { triangle, vertices, corners, places: corners.map(|c| c.at), turn }
     }
 
-    /// Whether corner `k` lies within the face, and the face is not on edge.
+    /// Checks whether corner `k` lies within the face, and the face is not edge-on.
     fn is_within_face(&self, solid: &Solid, k: usize) -> bool {
         self.turn != Ordering::Equal && solid.is_within_face(self.vertices[k], self.triangle)
     }
 
-    /// Whether the side from corner `k` to the next is no edge but within the face, and the face is not on
-    /// edge.
+    /// Checks whether the side from corner `k` to the next one lies within the face, and the face is not edge-on.
     fn is_flat(&self, solid: &Solid, k: usize) -> bool {
         let own = if self.turn == Ordering::Less { 2 - k } else { k };
         self.turn != Ordering::Equal && !solid.is_sharp(self.triangle, own)
     }
 }
 
-/// Where on a side that is not upright the shadow of a point on its shadow is.
+/// Returns the position along a side, from 0 to 1, of the point whose shadow is that of `p`. The side must not be
+/// vertical.
 fn share([a, b]: [DVec3; 2], p: DVec3) -> f64 {
     let (u, v) = ((b - a).truncate(), (p - a).truncate());
     (v.dot(u) / u.length_squared()).clamp(0.0, 1.0)
 }
 
-/// The normal of a side in the plane through it and the direction.
+/// Returns the normal of a side in the plane that contains the side and the direction.
 fn upright([a, b]: [DVec3; 2]) -> DVec3 {
     let u = (b - a).normalize_or_zero();
     DVec3::Z - u * u.z
@@ -388,22 +379,23 @@ fn along(k: usize, s: f64) -> DVec3 {
     DVec3::from_array(weights)
 }
 
-/// The weights of the point of a triangle over the shadow of a point that is on it, to within rounding.
+/// Returns the weights of the point of a triangle below or above `p`, whose shadow lies in that of the triangle up to
+/// rounding errors.
 fn over([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
     let flat = |u: DVec3, v: DVec3| u.truncate().perp_dot(v.truncate());
     let normal = (b - a).cross(c - a);
     let steep = flat(b - a, c - a) == 0.0;
-    // Rounding has left nothing of the shadow of what is all but on edge.
+    // The rounded shadow of a facet that is nearly edge-on may have no area.
     let area = |u: DVec3, v: DVec3| if steep { u.cross(v).dot(normal) } else { flat(u, v) };
     let whole = area(b - a, c - a);
     let (v, w) = (area(p - a, c - a) / whole, area(b - a, p - a) / whole);
-    // A point on the rim may have come out beyond it, by rounding.
+    // Rounding errors may move a boundary point out of the triangle.
     let (v, w) = (v.clamp(0.0, 1.0), w.clamp(0.0, 1.0));
     let excess = (v + w).max(1.0);
     DVec3::new(1.0 - (v + w) / excess, v / excess, w / excess)
 }
 
-/// Where the shadows of two segments cross, as shares of each.
+/// Returns the positions, from 0 to 1 along each segment, where the shadows of two segments cross.
 fn meeting(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
     let flat = |v: DVec3| v.truncate();
     let (u, v, w) = (flat(a[1] - a[0]), flat(b[1] - b[0]), flat(b[0] - a[0]));
@@ -412,8 +404,8 @@ fn meeting(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
     (share(w.perp_dot(v)), share(w.perp_dot(u)))
 }
 
-/// What is at a point of a triangle, with a normal there, both in the body's frame: to within the precision of its
-/// coordinates and rounding.
+/// Returns the feature of a solid at a point of a triangle with the given normal, both in the body frame. The slack is
+/// the precision of the body's coordinates plus rounding.
 pub(crate) fn feature(
     solid: &Solid,
     triangle: u32,

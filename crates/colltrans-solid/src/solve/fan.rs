@@ -1,12 +1,13 @@
 //! The facets around a vertex.
 //!
 //! Notation
-//! - `v`: the vertex. `u`: the direction of a line through it. A facet of the fan spans the cone of `a - v` and `b - v`.
+//! - `v`: the vertex. `u`: the direction of a line through it. A facet of the fan spans the cone of `a - v` and `b -
+//!   v`.
 //! - `m`: a point inside a facet of the fan, the *target*.
 //!
-//! A line through `v`, in no closed cone of the fan, passes an open shell from one side to the other if the half-plane
-//! of `u` and `m` cuts an odd number of facets. All signs are exact. A target is replaced by another one where
-//! the half-plane passes through an edge.
+//! A line through `v` that lies in no closed cone of the fan passes an open shell from one side to the other if the
+//! half-plane of `u` and `m` cuts an odd number of facets. All signs are exact. If the half-plane passes through an
+//! edge, another target replaces this one.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::Equal;
@@ -16,7 +17,7 @@ use super::line::Line;
 use super::scene::{Corner, Scene, Side};
 use crate::body::edges::NONE;
 
-/// The facets around a vertex that close a ring, each by its other two corners.
+/// The facets around a vertex that form a closed ring, each given by its other two corners.
 pub(super) struct Fan<'s, 'a> {
     scene: &'s Scene<'a>,
     vertex: Corner,
@@ -24,7 +25,7 @@ pub(super) struct Fan<'s, 'a> {
 }
 
 impl<'s, 'a> Fan<'s, 'a> {
-    /// Finds the facets around a corner of a triangle; `None` unless they close a ring.
+    /// Finds the facets around a corner of a triangle; `None` unless they form a closed ring.
     pub(super) fn new(
         scene: &'s Scene<'a>,
         side: &Side,
@@ -49,7 +50,7 @@ impl<'s, 'a> Fan<'s, 'a> {
         }
     }
 
-    /// Returns the corners of each facet, from the vertex on.
+    /// Returns the corners of each facet, beginning with the vertex.
     pub(super) fn facets(&self) -> impl Iterator<Item = [&Corner; 3]> {
         self.around.iter().map(|[a, b]| [&self.vertex, a, b])
     }
@@ -59,14 +60,15 @@ impl<'s, 'a> Fan<'s, 'a> {
         if self.around.iter().any(|facet| self.holds(line, facet)) {
             return false;
         }
-        // Without a target, of a fan in very many folds, the vertex blocks.
+        // If a fan with very many folds has no target, the vertex blocks.
         self.target(line).is_none_or(|target| {
             let is_over = |facet: &&[Corner; 2]| self.is_over(line, &target, facet);
             self.around.iter().filter(is_over).count() % 2 == 1
         })
     }
 
-    /// Returns a point inside a facet whose half-plane with the direction passes through no edge.
+    /// Returns a point inside a facet whose half-plane with the direction passes through no edge; `None` if no tried
+    /// point qualifies.
     fn target(&self, line: &Line) -> Option<Mean> {
         let (scene, v) = (self.scene, &self.vertex);
         let is_upright = |[a, b]: &[Corner; 2]| line.turn(scene, a, b) == Equal;
@@ -91,7 +93,8 @@ impl<'s, 'a> Fan<'s, 'a> {
         let area = |axis: &usize| scene.turn_about(*axis, v, a, b) != Equal;
         let Some(axis) = (0..3).find(area) else { return false };
         let whole = scene.turn_about(axis, v, a, b);
-        // The shares of `a` and `b` in the direction: `det[u, b, e]` and `det[a, u, e]` over the whole.
+        // The direction's coordinates with respect to `a` and `b`: `det[u, b, e]` and `det[a, u, e]` over `det[a, b,
+        // e]`.
         let shares = [line.turn_about(scene, axis, b), line.turn_about(scene, axis, a).reverse()];
         let signed = |way: Ordering| shares.iter().all(|&s| s == Equal || s == way);
         signed(whole) || signed(whole.reverse())

@@ -1,10 +1,11 @@
-//! Whether a shell of one solid, open or closed, lies inside the closed ones of the other.
+//! Test whether a shell of one solid, open or closed, lies inside the closed shells of the other.
 //!
-//! A general point of the shell decides: a corner or, where those lie on the other surface, a mean of
-//! corners with weights that are powers of two. From it a line along the direction is followed, moved
-//! sideways by an infinitesimal amount, first along one axis of the world and then along another, so
-//! that it passes no edge. Facets above it count once outwards and once inwards; what is left is how
-//! many pieces the point lies in.
+//! - A general point of the shell decides: a corner or, if the corners lie on the other surface, a mean of corners
+//!   whose weights are powers of two.
+//! - A ray starts at this point along the direction. It is displaced laterally by an infinitesimal amount, first along
+//!   one axis of the world and then along another, so that it passes no edge.
+//! - A facet ahead counts 1 if the ray leaves through it, and -1 if it enters. The sum is the winding number: the
+//!   number of pieces that contain the point.
 
 use std::cmp::Ordering;
 
@@ -19,14 +20,15 @@ use colltrans_convex::body::Aabb;
 use colltrans_kernel::fine::Fine;
 use colltrans_kernel::integer::Integer;
 
-/// Triangles of a shell that are tried for a point off the other surface. A shell inside touches it
-/// in isolated points only, so the first or second one does, unless it touches along facets.
+/// Maximum number of triangles of a shell that are tried for a point off the other surface. A shell inside touches the
+/// other surface in isolated points only. Therefore the first or second triangle has such a point, unless the shell
+/// touches along facets.
 const MOST_TRIANGLES: usize = 16;
 /// Weights of points within a facet.
 pub(crate) const WEIGHTS: [[f64; 3]; 4] =
     [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.0, 0.5, 0.5]];
 
-/// A triangle of a shell of one body that lies inside the other.
+/// Finds a shell of one body that lies inside the other, and returns a triangle of it; `None` if there is none.
 pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     let (own, other) = (scene.side(moving), scene.side(!moving));
     if !other.solid.has_interior() {
@@ -44,10 +46,11 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
             let extent = (extent + by).max(DVec3::ZERO);
             Aabb { low: at - extent, high: at + extent }
         };
-        // A shell that reaches out of the other's box is not inside it; shrunk, it reaches less far by as much.
+        // A shell that extends beyond the other body's box is not inside it. The offset may shorten its extent by
+        // `swell`.
         let around = grown(swell);
         let within = room.bounds.grown(16.0 * scene.noise).holds(&grown(-swell));
-        // The other's box is loose where it is not aligned; then all that overlap are asked.
+        // Boxes that are not aligned are loose. Then every shell whose box meets the other one is tested.
         let meets = room.bounds.meets(&around);
         let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
         if meets && (within || !aligned) && decide(scene, own, other, span.triangle) {
@@ -57,7 +60,7 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     None
 }
 
-/// Whether the shell of a body with this triangle is inside the other body.
+/// Checks whether the shell that contains this triangle of a body is inside the other body.
 pub(crate) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
     decide(scene, scene.side(moving), scene.side(!moving), triangle)
 }
@@ -97,7 +100,7 @@ fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
     false
 }
 
-/// A mean of the corners of a facet.
+/// A weighted mean of the corners of a facet.
 pub(crate) struct Mean {
     at: DVec3,
     moving: bool,
@@ -136,12 +139,13 @@ impl ExactPoint for Mean {
     }
 }
 
-/// How many closed shells of a solid a point lies in; `None` if it lies on one.
+/// Computes the winding number of a point: the number of closed shells of a solid that contain it. `None` if the point
+/// lies on a closed shell.
 fn winding(scene: &Scene, side: &Side, point: &impl ExactPoint) -> Option<i32> {
     winding_below(scene, side, point, 0)
 }
 
-/// The part of it from the facets of one node.
+/// Computes the contribution of one node to the winding number; `None` if the point lies on one of its facets.
 fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -> Option<i32> {
     let (p, noise) = (point.at(), 4.0 * scene.noise);
     let node = &side.solid.nodes()[at as usize];
@@ -158,7 +162,7 @@ fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -
     }
     let axes = sideways(scene);
     let mut winding = 0;
-    // Sheets enclose nothing.
+    // Sheets enclose no volume.
     for t in node.facets().filter(|&t| !side.solid.is_open(t)) {
         if lies_on(scene, point, &Triangle::new(side, t)) {
             return None;
@@ -168,13 +172,13 @@ fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -
     Some(winding)
 }
 
-/// The two axes of the world along which the direction is smaller.
+/// Returns the two axes of the world other than the one with the largest component of the direction.
 fn sideways(scene: &Scene) -> [usize; 2] {
     let main = scene.setting.direction.abs().max_position();
     [(main + 1) % 3, (main + 2) % 3]
 }
 
-/// 1 if the line from the point leaves through the triangle, -1 if it enters, 0 if it passes it.
+/// Returns 1 if the ray from the point leaves through the triangle, -1 if it enters, 0 if it misses the triangle.
 fn crossing(
     scene: &Scene,
     [a, b, c]: [Corner; 3],

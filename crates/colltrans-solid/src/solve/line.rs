@@ -1,16 +1,15 @@
-//! Where a line enters the material of a body: exactly, also along facets and through edges and vertices.
+//! Exact test where a line enters the material of a body, also along facets and through edges and vertices.
 //!
-//! A point is *inside* a solid if it is inside one of its bodies, a shell with the cavities in it: the inside is open. A
-//! body that the point does not lie on counts by its winding number, one that it lies on counts 0. The point is inside
-//! if the sum is positive.
-//!
-//! Notation
-//! - `p + t u`: the line.
-//! - *Place*: a parameter `t` as a fraction. A point *past* a place lies infinitesimally beyond it.
-//!
-//! The winding number counts the facets ahead of the point that the line leaves through, less those that it enters.
-//! The line is moved sideways by an infinitesimal amount along two axes of the world, so that it passes no edge;
-//! facets that the line itself meets at the place are not ahead of a point past it.
+//! - A point is *inside* a solid if it is inside one of its bodies. A body is a shell with its cavities; its interior
+//!   is open.
+//! - A body counts by its winding number if the point does not lie on it, otherwise it counts 0. The point is inside if
+//!   the sum is positive.
+//! - `p + t u`: the line. *Place*: a parameter `t`, as a fraction. A point *past* a place lies infinitesimally beyond
+//!   it.
+//! - The winding number is the number of facets ahead of the point through which the line leaves, minus the number
+//!   through which it enters.
+//! - The line is displaced laterally by an infinitesimal amount along two axes of the world, so that it passes no edge.
+//!   Facets that the undisplaced line meets at the place are not ahead of a point past it.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -29,22 +28,22 @@ use colltrans_kernel::integer::{Integer, SMALL, TWICE_LARGE, determinant, differ
 /// A line with a direction `u`.
 #[derive(Clone, Copy)]
 pub(super) struct Line<'c> {
-    /// A point of it, `p`.
+    /// A point `p` of the line.
     pub(super) from: &'c Corner,
     pub(super) way: Way<'c>,
 }
 
-/// Where a line goes.
+/// The direction of a line.
 #[derive(Clone, Copy)]
 pub(super) enum Way<'c> {
-    /// Along the direction of the query, or its opposite.
+    /// The direction of the query, or its opposite.
     Query { forward: bool },
-    /// To another point.
+    /// The direction to another point.
     To(&'c Corner),
 }
 
 impl Line<'_> {
-    /// Returns the sign of `det[u, a - p, b - p]`: on which side of the line the edge passes.
+    /// Returns the sign of `det[u, a - p, b - p]`: the side of the line on which the edge passes.
     pub(super) fn turn(&self, scene: &Scene, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
         match self.way {
             Way::Query { forward: true } => scene.turn(self.from, a, b),
@@ -53,7 +52,7 @@ impl Line<'_> {
         }
     }
 
-    /// Returns the sign of `det[u, a - p, e]` with `e` the unit vector of an axis of the world.
+    /// Returns the sign of `det[u, a - p, e]` for the unit vector `e` of an axis of the world.
     pub(super) fn turn_about(&self, scene: &Scene, axis: usize, a: &Corner) -> Ordering {
         match self.way {
             Way::Query { forward: true } => scene.drift(axis, self.from, a),
@@ -83,8 +82,9 @@ impl Line<'_> {
 /// Checks whether a line enters a body where it meets a facet of a closed shell that faces it, edges and corners
 /// included.
 ///
-/// It does if the point past the place is inside. A line that goes `through` the facet also does inside a face that
-/// nothing else touches there: faces stop what meets them, however thin the wall is.
+/// It does if the point past the place is inside. With `through`, the line passes from one side of the facet's plane to
+/// the other. Then it also enters within a face that no other facet touches there, because faces block however thin the
+/// wall behind them is.
 pub(super) fn enters(
     scene: &Scene,
     line: &Line,
@@ -105,7 +105,8 @@ pub(super) fn enters(
         .unwrap_or_default()
 }
 
-/// Checks whether a facet of another plane has the point in which a line meets a facet.
+/// Checks whether a facet of another plane contains the point in which a line meets a facet; `None` if a number does
+/// not fit.
 fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
     let past = Ray::<N>::past(scene, line, facet.side, &facet.corners)?;
     let ray = Ray { is_past: false, ..past };
@@ -125,12 +126,13 @@ fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> O
     Some(found)
 }
 
-/// Checks whether the point past the place where a line meets the plane of a facet is inside the body.
+/// Checks whether the point past the place where a line meets the plane of a facet is inside the body; `None` if a
+/// number does not fit.
 fn is_inside_past<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
     Ray::<N>::past(scene, line, facet.side, &facet.corners)?.is_inside()
 }
 
-/// Checks whether a point of a surface is inside the body: of another one of its pieces.
+/// Checks whether a point of a surface is inside another piece of the body.
 pub(super) fn holds(scene: &Scene, side: &Side, point: &Corner) -> bool {
     let line = Line { from: point, way: Way::Query { forward: true } };
     let is_inside_one = || {
@@ -141,7 +143,7 @@ pub(super) fn holds(scene: &Scene, side: &Side, point: &Corner) -> bool {
     side.solid.spans().len() > 1 && is_inside_one().unwrap_or_default()
 }
 
-/// Checks whether a line meets a facet inside its face, that is not where the face bends or ends.
+/// Checks whether a line meets a facet within its face, where the face neither bends nor ends.
 fn is_within_a_face(scene: &Scene, line: &Line, facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
     let is_on =
@@ -166,7 +168,7 @@ fn is_within_a_face(scene: &Scene, line: &Line, facet: &Triangle) -> bool {
     }
 }
 
-/// A parameter along a line, over a positive number.
+/// A parameter along a line. The denominator `under` is positive.
 #[derive(Clone, Copy)]
 struct Fraction<const N: usize> {
     over: Integer<N>,
@@ -174,7 +176,7 @@ struct Fraction<const N: usize> {
 }
 
 impl<const N: usize> Fraction<N> {
-    /// Returns `None` if a number did not fit.
+    /// Builds a fraction; `None` if a number does not fit.
     fn new(over: Integer<N>, under: Integer<N>) -> Option<Self> {
         let is_negative = under.sign()? == Less;
         let (over, under) = if is_negative {
@@ -190,23 +192,23 @@ impl<const N: usize> Fraction<N> {
     }
 }
 
-/// What a facet is to a point on a line.
+/// The relation of a facet to a point on a line.
 enum Relation {
-    /// The point lies on it.
+    /// The point lies on the facet.
     Holds,
-    /// The line, moved sideways, passes it ahead of the point: 1 if it leaves through it, -1 if it enters.
+    /// The displaced line passes the facet ahead of the point: 1 if it leaves through it, -1 if it enters.
     Ahead(i32),
     Neither,
 }
 
-/// A line and a place on it, in numbers with so many limbs. What does not fit is `None`.
+/// A point on a line, in integers with `N` limbs. Results that do not fit are `None`.
 struct Ray<'r, 'a, const N: usize> {
     scene: &'r Scene<'a>,
     line: &'r Line<'r>,
     side: &'r Side<'a>,
     from: [Integer<N>; 3],
     way: [Integer<N>; 3],
-    /// The axis of the world along which the way is longest.
+    /// The axis of the world with the largest component of the direction.
     main: usize,
     place: Fraction<N>,
     /// Whether the point lies past the place instead of at it.
@@ -214,7 +216,7 @@ struct Ray<'r, 'a, const N: usize> {
 }
 
 impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
-    /// Takes the first point of a line.
+    /// Builds the point at the start `p` of a line.
     fn at(scene: &'r Scene<'a>, line: &'r Line<'r>, side: &'r Side<'a>) -> Self {
         let from = line.from.wide(scene);
         let direction = scene.setting.direction;
@@ -236,7 +238,7 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
         Self { scene, line, side, from, way, main, place, is_past: false }
     }
 
-    /// Takes the point past the place where a line meets the plane of a facet.
+    /// Builds the point past the place where a line meets the plane of a facet; `None` if a number does not fit.
     fn past(
         scene: &'r Scene<'a>,
         line: &'r Line<'r>,
@@ -249,24 +251,25 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
         Some(ray)
     }
 
-    /// Returns the corners of a facet as seen from the first point of the line.
+    /// Returns the corners of a facet relative to the start of the line.
     fn seen(&self, corners: &[Corner; 3]) -> [[Integer<N>; 3]; 3] {
         corners.each_ref().map(|c| difference(&c.wide(self.scene), &self.from))
     }
 
-    /// Returns where the line meets the plane of a facet, which is not parallel to it.
+    /// Returns the place where the line meets the plane of a facet that is not parallel to it; `None` if a number does
+    /// not fit.
     fn place_on(&self, [a, b, c]: &[[Integer<N>; 3]; 3]) -> Option<Fraction<N>> {
         let (x, y) = (difference(b, a), difference(c, a));
         Fraction::new(determinant(&x, &y, a), determinant(&x, &y, &self.way))
     }
 
-    /// Returns `(u x v)` along an axis: the sign is that of `det[u, v, e]`.
+    /// Returns the component of `u x v` along an axis: its sign is that of `det[u, v, e]`.
     fn across(&self, axis: usize, v: &[Integer<N>; 3]) -> Integer<N> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         self.way[i].multiply(&v[j]).subtract(&self.way[j].multiply(&v[i]))
     }
 
-    /// Returns the axes along which the line is moved sideways.
+    /// Returns the axes along which the line is displaced.
     fn sideways(&self) -> [usize; 2] {
         [(self.main + 1) % 3, (self.main + 2) % 3]
     }
@@ -353,7 +356,8 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
         Some(is_around(self.side.solid, &ahead, &on))
     }
 
-    /// Takes the facets of closed shells that the line may meet, in nodes whose boxes are admitted; until `None` comes.
+    /// Calls `take` for the facets of closed shells that the line may meet, in nodes whose boxes are admitted, until it
+    /// returns `None`.
     fn each_facet(
         &self,
         admits: impl Fn(&Aabb) -> bool,
@@ -379,7 +383,7 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
     }
 }
 
-/// Checks whether the shells of a body go around a point, by the facets ahead of it and those that it lies on.
+/// Checks whether a point is inside a body, from the facets ahead of the point and the facets that contain it.
 fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
     if on.is_empty() {
         return ahead.iter().map(|(_, count)| count).sum::<i32>() > 0;

@@ -1,11 +1,15 @@
-//! The search between solids.
+//! Queries between two solids: overlap, first contact along a direction, and distance, for `cast` and `pair`.
 //!
-//! Data flow: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
-//! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
-//! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
-//! the bodies ([`separate`]) where there is one; [`parted`] has one of any direction. [`thin`] has points and segments,
-//! [`line`] where they enter material, [`fan`] the facets around a vertex. [`sign`] decides what rounding cannot. [`nearest`] is of the same
-//! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
+//! - [`scene`]: two placed solids and a direction, in the frames that the folder shares.
+//! - [`overlap`]: whether the solids overlap at the start, exactly; [`inside`] tests nested shells.
+//! - [`search`]: the least gap along the direction, best first through both trees. [`bound`] bounds pairs of nodes from
+//!   their [`projected`] bounds and [`separating_axes`]; [`leaf`] compares pairs of facets, and [`rim`] edge-on facets
+//!   of open shells.
+//! - [`contact`]: points, normal, features and bounds of the result.
+//! - [`separate`], [`parted`]: a separating plane parallel to the direction, or of any direction.
+//! - [`thin`], [`line`], [`fan`]: points and segments, lines that enter material, the facets around a vertex.
+//! - [`sign`]: exact signs where rounding cannot decide.
+//! - [`nearest`]: the distance, for which the direction plays no part.
 
 pub(crate) mod bound;
 pub mod contact;

@@ -1,30 +1,14 @@
-//! Whether two solids overlap where they are: exactly.
-//!
-//! Their interiors have a point in common if and only if
+//! Exact test whether two solids overlap at the start. Their interiors have a common point if and only if
 //!
 //! 1. two facets cross: their planes differ, and their interiors share a segment; or
-//! 2. two facets of one orientation share a part of a plane; or
-//! 3. an edge of one runs through a facet, or along an edge, of the other, and the wedges of material
-//!    around it share interior points; or
-//! 4. a shell of one lies inside the other, touching its surface in isolated points at most.
+//! 2. two facets with the same orientation share a part of a plane; or
+//! 3. an edge of one runs through a facet or along an edge of the other, and the wedges of material around it share
+//!    interior points; or
+//! 4. a shell of one lies inside the other and touches its surface in isolated points at most.
 //!
-//! For, let `C` be a component of the common interior. If its boundary has no part that belongs to
-//! both surfaces with one orientation (2), some point of, say, the first one's surface is inside the
-//! second. Take the component of that surface inside the second: if it ends along a curve, a general
-//! point of the curve lies in facets that cross (1) or on edges as in (3); if not, it is a whole shell
-//! but for isolated points (4). Vertices that touch need no test of their own.
-//!
-//! A facet of an open shell has no side, and no thickness. An open shell overlaps the inside of a closed
-//! one by 1, by 3, where a half-plane of it runs strictly inside a wedge of material, and by 4; and
-//! another open one by 1, and by 3, where two half-planes of one are on different sides of the other's.
-//! What lies flat on something (2) does not overlap it.
-//!
-//! A point overlaps a closed shell by 4 alone, and a segment by what [`thin`] says; neither overlaps the other.
-//!
-//! Nodes whose boxes or slabs are apart are cut; what touches is looked at in exact arithmetic.
-//!
-//! Of bodies that are to keep a gap all this is asked of how near to each other two facets are: nearer than the gap for
-//! certain, as computed with its error.
+//! Nodes whose boxes or slabs are separated are cut. All other pairs are decided in exact arithmetic. With a minimum
+//! gap, two facets count if they are certainly nearer than the gap, computed with its error. Proof, and the cases of
+//! open shells, points and segments ([`thin`]): `docs/theory/solid-overlap.md`.
 
 use std::cmp::Ordering;
 
@@ -42,8 +26,8 @@ use crate::body::wedge::{Axis, Ray, Wedge};
 use crate::solve::steps::SolidSteps;
 use colltrans_kernel::descent::{node_to_split, replaced};
 
-/// Where the solids overlap: positions in [`Solid::triangles`](crate::Solid::triangles);
-/// [`Solid::facet_indices`](crate::Solid::facet_indices) leads to the facets of the input.
+/// The place of an overlap, as positions in [`Solid::triangles`](crate::Solid::triangles).
+/// [`Solid::facet_indices`](crate::Solid::facet_indices) maps them to facets of the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -51,22 +35,23 @@ use colltrans_kernel::descent::{node_to_split, replaced};
     serde(rename_all = "snake_case")
 )]
 pub enum Overlap {
-    /// Around these two triangles, of the moving and of the fixed body.
+    /// The bodies overlap at these two triangles, of the moving and of the fixed body.
     Facets(u32, u32),
-    /// The shell of the moving body with this triangle lies inside the fixed one.
+    /// The shell of the moving body with this triangle lies inside the fixed body.
     MovingInside(u32),
-    /// The shell of the fixed body with this triangle lies inside the moving one.
+    /// The shell of the fixed body with this triangle lies inside the moving body.
     FixedInside(u32),
 }
 
-/// Whether the interiors have a point in common, or open shells pass through what is there, and where.
+/// Finds a place where the interiors intersect or an open shell passes through the other body; `None` if there is no
+/// such place.
 #[inline]
 pub fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
     find_with(scene, &mut |entry| steps.count(entry))
 }
 
-/// The same, telling of every pair of nodes in the order of the descent whether it was split (`None`)
-/// or why it was not.
+/// Finds an overlap like [`find`]. Calls `cut` for every pair of nodes in the order of the descent, with `None` if the
+/// pair was split, otherwise with the reason.
 pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
     let [a, b] = Projected::roots(scene);
     if never_overlap(scene, &a, &b) {
@@ -77,7 +62,7 @@ pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> 
     facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
 }
 
-/// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone.
+/// Checks whether boxes and slabs alone show that the interiors of two whole bodies are disjoint.
 pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
     beyond(scene, (p, a), (q, b))
@@ -86,19 +71,21 @@ pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool
         || b.bounds.low.cmpge(a.bounds.high).any()
 }
 
-/// Whether the boxes around two bodies say that they do not overlap and that nothing stops the moving one below a limit.
+/// Checks whether the bounding boxes show that two bodies do not overlap and that nothing blocks the moving one before
+/// `limit`.
 pub(crate) fn pass(scene: &Scene, limit: f64) -> bool {
     let [a, b] = Projected::roots(scene);
     never_overlap(scene, &a, &b) && dismissed(&a, &b, limit, true).is_some()
 }
 
-/// Whether a shell of one body lies inside the other, of bodies whose surfaces do not cross.
+/// Finds a shell of one body that lies inside the other, for bodies whose surfaces do not cross; `None` if there is
+/// none.
 pub(crate) fn nested(scene: &Scene) -> Option<Overlap> {
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
     moving.or_else(|| inside::shell_inside(scene, false).map(Overlap::FixedInside))
 }
 
-/// Whether an overlap is one.
+/// Checks whether the bodies overlap at the given place.
 pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
     let count = |side: &Side| side.solid.triangles().len() as u32;
     match overlap {
@@ -114,8 +101,10 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
     }
 }
 
-/// How far the facets of an overlap are apart, as computed, along a normal of one of them or across two edges, less than 0 if
-/// they are not, and that normal in the world, from the moving body on; the one along which it is most. `None` of shells.
+/// Returns the largest separation of the facets of an overlap along a candidate normal, and this normal in the world,
+/// from the moving body to the fixed one. Candidates are the normals of both facets and the cross products of two
+/// edges. The value is rounded, and negative if the facets overlap along all candidates. `None` for nested shells, or
+/// if all candidates vanish.
 pub(crate) fn widest(scene: &Scene, overlap: Overlap) -> Option<(f64, DVec3)> {
     let Overlap::Facets(f, g) = overlap else { return None };
     let corners = |side: &Side, t: u32| side.corners(t as usize).map(|c| c.at);
@@ -140,8 +129,8 @@ pub(crate) fn widest(scene: &Scene, overlap: Overlap) -> Option<(f64, DVec3)> {
     widest.map(|(gap, normal)| (gap, scene.frame.transpose() * normal))
 }
 
-/// Whether solids, as closed sets, have a point in common where it is said: facets that share one, or a shell
-/// that is inside.
+/// Checks whether the solids, as closed sets, have a common point at the given place: two facets that share a point, or
+/// a shell that is inside.
 pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
     let count = |side: &Side| side.solid.triangles().len() as u32;
     match place {
@@ -155,12 +144,12 @@ pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
     }
 }
 
-/// Whether no two facets of two leaves show an overlap.
+/// Checks whether no two facets of two leaves show an overlap.
 pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
     leaves(scene, a, b, Judge::overlap(scene)).is_none()
 }
 
-/// Where the solids, as closed sets, have a point in common.
+/// Finds a place where the solids, as closed sets, have a common point; `None` if there is no such place.
 pub(crate) fn touch(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
     let [a, b] = Projected::roots(scene);
     let mut count = |entry| steps.count(entry);
@@ -173,14 +162,14 @@ pub(crate) fn touch(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
 }
 
 impl SolidSteps {
-    /// Counts a pair of nodes that was split, or why it was not.
+    /// Counts a pair of nodes that was split (`None`) or cut for a reason.
     pub(crate) fn count(&mut self, entry: Option<Reason>) {
         self.nodes += 1;
         self.leaves += u32::from(entry == Some(Reason::Examined));
     }
 }
 
-/// What is asked of two triangles, and whether nodes that lie face to face are of interest.
+/// A test of two triangles, and whether nodes that lie face to face can satisfy it.
 #[derive(Clone, Copy)]
 struct Judge {
     holds: fn(&Scene, &Triangle, &Triangle) -> bool,
@@ -193,19 +182,20 @@ impl Judge {
     const NEARER: Self = Self { holds: are_nearer, faces: true };
     const AS_NEAR: Self = Self { holds: are_as_near, faces: true };
 
-    /// Whether the bodies overlap, or are nearer than the gap that they are to keep.
+    /// Returns the test of an overlap, or of a distance below the minimum gap if there is one.
     fn overlap(scene: &Scene) -> Self {
         if scene.keeps() { Self::NEARER } else { Self::OVERLAP }
     }
 
-    /// The same with bodies that touch, or are as near as the gap.
+    /// Returns the test of contact, or of a distance up to the minimum gap if there is one.
     fn touch(scene: &Scene) -> Self {
         if scene.keeps() { Self::AS_NEAR } else { Self::TOUCH }
     }
 
-    /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
-    /// no overlap: at their edges one half-space of material touches another, or else the wedge's
-    /// other facet is in a node of its own, and shows it.
+    /// Returns the reason why a pair of nodes needs no further comparison; `None` if it does.
+    ///
+    /// Facets of one plane that face each other show no overlap. At their edges one half-space of material touches
+    /// another. Otherwise the second facet of the wedge is in another node and shows the overlap.
     fn dismisses(self, scene: &Scene, a: &Projected, b: &Projected) -> Option<Reason> {
         if apart(scene, a, b) {
             return Some(Reason::Disjoint);
@@ -214,7 +204,7 @@ impl Judge {
     }
 }
 
-/// A pair of triangles for which `judge` holds, of all that are not certainly apart.
+/// Finds a pair of triangles that satisfies `judge`, among all pairs whose nodes are not certainly separated.
 fn descend(
     scene: &Scene,
     nodes: [usize; 2],
@@ -260,7 +250,7 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
     None
 }
 
-/// Whether two triangles show that the solids overlap: cases 1 to 3.
+/// Checks whether two triangles show that the solids overlap: cases 1 to 3.
 fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let noise = 4.0 * scene.noise;
     if (0..3).any(|axis| f.bounds.is_apart(&g.bounds, axis, noise)) {
@@ -283,7 +273,7 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
             let (axis, facing) = f.open_axis(scene);
             let [a, b, c] = &g.corners;
             let other = scene.turn_about(axis, a, b, c);
-            // As for whole nodes: face to face.
+            // As for whole nodes, facets that face each other show no overlap.
             if other == facing.reverse() {
                 return false;
             }
@@ -298,18 +288,17 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
         || (0..3).any(|k| edge_meets(scene, g, k, of_g, f, of_f))
 }
 
-/// Whether two triangles are nearer than the gap to be kept, for certain.
+/// Checks whether two triangles are certainly nearer than the minimum gap.
 fn are_nearer(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     Facets::new(scene, &f.corners, &g.corners).are_within(scene.keep, false)
 }
 
-/// Whether two triangles are as near, for certain.
+/// Checks whether the distance of two triangles is certainly at most the minimum gap.
 fn are_as_near(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     Facets::new(scene, &f.corners, &g.corners).are_within(scene.keep, true)
 }
 
-/// Whether two triangles, as closed sets, have a point in common: if so, an edge of one meets the
-/// other.
+/// Checks whether two triangles, as closed sets, have a common point. If they do, an edge of one meets the other.
 fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let pierces = |f: &Triangle, g: &Triangle| (0..3).any(|k| edge_reaches(scene, f, k, g));
     match [f, g].map(thin::ends) {
@@ -320,7 +309,7 @@ fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     }
 }
 
-/// Whether edge `k` of `f` has a point in common with `g`, ends and rim included.
+/// Checks whether edge `k` of `f`, ends included, has a common point with `g`, edges included.
 fn edge_reaches(scene: &Scene, f: &Triangle, k: usize, g: &Triangle) -> bool {
     let (p, q) = (&f.corners[k], &f.corners[(k + 1) % 3]);
     let [a, b, c] = &g.corners;
@@ -339,7 +328,7 @@ fn edge_reaches(scene: &Scene, f: &Triangle, k: usize, g: &Triangle) -> bool {
         }
         (x, y) if x == y => false,
         _ => {
-            // All turns of the line around the sides, not of opposite signs.
+            // The line meets the triangle if its orientations relative to the sides do not have opposite signs.
             let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| scene.outside(p, q, u, v));
             !(turns.contains(&Ordering::Greater) && turns.contains(&Ordering::Less))
         }
@@ -354,9 +343,11 @@ fn straddles(signs: [Ordering; 3]) -> bool {
     signs.contains(&Ordering::Greater) && signs.contains(&Ordering::Less)
 }
 
-/// Case 1, for triangles with corners on both sides of each other's planes: the segments in which
-/// they meet the common line overlap. With `a` alone on the upper side of `g`, and `b` alone on the
-/// upper side of `f`, that is told by two sides' order along the line.
+/// Checks case 1 for triangles that each have corners on both sides of the other's plane.
+///
+/// The planes intersect in a line, which meets each triangle in a segment. If one corner of each triangle is alone on
+/// the upper side of the other plane, the order of two pairs of sides along this line shows whether the segments
+/// overlap.
 fn cross(
     scene: &Scene,
     f: &Triangle,
@@ -366,7 +357,7 @@ fn cross(
 ) -> bool {
     let (mut p, p_up) = alone_first(f, of_f);
     let (mut q, q_up) = alone_first(g, of_g);
-    // Turning one triangle over turns the sides of its plane.
+    // Reversing one triangle exchanges the sides of its plane.
     if !p_up {
         q.swap(1, 2);
     }
@@ -377,8 +368,8 @@ fn cross(
         && scene.outside(p[0], q[0], p[2], q[2]) == Ordering::Less
 }
 
-/// The corners in their order, beginning with the one that is alone on its side of the other plane,
-/// and whether that is the upper side.
+/// Returns the corners in their order, beginning with the one that is alone on its side of the other plane, and whether
+/// that is the upper side.
 fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c Corner; 3], bool) {
     let alone = |k: usize| {
         signs[k] != Ordering::Equal
@@ -390,7 +381,7 @@ fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c Corner
     (corners, signs[first] == Ordering::Greater)
 }
 
-/// Case 2, for triangles in one plane that both turn as `facing` says about an axis.
+/// Checks case 2 for triangles in one plane that both have the orientation `facing` about an axis.
 fn share_a_part(
     scene: &Scene,
     (axis, facing): (usize, Ordering),
@@ -406,7 +397,7 @@ fn share_a_part(
     !separates(f, g) && !separates(g, f)
 }
 
-/// Case 3 for edge `k` of `f`.
+/// Checks case 3 for edge `k` of `f`.
 fn edge_meets(
     scene: &Scene,
     f: &Triangle,
@@ -420,7 +411,7 @@ fn edge_meets(
         return false;
     }
     let (p, q) = (&f.corners[k], &f.corners[next]);
-    // A rim has nothing across.
+    // A boundary edge has no neighbour.
     let beyond = f.across(k);
     let own = Stuff::around(f.is_open(), beyond.is_some(), [Ray::to(0), Ray::to(1)]);
     let Some(own) = own else { return false };
@@ -452,18 +443,19 @@ fn edge_meets(
     })
 }
 
-/// What of a body is around an edge.
+/// The part of a body around an edge.
 pub(super) enum Stuff {
-    /// Of a closed shell, a wedge of material.
+    /// Of a closed shell: a wedge of material.
     Material(Wedge),
-    /// Of an open one, two half-planes.
+    /// Of an open shell: two half-planes.
     Bend([Ray; 2]),
-    /// The rim of an open one.
+    /// Of an open shell at its boundary: one half-plane.
     Rim(Ray),
 }
 
 impl Stuff {
-    /// Around an edge whose facet lies along the second ray, and what is across it along the first.
+    /// Returns the part of a body around an edge with its own facet along the second ray, and its neighbour, if there
+    /// is one, along the first. `None` for an edge of a closed shell without a neighbour.
     pub(super) fn around(open: bool, has_across: bool, [across, own]: [Ray; 2]) -> Option<Self> {
         match (open, has_across) {
             (false, true) => Some(Self::Material(Wedge { start: across, end: own })),
@@ -473,7 +465,7 @@ impl Stuff {
         }
     }
 
-    /// The same seen with the edge running the other way.
+    /// Returns the same neighbourhood for the edge in the opposite direction.
     fn turned(self) -> Self {
         match self {
             Self::Material(Wedge { start, end }) => {
@@ -508,7 +500,7 @@ impl Stuff {
     }
 }
 
-/// Whether a segment in the plane of a triangle has points inside it.
+/// Checks whether a segment in the plane of a triangle has points in its interior.
 fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Triangle) -> bool {
     let (axis, facing) = g.open_axis(scene);
     let of_corners = g.corners.map(|c| scene.turn_about(axis, p, q, &c));
@@ -521,8 +513,8 @@ fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Triangle) -> bool {
     })
 }
 
-/// Whether two segments on one line share more than a point, and if so whether they run the same
-/// way.
+/// Checks whether two segments on one line share more than a point. Returns whether they have the same direction;
+/// `None` if they share at most a point or lie on different lines.
 fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Option<bool> {
     let on_line =
         |c: &Corner| (0..3).all(|axis| scene.turn_about(axis, p, q, c) == Ordering::Equal);
@@ -537,7 +529,7 @@ fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Opti
     shared.then_some(along)
 }
 
-/// The points around an edge.
+/// An edge and the points around it that define rays.
 pub(super) struct Around<'c, 's, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) p: &'c Corner,

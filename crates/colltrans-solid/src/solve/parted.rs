@@ -1,7 +1,8 @@
-//! A plane between two solids anywhere, by all of their vertices, as Gilbert, Johnson and Keerthi find it.
+//! A separating plane of two solids in any direction, from all of their vertices, by the algorithm of Gilbert, Johnson
+//! and Keerthi.
 //!
-//! Bodies that are shrunk far are bounded badly by their trees, but a plane between all vertices parts whatever facets there
-//! are. Of convex bodies there is one, unless they overlap.
+//! The bounding volume trees of strongly offset bodies are loose. In contrast, a plane between all vertices separates
+//! all facets. Convex bodies have such a plane unless they overlap.
 
 use glam::DVec3;
 
@@ -11,11 +12,11 @@ use colltrans_convex::setting::VertexPair;
 use colltrans_convex::solve::nearest::simplex::{Corner, Simplex};
 use colltrans_kernel::real::Vector;
 
-/// Each round ends or comes closer; rounding alone could make it last.
+/// Maximum number of rounds. Each round ends the search or comes closer; only rounding errors could prolong it.
 const MOST_ROUNDS: usize = 64;
 
-/// The normal in the world, from the moving body on, of a plane between the bodies that rounding can tell, if there is one;
-/// `near` is one to begin with.
+/// Finds the normal in the world, from the moving body to the fixed one, of a plane that certainly separates the
+/// bodies. `near` is an initial guess. `None` if the search ends without such a plane.
 pub(crate) fn plane(scene: &Scene, near: Option<DVec3>) -> Option<DVec3> {
     let middle = |side: &Side| side.matrix * side.solid.bounds().center() + side.offset[0];
     let apart = || (middle(&scene.fixed) - middle(&scene.moving)).try_normalize();
@@ -45,7 +46,7 @@ pub(crate) fn plane(scene: &Scene, near: Option<DVec3>) -> Option<DVec3> {
     None
 }
 
-/// The vertex of a body that is farthest along a normal, and where it is.
+/// Returns the vertex of a body that is farthest along a normal, and its position in the setting frame.
 fn farthest(side: &Side, normal: DVec3) -> (u32, DVec3) {
     let local = side.matrix.transpose() * normal;
     let mut best = (0, f64::NEG_INFINITY);

@@ -1,9 +1,10 @@
-//! The bounds of a node in the query frame.
+//! Bounds of a node in the query frame.
 //!
-//! A node is a box and a slab `low <= n.x <= high` that hold its facets, and how far their normals differ
-//! from `n`. Everything is rounded outwards by the noise of coordinates, except along axes where coordinates
-//! are exact: there boxes that touch are told from boxes that overlap, so that zero clearance is cut off
-//! high up in the trees.
+//! - A node is bounded by a box and by a slab `low <= n.x <= high`, and the normals of its facets by a spread around
+//!   `n`.
+//! - All bounds are rounded outwards by the noise of coordinates, except along axes where coordinates are exact.
+//! - Along those axes boxes that touch are distinguished from boxes that overlap. Therefore zero clearance is cut off
+//!   high up in the trees.
 
 use glam::{DMat3, DVec3};
 
@@ -13,32 +14,32 @@ use crate::body::cuts::Parts;
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::error_free::sum_error;
 
-/// Cosine from which on a slab bounds more along an axis than the box does.
+/// Cosine above which a slab gives better bounds along an axis than the box.
 const PARALLEL: f64 = 0.75;
-/// Slabs steeper than this say little about heights.
+/// Cosine of the slab axis and the direction below which a slab is too steep to bound heights.
 const STEEP: f64 = 1e-3;
 
-/// A node in the query frame.
+/// The bounds of a node in the query frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Projected {
     pub(crate) node: u32,
     pub bounds: Aabb,
-    /// The box in the body frame, after shrinking.
+    /// The box in the body frame, after the offset.
     pub(crate) local: Aabb,
-    /// The node's axis and its slab.
+    /// Unit normal of the slab in the query frame.
     pub axis: DVec3,
     pub slab: [f64; 2],
-    /// The axis' component along the direction, rounded in the body frame.
+    /// Component of the axis along the direction, computed in the body frame.
     along: f64,
-    /// Facing can be told if `|along|` reaches this.
+    /// The facing of all facets is certain if `|along|` reaches this.
     spread: f64,
-    /// Whether a facet that looks into the box may lie in the side where that starts along the direction, of the
-    /// moving body, or ends, of the fixed one.
+    /// Whether a facet that faces into the box may lie in the box side where the moving body begins along the
+    /// direction, or the fixed one ends.
     inward: bool,
 }
 
 impl Projected {
-    /// Both bodies as they are whole.
+    /// Returns the bounds of both bodies as a whole.
     pub(crate) fn roots(scene: &Scene) -> [Self; 2] {
         [&scene.moving, &scene.fixed].map(|side| Self::new(scene, side, 0))
     }
@@ -66,7 +67,7 @@ impl Projected {
             + if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
         projected.bounds = boxed(scene, side, projected.local);
         if scene.keeps() {
-            // What is on edge looks neither way.
+            // An edge-on facet faces neither way.
             projected.spread += f64::MIN_POSITIVE;
         }
         if side.swell > 0.0 {
@@ -74,13 +75,13 @@ impl Projected {
             projected.bounds = projected.bounds.grown(side.swell + scene.noise);
         }
         if node.is_open() {
-            // What is on edge has a shadow without a width, but counts.
+            // The shadow of an edge-on facet has no width, but counts.
             projected.bounds = projected.bounds.grown(scene.noise);
         }
         projected
     }
 
-    /// Moves the sides inwards as the facets do.
+    /// Moves the sides inwards by the offset.
     fn shrink(&mut self, shrinking: &Shrinking, amount: f64, at: usize) {
         let motion = &shrinking.nodes[at];
         let swell = shrinking.farthest * amount.abs();
@@ -94,8 +95,8 @@ impl Projected {
         }
     }
 
-    /// Whether both nodes lie in one plane, exactly, and look at each other. Boxes without thickness are
-    /// exact: others are rounded outwards.
+    /// Checks whether both nodes lie exactly in one plane and face each other. Only exact boxes have no thickness,
+    /// because others are rounded outwards.
     pub(crate) fn is_face_to_face(&self, other: &Self) -> bool {
         let (a, b) = (&self.bounds, &other.bounds);
         let flat = |k: usize| {
@@ -107,38 +108,40 @@ impl Projected {
         self.spread < 1.0 && other.spread < 1.0 && (0..3).any(flat)
     }
 
-    /// The range of the box along an axis of the body, in the query frame.
+    /// Returns the range of the box along axis `k` of the body, in the query frame.
     pub(crate) fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
         let shift = side.view.col(k).dot(side.view_offset);
         let skew = side.skew() + side.swell;
         [self.local.low[k] + shift - skew, self.local.high[k] + shift + skew]
     }
 
-    /// The range of `m.x` over the node, `m` a unit vector.
+    /// Returns the range of `m.x` over the node for a unit vector `m`.
     pub(crate) fn range(&self, side: &Side, m: DVec3, noise: f64) -> [f64; 2] {
         [self.least_along(side, m, noise), -self.least_along(side, -m, noise)]
     }
 
-    /// The least `m.x` over the node, `m` a unit vector, by its cut box: of what is left of `m` next to
-    /// its part along the slab, if that is most of it.
+    /// Returns a lower bound of `m.x` over the node for a unit vector `m`. If `m` is nearly parallel to the slab's
+    /// axis, the slab bounds that component, and the box with its cut corners the remainder.
     pub(crate) fn least_along(&self, side: &Side, m: DVec3, noise: f64) -> f64 {
         let (least, local) = self.least_uncut(side, m, noise);
         least + self.gain(side, local)
     }
 
-    /// Whether it lies beyond a place along a unit vector. What is cut off its box is looked at only if it has to be.
+    /// Checks whether the node lies beyond the coordinate `place` along a unit vector. The cuts of its box are
+    /// evaluated only if the uncut box does not decide.
     pub(crate) fn is_beyond(&self, side: &Side, m: DVec3, noise: f64, place: f64) -> bool {
         let (least, local) = self.least_uncut(side, m, noise);
         least > place || least + self.gain(side, local) > place
     }
 
-    /// The least `m.x` by its whole box, and along what in the body's frame that was asked.
+    /// Returns a lower bound of `m.x` from the uncut box, and the vector in the body frame along which the box was
+    /// measured.
     fn least_uncut(&self, side: &Side, m: DVec3, noise: f64) -> (f64, DVec3) {
         let along = self.axis.dot(m);
         let (mut rest, mut slab) = (m, 0.0);
         if along.abs() > PARALLEL && self.slab[1] < f64::INFINITY {
             rest -= self.axis * along;
-            // As it is: what its body is taken for besides reaches no farther along `m`.
+            // The slab without its enlargement, which is subtracted once from the whole bound.
             let own = self.slab[usize::from(along < 0.0)] + side.swell.copysign(along);
             slab = own * along;
         }
@@ -148,35 +151,35 @@ impl Projected {
         (slab + middle - spread - side.swell, local)
     }
 
-    /// What the cuts of its box take from how far that reaches against a vector of the body's frame.
+    /// Returns by how much the cuts of its box shorten its extent against a vector of the body frame.
     fn gain(&self, side: &Side, local: DVec3) -> f64 {
         let node = &side.solid.nodes()[self.node as usize];
         Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.moved())
     }
 
-    /// Whether its slab bounds heights.
+    /// Checks whether the slab bounds heights.
     pub(crate) fn has_heights(&self) -> bool {
         self.slab[1] < f64::INFINITY && self.axis.z.abs() > STEEP
     }
 
-    /// Whether it may have a level facet where its box has no more than a plane in common with one that it
-    /// leaves behind, and the facet blocks.
+    /// Checks whether the node may have a level facet that blocks where its box shares no more than a plane with a box
+    /// that it leaves behind.
     pub(crate) fn may_be_level(&self) -> bool {
         self.inward
     }
 
-    /// Whether it has no facet that looks along the direction.
+    /// Checks whether no facet of the node faces along the direction.
     pub(crate) fn looks_back(&self) -> bool {
         self.spread < 1.0 && self.along <= -self.spread
     }
 
-    /// Whether it has no facet that looks against the direction.
+    /// Checks whether no facet of the node faces against the direction.
     pub(crate) fn looks_ahead(&self) -> bool {
         self.spread < 1.0 && self.along >= self.spread
     }
 }
 
-/// The node's box in the query frame: exact along aligned axes, rounded outwards along others.
+/// Computes the node's box in the query frame: exact along aligned axes, rounded outwards along others.
 fn boxed(scene: &Scene, side: &Side, local: Aabb) -> Aabb {
     let (center, half) = (local.center(), local.size() * 0.5);
     let middle = side.view * center + side.view_offset;
@@ -199,7 +202,7 @@ fn boxed(scene: &Scene, side: &Side, local: Aabb) -> Aabb {
     bounds
 }
 
-/// `a + b`, rounded downwards or upwards unless it is exact.
+/// Computes `a + b`, rounded downwards or upwards unless it is exact.
 fn rounded_sum(a: f64, b: f64, exact: bool, way: i32) -> f64 {
     let (sum, error) = (a + b, sum_error(a, b, a + b));
     if exact && (error == 0.0 || (error > 0.0) == (way < 0)) {

@@ -1,29 +1,15 @@
-//! What is on edge: facets of open shells that the direction runs along.
+//! Edge-on facets: facets of open shells that are parallel to the direction.
 //!
-//! Their shadows are segments, so no interiors of shadows overlap; but a sheet cannot pass, edge on,
-//! through a solid or through another sheet. Such a facet `F` is *upright*. Moved by `t d` with `t > 0`,
+//! Their shadows are segments without interior. Nevertheless a sheet cannot pass edge-on through a solid or another
+//! sheet. Such a facet blocks if, moved by `t d` with `t > 0`,
+//! 1. a *leading* side, which the rest of the facet is behind, enters the interior of a solid over an open part of its
+//!    shadow;
+//! 2. a leading side crosses a facet of an open shell that is not edge-on, or two of them that meet at an edge;
+//! 3. its interior meets that of an edge-on facet of the other body in its own plane;
+//! 4. it crosses an edge-on facet of another plane over the one common point of their shadows; or
+//! 5. it is a point, or a segment parallel to the direction, whose *tip* enters or passes the other body.
 //!
-//! 1. it enters the open inside of a solid if and only if the plane strip ahead of its *leading* sides
-//!    (those that the rest of it is behind) does, and that is so over an open part of a leading side's
-//!    shadow: there it meets the interior of a facet of the solid, or an edge that runs along the strip.
-//!    At an edge the direction points into the material if the edge is not convex, or if both its facets
-//!    are entered;
-//! 2. it crosses a facet of an open shell that is not on edge where the shadow of a leading side meets
-//!    the interior of the facet's. It crosses two facets that meet at an edge along the strip if they are
-//!    on different sides of it; to brush a fold, or a rim, is not to cross it;
-//! 3. it meets an upright facet of the other body in its own plane where the interiors of the two do;
-//! 4. it crosses an upright facet of another plane over the one point that their shadows have in common, if
-//!    it lies inside both. At an end of a shadow an upright side may join the facet to the next one: then the two
-//!    are looked at as a bend, and bends cross if each has an arm on either side of the other.
-//! 5. a point, or a segment along the direction, has a shadow that is a point. Its *tip* enters a facet where the
-//!    shadow of the facet has it inside. At an edge or a vertex it enters a solid if what lies [past](super::line) is
-//!    inside. It passes an open shell at an edge whose facets lie on both sides of the direction, and at a vertex as
-//!    the [fan](super::fan) around it says. It meets nothing else: what touches it alone does not stop it.
-//!    A segment across the direction is an upright facet whose one leading side is all there is of it.
-//!
-//! With bodies that do not overlap at the start, the gap of 1 and 2 counts as that of two facets does:
-//! if it is positive somewhere, or zero all over. All signs are exact, and gaps are but for their last
-//! roundings.
+//! All signs are exact, and gaps are exact except for their last roundings. Details: `docs/theory/edge-on-facets.md`.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -36,22 +22,22 @@ use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::integer::{Integer, LARGE, SMALL};
 
-/// A facet of an open shell, on edge.
+/// A facet of an open shell that is parallel to the direction.
 pub(crate) struct Upright {
     triangle: u32,
     corners: [Corner; 3],
     moving: bool,
-    /// How each side `k`, from corner `k` to the next, lies: `Greater` if the rest of the facet is
-    /// behind it, `Less` if ahead, `Equal` if it is upright.
+    /// For each side `k`, from corner `k` to the next one: `Greater` if the rest of the facet is behind it, `Less` if
+    /// it is ahead, `Equal` if the side is vertical.
     leads: [Ordering; 3],
     /// The corners at the ends of the shadow.
     ends: [usize; 2],
     bounds: Aabb,
 }
 
-/// Whether two nodes have facets without a side.
+/// Checks whether two nodes may have edge-on facets to compare: one of them has facets of an open shell.
 pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
-    // To be near, facets on edge are like any others.
+    // With a minimum gap, edge-on facets are treated like all others.
     !scene.keeps()
         && [true, false]
             .into_iter()
@@ -59,8 +45,8 @@ pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
             .any(|(moving, node)| scene.side(moving).solid.nodes()[node as usize].is_open())
 }
 
-/// The least gap of two triangles of which one is an upright facet, the moving body's first, where they
-/// block each other, and its error.
+/// Returns the least gap that counts, and its error, of two triangles of which one is an edge-on facet, the moving
+/// body's first; `None` if no gap counts.
 pub(crate) fn least_gap_of(
     scene: &Scene,
     counts: &dyn Fn(&Gap) -> bool,
@@ -75,7 +61,7 @@ pub(crate) fn least_gap_of(
     least
 }
 
-/// The gaps of two triangles of which one is an upright facet.
+/// Calls `take` with the gaps of two triangles of which one is an edge-on facet.
 pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
     if scene.keeps() {
         return;
@@ -93,8 +79,8 @@ pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut(
     each_gap(scene, (f.as_slice(), front.as_slice()), (g.as_slice(), back.as_slice()), take);
 }
 
-/// Each gap that an upright facet of one leaf makes with what is in another leaf: the leaves' upright facets, and their
-/// facets that look the right way.
+/// Calls `take` with each gap of an edge-on facet of one leaf and the contents of another leaf: its edge-on facets, and
+/// its facets that face the first leaf.
 pub(crate) fn each_gap(
     scene: &Scene,
     (uprights, front): (&[Upright], &[Facet]),
@@ -119,14 +105,14 @@ pub(crate) fn each_gap(
 }
 
 impl Upright {
-    /// The upright facets of a leaf.
+    /// Returns the edge-on facets of a leaf.
     pub(crate) fn of_leaf(scene: &Scene, moving: bool, node: u32) -> Vec<Self> {
         let solid = scene.side(moving).solid;
         let open = solid.nodes()[node as usize].facets().filter(|&t| solid.is_open(t));
         open.filter_map(|t| Self::new(scene, moving, t)).collect()
     }
 
-    /// The facet, if it is on edge.
+    /// Builds an edge-on facet; `None` if the triangle is not edge-on.
     pub(crate) fn new(scene: &Scene, moving: bool, triangle: usize) -> Option<Self> {
         let corners = scene.side(moving).corners(triangle);
         let [a, b, c] = &corners;
@@ -164,7 +150,7 @@ impl Upright {
         &self.corners[self.ends[k]]
     }
 
-    /// An axis of the world across which places along the shadow are told apart.
+    /// Returns an axis of the world such that [`Scene::drift`] along it orders positions along the shadow.
     fn axis(&self, scene: &Scene) -> usize {
         let apart = |axis: usize| {
             (0..3).any(|k| {
@@ -177,7 +163,8 @@ impl Upright {
 
     fn lead(&self, scene: &Scene, k: usize) -> Ordering {
         let ([p, q], r) = (self.side(k), &self.corners[(k + 2) % 3]);
-        // Across an axis along which the facet has an area: where `r` is, and where the direction goes.
+        // An axis along which the facet has an area. It decides on which side `r` is, and to which side the direction
+        // leads.
         let rest = |axis: &usize| scene.turn_about(*axis, p, q, r) != Equal;
         let Some(axis) = (0..3).find(rest) else { return Equal };
         let rest = scene.turn_about(axis, p, q, r);
@@ -189,14 +176,15 @@ impl Upright {
         }
     }
 
-    /// Returns the leads of a point or a segment: there and back, unless its shadow is a point.
+    /// Returns the `leads` of a point or a segment, whose sides run forth and back. All are `Equal` if its shadow is a
+    /// point.
     fn leads_of_segment(&self, scene: &Scene) -> [Ordering; 3] {
         let [a, b, _] = &self.corners;
         let is_point = (0..3).all(|axis| scene.drift(axis, a, b) == Equal);
         if is_point { [Equal; 3] } else { [Greater, Equal, Less] }
     }
 
-    /// Returns the number of the corner that goes ahead, of a point or a segment whose shadow is a point.
+    /// Returns the number of the leading corner of a point or segment whose shadow is a point; `None` for other facets.
     fn tip(&self, scene: &Scene) -> Option<u8> {
         if self.leads != [Equal; 3] {
             return None;
@@ -211,7 +199,8 @@ impl Upright {
         Some(u8::from(second_is_higher == self.moving && scene.order(axis, a, b) != Equal))
     }
 
-    /// Returns the gap of a tip and a facet of the other body.
+    /// Computes the gap of a tip and a facet of the other body; `None` if the tip does not meet the facet or is not
+    /// blocked by it.
     fn tip_and_facet(&self, scene: &Scene, tip: u8, facet: &Facet) -> Option<Gap> {
         let corner = &self.corners[usize::from(tip)];
         let turns = [0, 1, 2].map(|j| {
@@ -230,7 +219,7 @@ impl Upright {
         Some(gap)
     }
 
-    /// Checks whether a tip is stopped where it meets a facet, by the sides of the facet that it meets.
+    /// Checks whether the facet blocks the tip, according to the sides of the facet that the tip meets.
     fn passes(&self, scene: &Scene, tip: &Corner, facet: &Facet, turns: [Ordering; 3]) -> bool {
         let line = Line { from: tip, way: Way::Query { forward: self.moving } };
         let side = scene.side(!self.moving);
@@ -253,12 +242,12 @@ impl Upright {
         (0..3).filter(|&k| self.leads[k] == Greater)
     }
 
-    /// Whether boxes say that nothing is met.
+    /// Checks whether boxes show that the shadows are disjoint.
     fn is_beside(&self, scene: &Scene, bounds: &Aabb) -> bool {
         (0..2).any(|axis| self.bounds.is_apart(bounds, axis, 4.0 * scene.noise))
     }
 
-    /// The gaps of the leading sides and a facet of the other body.
+    /// Calls `take` with the gaps of the leading sides, or of the tip, and a facet of the other body.
     fn with_facet(&self, scene: &Scene, facet: &Facet, take: &mut dyn FnMut(Gap)) {
         if self.is_beside(scene, &facet.bounds) {
             return;
@@ -316,12 +305,12 @@ impl Upright {
         Some(gap)
     }
 
-    /// The gap where the facet is so far above the other body.
+    /// Converts the height of this facet above the other body's to a gap between the moving and the fixed body.
     fn ahead(&self, above: Above) -> Above {
         if self.moving { above.reversed() } else { above }
     }
 
-    /// The meeting of side `k` with a corner of the other body.
+    /// Returns the meeting of side `k` with a corner of the other body.
     fn at_corner(&self, k: usize, corner: usize) -> Meeting {
         if self.moving {
             Meeting::UnderSide(k as u8, corner as u8)
@@ -330,15 +319,15 @@ impl Upright {
         }
     }
 
-    /// The gap along the common shadow of a side of this facet and one of the other body.
+    /// Computes the gap over the common shadow of a side of this facet and a side of the other body.
     fn oriented(&self, scene: &Scene, own: Named, other: Named) -> Option<Gap> {
         let [moving, fixed] = if self.moving { [own, other] } else { [other, own] };
         along(scene, moving, fixed)
     }
 
-    /// What of the facet is over a point of its shadow: the two arms, as corners or, at an end with an
-    /// upright side, as the facet's other end and the one of the facet across the side. `None` if the
-    /// upright only ends there.
+    /// Returns the two arms of the facet at a point of its shadow. In the interior of the shadow they are its ends. At
+    /// an end with a vertical side they are the facet's other end, and the apex of the neighbour across that side.
+    /// `None` if the facet merely ends there.
     fn arms(&self, scene: &Scene, end: Option<usize>) -> Option<[Corner; 2]> {
         let Some(end) = end else { return Some([*self.end(0), *self.end(1)]) };
         let upright = (0..3).find(|&k| self.leads[k] == Equal)?;
@@ -351,7 +340,7 @@ impl Upright {
         Some([*self.end(1 - end), apex])
     }
 
-    /// The leading side whose shadow reaches to or across the line of another upright facet's shadow.
+    /// Finds a leading side whose shadow reaches or crosses the line of another edge-on facet's shadow.
     fn leading_at(&self, scene: &Scene, other: &Self) -> Option<usize> {
         self.leading().find(|&k| {
             let [p, q] = self.side(k).map(|c| scene.turn(other.end(0), other.end(1), c));
@@ -367,7 +356,7 @@ struct Named<'c> {
     number: usize,
 }
 
-/// The corner across side `k` of a triangle, listed as it is.
+/// Returns the corner across side `k` of a triangle, in its original order; `None` at a boundary.
 fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
     let n = side.solid.neighbours()[triangle][k];
     let own = side.solid.triangles()[triangle];
@@ -376,8 +365,8 @@ fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
     (n != NONE).then(|| apex(n)).flatten().map(|v| side.corner(v))
 }
 
-/// Checks whether an upright facet of the body that is `moving` or not enters the other one at side `j` of a
-/// facet, along which it runs, or a point passes that side of an open one.
+/// Checks whether an edge-on facet of the body given by `moving` enters the other body at side `j` of a facet, along
+/// which it runs. For an open facet, checks whether a facet or a point passes this side.
 fn enters(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool {
     let side = scene.side(!moving);
     let t = facet.triangle as usize;
@@ -398,7 +387,7 @@ fn enters(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool {
     scene.turn(&x, &y, &z) == entered || scene.outside(&own[0], &own[1], &own[2], &apex) == Greater
 }
 
-/// The gap of a moving and a fixed upright facet.
+/// Computes the gap of a moving and a fixed edge-on facet; `None` if they do not meet.
 fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
     if f.is_beside(scene, &g.bounds) {
         return None;
@@ -407,7 +396,8 @@ fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
     if of_f == [Equal; 2] { in_one_plane(scene, f, g) } else { crossing(scene, f, g, of_f) }
 }
 
-/// Case 3: the least gap of the leading sides, and the sign of the largest one of those behind.
+/// Computes the gap of case 3: the least gap of the leading sides, and the sign of the largest gap of the trailing
+/// ones.
 fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
     let sides = |upright: &Upright, k: usize| -> [Corner; 2] { upright.side(k).map(|c| *c) };
     let mut gap: Option<Gap> = None;
@@ -435,7 +425,7 @@ fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
     gap.map(|gap| Gap { signs: [least, largest], ..gap })
 }
 
-/// Case 4.
+/// Computes the gap of case 4.
 fn crossing(scene: &Scene, f: &Upright, g: &Upright, of_f: [Ordering; 2]) -> Option<Gap> {
     let of_g = [0, 1].map(|k| scene.turn(g.end(0), g.end(1), f.end(k)));
     let apart = |t: [Ordering; 2]| t[0] == t[1];
@@ -460,9 +450,10 @@ fn crossing(scene: &Scene, f: &Upright, g: &Upright, of_f: [Ordering; 2]) -> Opt
     Some(gap)
 }
 
-/// Whether the shadows of two pairs of arms cross at the shadow of a corner.
+/// Checks whether the shadows of two pairs of arms cross at the shadow of a corner.
 fn alternate(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bool {
-    // Counter-clockwise from the first arm of `f`: 0 if along it, a quarter for each half turn or less.
+    // Sector of a corner, counter-clockwise from the first arm of `f`: 0 along it, 1 below a half turn, 2 opposite to
+    // it, 3 above a half turn.
     let same = |a: &Corner, b: &Corner| {
         let axis = (0..3).find(|&axis| scene.drift(axis, at, a) != Equal).unwrap_or(0);
         scene.drift(axis, at, a) == scene.drift(axis, at, b)
@@ -474,7 +465,7 @@ fn alternate(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bo
         Equal => 2,
     };
     let second = sector(&f[1]);
-    // Where the second arm of `f` divides: `Less` before it, `Greater` behind it, `Equal` along either.
+    // Position relative to the second arm of `f`: `Less` before it, `Greater` behind it, `Equal` along either arm.
     let place = |c: &Corner| match (sector(c), second) {
         (0, _) | (_, 0) => Equal,
         (a, b) if a != b => a.cmp(&b),
@@ -484,8 +475,8 @@ fn alternate(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bo
     are_opposite([place(&g[0]), place(&g[1])])
 }
 
-/// The gap of two sides whose shadows run along one line, where both are; `None` if that is a point at
-/// most.
+/// Computes the gap of two sides whose shadows lie on one line, over their common part; `None` if this part is a point
+/// at most.
 fn along(scene: &Scene, f: Named, g: Named) -> Option<Gap> {
     let [p, q] = f.corners;
     let axis = (0..3).find(|&axis| scene.drift(axis, p, q) != Equal)?;
@@ -520,7 +511,7 @@ fn are_opposite([a, b]: [Ordering; 2]) -> bool {
     a != Equal && a == b.reverse()
 }
 
-/// Whether the shadow of a corner on the line of a side's lies strictly within it.
+/// Checks whether the shadow of a corner, on the line of a side's shadow, lies strictly within that shadow.
 fn is_between(scene: &Scene, corner: &Corner, [p, q]: [&Corner; 2]) -> bool {
     let apart = |axis: &usize| scene.drift(*axis, p, q) != Equal;
     let Some(axis) = (0..3).find(apart) else { return false };
@@ -528,7 +519,7 @@ fn is_between(scene: &Scene, corner: &Corner, [p, q]: [&Corner; 2]) -> bool {
     scene.drift(axis, p, corner) == way && scene.drift(axis, corner, q) == way
 }
 
-/// How far side `a b` is above a corner whose shadow is on the line of the side's.
+/// Computes the height of side `a b` above a corner whose shadow lies on the line of the side's shadow.
 fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
     fn of<const N: usize>(
         scene: &Scene,
@@ -536,7 +527,7 @@ fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
         [axis, height]: [usize; 2],
     ) -> Option<Above> {
         let direction = scene.setting.direction.to_array().map(Integer::<N>::number);
-        // Along the shadow: what is left of a vector across the axis and the direction.
+        // Coordinate along the shadow: the component of `v x d` along the axis.
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let place = |v: &[Integer<N>; 3]| {
             v[i].multiply(&direction[j]).subtract(&v[j].multiply(&direction[i]))

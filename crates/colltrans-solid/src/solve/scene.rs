@@ -1,18 +1,14 @@
-//! Two placed solids and a direction, in frames that all of this folder shares.
+//! Two placed solids and a direction, in the frames that this folder shares.
 //!
-//! The *setting frame* has the axes of the world and its origin at the moving body's translation. The
-//! *query frame* has the direction as its third axis: `x, y` of a point are its shadow, `h` its
-//! height; it is used rounded. Exact signs are taken of the setting frame's coordinates, sums of
-//! products of the matrices' entries, vertices and translations as they are.
-//!
-//! Rounding. A coordinate of the query frame is off by at most [`Scene::noise`], `32 u S`: with `|v|`
-//! the reach of a body, `17 u |v|` for two matrices (their entries and their application), `12 u` for
-//! the offset, and what the shadow axes lack of being orthogonal to the direction, `4 u` of both. Where
-//! the matrices only permute axes and change signs there is no rounding but that of the offset,
-//! which is looked at: such coordinates are *exact*.
-//!
-//! A pose's matrix `R` may be off a rotation by `1e-6`. Then what lies along an axis `n` of the body frame does not lie
-//! along `R n` as far: [`Side::skew`] says by how much, and a facet's normal is turned by [`Side::defect`] at most.
+//! - *Setting frame*: the axes of the world, with the origin at the moving body's translation.
+//! - *Query frame*: the direction is its third axis. The coordinates `x, y` of a point are its shadow, `h` is its
+//!   height. Its coordinates are rounded.
+//! - Exact signs are computed from setting frame coordinates: sums of products of matrix entries, vertices and
+//!   translations, without rounding.
+//! - A coordinate of the query frame has an error of at most [`Scene::noise`], `32 u S`. Coordinates are *exact* if the
+//!   matrix only permutes axes and changes signs, and adding the offset does not round.
+//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`Side::skew`] bounds the effect on coordinates along
+//!   an axis `R n`, and [`Side::defect`] the rotation of a facet's normal. Derivation: `docs/theory/solid-rounding.md`.
 
 use std::cell::OnceCell;
 
@@ -27,54 +23,55 @@ use colltrans_kernel::integer::Integer;
 use colltrans_kernel::noise::Noise;
 use colltrans_kernel::pose::rotation_defect;
 
-/// A rounded rotation is off one by less.
+/// Upper bound on the deviation of a rounded rotation matrix from a rotation.
 const ROTATION: f64 = 16.0 * f64::EPSILON;
 
-/// One of the two bodies.
+/// One of the two bodies, placed and offset.
 #[derive(Clone, Copy)]
 pub struct Side<'a> {
     pub solid: &'a Solid,
     pub(crate) moving: bool,
-    /// How much it is shrunk.
+    /// Distance by which its facets are moved inwards.
     pub amount: f64,
-    /// How much more than itself its nodes are taken for: of the moving body the gap that is to be kept.
+    /// Distance by which the bounds of its nodes are enlarged: the minimum gap, a little stretched, for the moving
+    /// body, and 0 for the fixed one.
     pub(crate) swell: f64,
     pub shrinking: Option<&'a Shrinking>,
-    /// From the body frame to the setting frame, without the offset.
+    /// Maps the body frame to the setting frame, without the translation.
     pub(crate) matrix: DMat3,
-    /// The offset in the setting frame and what rounding took from it.
+    /// Translation in the setting frame, and its rounding error.
     pub(crate) offset: [DVec3; 2],
-    /// From the body frame to the query frame, and the offset there.
+    /// Maps the body frame to the query frame, without the translation [`Self::view_offset`].
     pub(crate) view: DMat3,
     pub(crate) view_offset: DVec3,
-    /// Whether `matrix` permutes axes and changes signs.
+    /// Whether `matrix` only permutes axes and changes signs.
     pub permutes: bool,
-    /// How far `matrix^T matrix` is off the identity, in the Frobenius norm; 0 where that is rounding.
+    /// Bound on the Frobenius norm of `matrix^T matrix - I`; 0 if it is within rounding.
     pub defect: f64,
     /// For each axis of the query frame, whether it is an axis of the body.
     pub(crate) aligned: [bool; 3],
-    /// The direction in the body frame, at length 1.
+    /// Unit vector of the direction in the body frame.
     pub(crate) along: DVec3,
-    /// As bits, the side of a node's box where it starts along the direction, of the moving body, or ends, of the
-    /// fixed one; all of them where that is no side, or not exactly.
+    /// Bit of a side of a node's box: where the box begins along the direction for the moving body, and where it ends
+    /// for the fixed one. All bits are set if no side is exactly perpendicular to the direction, or the body is offset.
     pub(crate) inward: u8,
 }
 
-/// A setting of two solids, shrunk and seen along its direction.
+/// Two placed solids, their offsets, and the direction of the query.
 pub struct Scene<'a> {
     pub(crate) setting: Setting<'a, Solid>,
     pub moving: Side<'a>,
     pub fixed: Side<'a>,
-    /// From the setting frame to the query frame.
+    /// Maps the setting frame to the query frame.
     pub(crate) frame: DMat3,
-    /// The gap that the bodies are to keep; 0 where that is one that rounding leaves no room in.
+    /// Minimum gap of the bodies; 0 if it is too small to be distinguished from rounding errors.
     pub(crate) keep: f64,
-    /// Bound of the rounding error of a coordinate in the query frame.
+    /// Bound on the rounding error of a coordinate in the query frame.
     pub noise: f64,
 }
 
 impl<'a> Scene<'a> {
-    /// The moving and the fixed body shrunk by so much, which are to keep a gap.
+    /// Builds the scene of two bodies that are offset by the given amounts, with a minimum gap `keep`.
     #[inline]
     pub fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], keep: f64) -> Self {
         let frame = frame_along(setting.direction / setting.length);
@@ -88,32 +85,32 @@ impl<'a> Scene<'a> {
         scene
     }
 
-    /// Sets what depends on how large the bodies are, and how near they may come.
+    /// Sets what depends on the sizes of the bodies and the minimum gap.
     fn measure(&mut self, keep: f64) {
         let Self { setting, moving, fixed, .. } = self;
         let size = moving.reach() + fixed.reach() + setting.offset.length();
         let (noise, keep) = noise_of(size, keep);
-        // Along axes that a pose stretches, and rounded.
+        // A pose may stretch axes by its defect. The last term covers rounding.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
         moving.swell = keep * stretch;
         self.noise = noise;
         self.keep = keep;
     }
 
-    /// Whether a gap is to be kept.
+    /// Checks whether a minimum gap is required.
     #[inline]
     pub(crate) fn keeps(&self) -> bool {
-        // Without the feature what is reached by this alone is left out of programs.
+        // Without the feature the compiler removes code that only a minimum gap reaches.
         cfg!(feature = "keep") && self.keep > 0.0
     }
 
-    /// A corner in the setting frame.
+    /// Returns the position of a corner in the setting frame.
     pub(crate) fn place(&self, corner: &Corner) -> DVec3 {
         let side = self.side(corner.moving);
         side.matrix * corner.local + side.offset[0]
     }
 
-    /// The same with other amounts to shrink by.
+    /// Returns this scene with the bodies offset by other amounts.
     pub(crate) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &Side<'a>, amount| {
             let amount = if side.solid.can_shrink() { amount } else { 0.0 };
@@ -124,7 +121,7 @@ impl<'a> Scene<'a> {
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
     }
 
-    /// Whether both bodies have the axes of the query frame.
+    /// Checks whether both bodies have the axes of the query frame.
     pub(crate) fn is_aligned(&self) -> bool {
         self.moving.aligned == [true; 3] && self.fixed.aligned == [true; 3]
     }
@@ -134,7 +131,7 @@ impl<'a> Scene<'a> {
         if moving { &self.moving } else { &self.fixed }
     }
 
-    /// Size `S` of the configuration, with the gap that is to be kept.
+    /// Returns the size `S` of the configuration, including the minimum gap.
     pub(crate) fn size(&self) -> f64 {
         size(self.noise)
     }
@@ -150,7 +147,7 @@ impl<'a> Side<'a> {
         let view = frame * matrix;
         let rows = view.transpose();
         let permuting = permutes(matrix);
-        // What is of sheets alone stays as it is, and exact.
+        // A body of sheets alone is not offset and remains exact.
         let amount = if solid.can_shrink() { amount } else { 0.0 };
         let unit = |row: DVec3| permuting && is_axis(row);
         let aligned = [unit(rows.x_axis), unit(rows.y_axis), unit(rows.z_axis)];
@@ -172,23 +169,23 @@ impl<'a> Side<'a> {
         }
     }
 
-    /// By how much a place along an axis of the body frame may be off once both are in the setting frame, since
-    /// `R v . R n` is not `v . n`.
+    /// Bounds the change of a coordinate along an axis of the body frame when both are mapped to the setting frame,
+    /// because `R v . R n` differs from `v . n`.
     pub(crate) fn skew(&self) -> f64 {
         self.defect * self.reach()
     }
 
-    /// The largest distance of a point of the body from its origin.
+    /// Returns the maximum distance of a point of the body from the origin of its frame.
     fn reach(&self) -> f64 {
         self.solid.reach() + self.moved()
     }
 
-    /// How far shrinking moves a vertex, at most.
+    /// Returns the maximum displacement of a vertex by the offset.
     pub(crate) fn moved(&self) -> f64 {
         self.solid.max_offset_displacement(self.amount)
     }
 
-    /// The box around the body, shrunk, in its frame.
+    /// Returns the bounding box of the offset body in its frame.
     pub(crate) fn boxed(&self) -> Aabb {
         self.solid.offset_bounds(self.amount)
     }
@@ -208,7 +205,7 @@ impl<'a> Side<'a> {
         let at = turned + self.view_offset;
         let mut exact = self.aligned == [true; 3];
         if exact && !self.moving {
-            // What the addition lost, exactly; an offset that lost bits itself is never exact.
+            // The rounding error of the addition, exactly. A translation that is itself rounded is never exact.
             let lost = |k: usize| {
                 sum_error(turned[k], self.view_offset[k], turned[k] + self.view_offset[k]) != 0.0
             };
@@ -225,26 +222,26 @@ impl<'a> Side<'a> {
 /// A vertex of one of the bodies.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner {
-    /// In the body frame, after shrinking.
+    /// Position in the body frame, after the offset.
     pub(crate) local: DVec3,
-    /// In the query frame.
+    /// Position in the query frame.
     pub at: DVec3,
     /// Whether `at` is exact.
     pub exact: bool,
     pub(crate) moving: bool,
 }
 
-/// Something that has a place: a vertex, or a point within a facet.
+/// A point of a body: a vertex, or a point within a facet.
 pub trait ExactPoint {
-    /// In the query frame, rounded.
+    /// Returns the rounded position in the query frame.
     fn at(&self) -> DVec3;
-    /// Whether that is exact.
+    /// Checks whether [`Self::at`] is exact.
     fn is_exact(&self) -> bool;
-    /// In the setting frame, if that has an exact value in `f64`.
+    /// Returns the position in the setting frame; `None` if `f64` cannot represent it exactly.
     fn world(&self, scene: &Scene) -> Option<DVec3>;
-    /// In the setting frame.
+    /// Returns the exact position in the setting frame.
     fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3];
-    /// The same in twice the usual precision.
+    /// Returns the position in the setting frame in double-double precision.
     fn fine(&self, scene: &Scene) -> Fine;
 }
 
@@ -279,7 +276,7 @@ impl ExactPoint for Corner {
     }
 }
 
-/// A corner of which more than one sign is asked: where it is in twice the usual precision is found once.
+/// A corner that takes part in several signs: its double-double position is computed once.
 pub(crate) struct Remembered<'c> {
     corner: &'c Corner,
     fine: OnceCell<Fine>,
@@ -313,8 +310,8 @@ impl ExactPoint for Remembered<'_> {
     }
 }
 
-/// A weighted mean of vertices of one body in the setting frame; the weights are powers of two, from
-/// `1/64`, and add up to 1.
+/// Computes a weighted mean of vertices of one body exactly, in the setting frame. The weights are powers of two, at
+/// least `1/64`, and add up to 1.
 pub(crate) fn place_exactly<const N: usize>(
     side: &Side,
     terms: &[(f64, DVec3)],
@@ -332,19 +329,19 @@ pub(crate) fn place_exactly<const N: usize>(
     })
 }
 
-/// The noise of a configuration of this size whose bodies are to keep a gap, and that gap: 0 where rounding leaves no room in
-/// it.
+/// Returns the noise of a configuration of this size, and its minimum gap: 0 if `keep` is too small to be distinguished
+/// from rounding errors.
 pub(crate) fn noise_of(size: f64, keep: f64) -> (f64, f64) {
     let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
     (Noise::of(size + keep).point(), keep)
 }
 
-/// Size `S` of a configuration with this noise.
+/// Returns the size `S` of a configuration with this noise.
 pub(crate) fn size(noise: f64) -> f64 {
     noise / (16.0 * f64::EPSILON)
 }
 
-/// Rows `x, y, d` of a right-handed frame. Its axes are the world's where that is possible.
+/// Returns rows `x, y, d` of a right-handed frame whose axes are axes of the world where possible.
 fn frame_along(unit: DVec3) -> DMat3 {
     let zeros = unit.to_array().map(|c| c == 0.0);
     let x = match zeros {
@@ -356,7 +353,7 @@ fn frame_along(unit: DVec3) -> DMat3 {
     DMat3::from_cols(x, unit.cross(x), unit).transpose()
 }
 
-/// [`Side::inward`] of a body that is shrunk by so much.
+/// Returns [`Self::inward`](Side::inward) of a body that is offset by `amount`.
 fn inward(along: DVec3, aligned: [bool; 3], moving: bool, amount: f64) -> u8 {
     if !aligned[2] || amount != 0.0 {
         return u8::MAX;
@@ -371,13 +368,13 @@ fn is_axis(v: DVec3) -> bool {
     a.iter().filter(|&&c| c == 1.0).count() == 1 && a.iter().filter(|&&c| c == 0.0).count() == 2
 }
 
-/// How far a matrix is off a rotation, if by more than the noise of coordinates covers.
+/// Returns how far a matrix deviates from a rotation; 0 if the noise of coordinates covers the deviation.
 fn defect(m: DMat3) -> f64 {
     let defect = rotation_defect(m);
     if defect > ROTATION { 1.01 * defect } else { 0.0 }
 }
 
-/// Whether a matrix of a pose permutes axes and changes signs: it is a rotation, to within a little.
+/// Checks whether a pose's matrix, a rotation up to small errors, permutes axes and changes signs.
 pub(crate) fn permutes(m: DMat3) -> bool {
     m.to_cols_array().iter().all(|&entry| entry == 0.0 || entry.abs() == 1.0)
 }

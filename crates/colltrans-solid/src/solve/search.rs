@@ -1,10 +1,12 @@
-//! Best first through both trees, straight down until something is found.
+//! Least gap of two solids along a direction, best first through both trees.
 //!
-//! A pair of nodes stands for all pairs of their facets. The pair with the least bound is split next,
-//! the newest first among equals; bounds of gaps that block are clamped at 0, so that a contact at the
-//! start is found by going straight down. It ends when no bound is smaller than the best gap found.
-//! Every pair that is not split is a *cut*, with its reason: together they are the proof that nothing
-//! blocks earlier.
+//! - A pair of nodes represents all pairs of their facets. The pair with the least bound is split next, the newest
+//!   first among equals.
+//! - Bounds of gaps that block are clamped at 0. Therefore a contact at the start is found by descending straight down:
+//!   until a pair of facets is found, the search continues with the better child.
+//! - The search ends when no bound is smaller than the best gap found, lowered by [`SLACK`] noises.
+//! - Every pair of nodes that is not split is a *cut* with a [`Reason`]. Together the cuts form the cover, which proves
+//!   that nothing blocks earlier.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -20,18 +22,17 @@ use super::separating_axes::{Reach, SeparatingAxes};
 use crate::solve::steps::SolidSteps;
 use colltrans_kernel::descent::Entry;
 
-/// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
-/// nodes are rounded by a third of that.
+/// Noises by which an answer may exceed the least gap. A third of it covers the rounding of node bounds.
 pub(crate) const SLACK: f64 = 12.0;
 
-/// What is looked for.
+/// The gap that a search minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aim {
-    /// The least gap that blocks, at least 0.
+    /// Least gap that blocks, at least 0.
     Stop,
-    /// The same, without pairs of facets that cross now.
+    /// Least gap that blocks, at least 0, without pairs of facets that cross at the start.
     LaterStop,
-    /// The least gap of all pairs of facets that face each other.
+    /// Least gap of all pairs of facets that face each other.
     Least,
 }
 
@@ -48,7 +49,7 @@ impl Aim {
         }
     }
 
-    /// What a pair contributes, if it counts.
+    /// Returns the value that a gap contributes; `None` if it does not count.
     pub(crate) fn value(self, gap: &Gap) -> Option<f64> {
         let counts = match self {
             Self::Least => true,
@@ -59,7 +60,7 @@ impl Aim {
     }
 }
 
-/// The pair of facets that decides.
+/// The pair of facets that attains the least gap.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
     /// The gap, as a length.
@@ -68,18 +69,18 @@ pub(crate) struct Found {
     pub(crate) fixed: u32,
     pub(crate) at: Meeting,
     pub(crate) error: f64,
-    /// No other pair contributes less: their gaps less their errors, and the limit up to which bounds
-    /// were looked at, less what bounds are off by.
+    /// Lower bound on the contribution of every other pair: the least of their gaps minus their errors, and of the last
+    /// limit minus the rounding of node bounds.
     pub(crate) others: f64,
 }
 
 impl Found {
-    /// The same where no pair contributes less by more than a search may leave open.
+    /// Returns this pair with the lower bound on all other pairs that a completed search guarantees.
     pub(crate) fn among_all(self, scene: &Scene) -> Self {
         Self { others: self.gap - SLACK * scene.noise - 1.0625 * node_rounding(scene), ..self }
     }
 
-    /// The same with the gap taken exactly, if it is not sharp.
+    /// Returns this pair with its gap recomputed exactly if its error exceeds [`FINE`](leaf::FINE) noises.
     pub(crate) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
         if self.at == Meeting::Near || self.error <= leaf::FINE * scene.noise {
             return self;
@@ -92,27 +93,27 @@ impl Found {
     }
 }
 
-/// The queue of a search and what it has seen of both bodies, which can be kept from one query to the
-/// next: then a query allocates nothing.
+/// The queue of a search and the nodes that it has visited. A workspace that is reused for the next query saves all
+/// allocations.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
     queue: BinaryHeap<Entry>,
-    /// Of the moving body, and of the fixed one.
+    /// Visited nodes of the moving and the fixed body.
     seen: [Seen; 2],
 }
 
-/// What all of a search is about.
+/// The constant part of a search.
 struct Query<'s, 'a> {
     scene: &'s Scene<'a>,
-    /// `None` where boxes say all that it could.
+    /// `None` if both bodies have the axes of the query frame, because their boxes give the same bounds then.
     axes: Option<SeparatingAxes>,
 }
 
-/// The nodes of a body that a search has come to, and the facets of leaves: each is in many pairs.
+/// The nodes of a body that a search has visited, and the facets of its leaves. Each is part of many pairs.
 #[derive(Debug, Clone, Default)]
 struct Seen {
     views: Vec<View>,
-    /// Of all views, or of none.
+    /// Extents of all views; empty if the query has no separating axes.
     reaches: Vec<Reach>,
     facets: Vec<Facet>,
 }
@@ -123,8 +124,8 @@ struct View {
     projected: Projected,
     leaf: bool,
     size: f64,
-    /// Where its children are among the views, or those of its facets that matter among the facets,
-    /// and how many; once they have been asked for.
+    /// Position and number of its children among the views, or of its relevant facets among the facets; `None` until
+    /// they are computed.
     parts: Option<[u32; 2]>,
 }
 
@@ -152,7 +153,7 @@ impl Seen {
         Profile { projected: &self.views[at].projected, reach: self.reaches.get(at) }
     }
 
-    /// The first of the two children of a view.
+    /// Returns the position of the first of the two children of a view.
     fn children(&mut self, query: &Query, moving: bool, view: u32) -> u32 {
         let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         if let Some([first, _]) = parts {
@@ -167,7 +168,7 @@ impl Seen {
         first
     }
 
-    /// The facets of a leaf that look the right way.
+    /// Returns the facets of a leaf that face the other body.
     fn leaf(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
         let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         let [first, count] = parts.unwrap_or_else(|| {
@@ -183,16 +184,16 @@ impl Seen {
     }
 }
 
-/// One search under way.
+/// State of a search.
 pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
     pub(crate) scene: &'s Scene<'a>,
     pub(crate) aim: Aim,
-    /// What a gap has to stay below to be of interest.
+    /// Upper limit of gaps of interest.
     pub(crate) limit: f64,
     pub(crate) found: Option<Found>,
-    /// The least of the gaps of pairs that were looked at and are not `found`, each less its error.
+    /// Least gap minus its error of all examined pairs other than `found`.
     pub(crate) others: f64,
-    /// Told of every pair of nodes that is not split, and why.
+    /// Callback that receives every pair of nodes that is not split, and the reason.
     pub(crate) cut: F,
     pub(crate) steps: SolidSteps,
 }
@@ -210,7 +211,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         }
     }
 
-    /// What two triangles make.
+    /// Examines two triangles only, instead of a whole tree.
     pub(crate) fn of_pair(mut self, [s, t]: [u32; 2]) -> Option<Found> {
         let scene = self.scene;
         let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
@@ -229,7 +230,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         let scene = self.scene;
         let [p, q] = Projected::roots(scene);
         if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
-            // Most pairs of parts: no need for the directions of the query.
+            // Decides most pairs of parts before the separating axes are computed.
             self.steps.nodes += 1;
             (self.cut)([0, 0], reason);
             return None;
@@ -248,7 +249,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
                 (self.cut)(nodes(seen, entry.views), Reason::NotBefore);
-                // As are all others: it is the least, or else the limit is not positive.
+                // All remaining entries have no smaller bound: this one is the least, or the limit is not positive.
                 for rest in queue.drain() {
                     (self.cut)(nodes(seen, rest.views), Reason::NotBefore);
                 }
@@ -265,7 +266,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
             for views in split(&query, seen, entry.views, split_moving) {
                 number += 1;
                 let Some(child) = self.judge(seen, views, number) else { continue };
-                // The better child goes on without a detour through the queue.
+                // The better child continues without a detour through the queue.
                 match next {
                     Some(best) if best.bound < child.bound => queue.push(child),
                     Some(best) => {
@@ -275,7 +276,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
                     None => next = Some(child),
                 }
             }
-            // Straight down at first: what is found bounds what has to be kept.
+            // Until a pair is found the search descends straight down: its gap limits the queue.
             if let (true, Some(child), Some(top)) = (self.found.is_some(), next, queue.peek())
                 && top.bound < child.bound
             {
@@ -283,13 +284,13 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
                 next = None;
             }
         }
-        // A little more, for the roundings of a bound on its way into a proof.
+        // The factor covers the rounding of a bound when it is stored in a proof.
         let bounds = self.limit - 1.0625 * node_rounding(scene);
         let others = self.others.min(bounds);
         self.found.map(|found| Found { others, ..found.sharpened(scene, self.aim) })
     }
 
-    /// A pair with its bound, unless it is cut.
+    /// Bounds a pair of views; returns `None` and reports the reason if the pair is cut.
     fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
         self.steps.nodes += 1;
         match self.bound(seen, views) {
@@ -307,7 +308,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         least_gap(self.scene, a, b, self.limit, parting)
     }
 
-    /// All pairs of facets of two leaves.
+    /// Examines all pairs of facets of two leaves.
     fn leaves(&mut self, seen: &mut [Seen; 2], views: [u32; 2]) {
         self.steps.leaves += 1;
         let scene = self.scene;
@@ -336,7 +337,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         }
     }
 
-    /// A gap, if it is the least so far.
+    /// Stores a gap if it is the least one found until now.
     fn take(&mut self, [moving, fixed]: [u32; 2], gap: &Gap) {
         let Some(value) = self.aim.value(gap) else { return };
         let (at, error, others) = (gap.at, gap.error, f64::INFINITY);
@@ -344,7 +345,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         if value >= self.limit {
             self.set_aside(pair);
         } else {
-            // What could be better by less is not worth a look: rounding is as much.
+            // Improvements that rounding errors could explain are not searched for.
             self.limit = value - SLACK * self.scene.noise;
             if let Some(before) = self.found.replace(pair) {
                 self.set_aside(before);
@@ -352,9 +353,9 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         }
     }
 
-    /// A pair that is not the best: how much less than the best it might be is kept.
+    /// Updates the lower bound `others` with a pair that is not the best.
     fn set_aside(&mut self, pair: Found) {
-        // Below 0 nothing is of interest, unless all is.
+        // If the limit is not positive, such a pair matters only if all gaps are wanted.
         let matters =
             pair.gap - pair.error < self.limit && (self.limit > 0.0 || self.aim == Aim::Least);
         let pair = if matters { pair.sharpened(self.scene, self.aim) } else { pair };
@@ -362,13 +363,13 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     }
 }
 
-/// What bounds of nodes may be off by.
+/// Returns the maximum rounding error of a bound of two nodes.
 pub(crate) fn node_rounding(scene: &Scene) -> f64 {
     SLACK / 3.0 * scene.noise
 }
 
-/// The gap of two facets that block each other, the moving body's first, exact but for its last roundings,
-/// with its error: of their shadows, or of what is on edge.
+/// Computes the gap of two facets that block each other, the moving body's first, and its error. The gap is exact
+/// except for its last roundings. `None` if the pair does not block; edge-on facets of open shells are included.
 pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
     let Some(facets) = Opposed::new(scene, pair) else {
         return rim::least_gap_of(scene, &|gap| aim.value(gap).is_some(), pair);
@@ -376,19 +377,20 @@ pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64,
     exact_gap_of(scene, aim, &facets)
 }
 
-/// The same of two facets that look the right way.
+/// Computes the gap of two facets that face each other, exact except for its last roundings, and its error; `None` if
+/// the pair does not count.
 pub(crate) fn exact_gap_of(scene: &Scene, aim: Aim, facets: &Opposed) -> Option<(f64, f64)> {
     let gap = facets.exact_gap(scene, aim.wanted())?;
     aim.value(&gap)?;
     Some((gap.least, gap.error))
 }
 
-/// The nodes of a pair.
+/// Returns the nodes of a pair of views.
 fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
     [0, 1].map(|k| seen[k].views[views[k] as usize].projected.node)
 }
 
-/// The two pairs that a pair is split into.
+/// Splits one node of a pair and returns the two new pairs.
 fn split(query: &Query, seen: &mut [Seen; 2], [a, b]: [u32; 2], moving: bool) -> [[u32; 2]; 2] {
     if moving {
         let first = seen[0].children(query, true, a);

@@ -1,15 +1,14 @@
-//! A plane between two solids, parallel to the direction.
+//! Separating plane of two solids, parallel to the direction.
 //!
-//! The shadows of both bodies' convex hulls are apart if and only if the origin lies outside
-//! `D = hull(shadow Q) - hull(shadow P)`. The point of `D` nearest to the origin is narrowed down as
-//! Gilbert, Johnson and Keerthi do (IEEE J. Robotics and Automation 4(2), 1988), in the plane: a
-//! simplex of points of `D`, its point `v` nearest to the origin, the lowest point of `D` along `v`.
-//! It ends as soon as that point is above the origin by more than rounding: then `v` is a normal, and
-//! nothing of the search is needed to check it. Lowest points come from the bodies' trees.
-//!
-//! Most bodies that pass each other are told apart by their boxes, which are asked first: by the direction across
-//! the shadow of one of six axes that parts them most. Boxes say no more than the bodies, so such a margin is
-//! proven by the vertices as well.
+//! - The shadows of the convex hulls are disjoint if and only if the origin lies outside `D = hull(shadow Q) -
+//!   hull(shadow P)`.
+//! - GJK in the plane (Gilbert, Johnson and Keerthi, IEEE J. Robotics and Automation 4(2), 1988) approaches the point
+//!   of `D` nearest to the origin. It keeps a simplex of points of `D`, the point `v` of it nearest to the origin, and
+//!   the lowest point of `D` along `v`.
+//! - It ends when that point is above the origin by more than rounding errors. Then `v` is a separating normal, which
+//!   can be verified without the search. Lowest points come from the bodies' trees.
+//! - Boxes separate most bodies that pass each other. They are tried first, with the normals orthogonal to the
+//!   direction and to one of six axes. A box contains its body, so the vertices prove such a margin as well.
 
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
@@ -21,36 +20,35 @@ use colltrans_convex::body::Aabb;
 use colltrans_convex::setting::Setting;
 use colltrans_kernel::noise::UNIT_VECTOR;
 
-/// Each round ends or comes closer; rounding alone could make it last.
+/// Maximum number of rounds. Each round ends the search or comes closer; only rounding errors could prolong it.
 const MOST_ROUNDS: usize = 32;
-/// Rounding of a gap, in multiples of the noise of coordinates: half of it for each of two points that
-/// are taken for the farthest, and what computing them takes.
+/// Rounding error of a gap, in noises. It covers ties ([`TIES`]) and the computation of the two farthest points.
 pub(crate) const ROUNDING: f64 = 4.0;
-/// What of that is for ties among farthest points.
+/// Part of [`ROUNDING`], in noises, that covers ties among farthest points.
 const TIES: f64 = 0.5;
-/// Rounding of a gap between heights along any normal, likewise: with the bodies' reaches together `S`, the normal in a
-/// body's frame and its product with a vertex take `10 u S`, as much the bound of a box that is not looked into,
-/// what is taken for a tie `16 u S`, and the sums a few more; a noise is `32 u S`.
+/// Rounding error, in noises, of the difference of two heights along any normal. Derivation:
+/// `docs/theory/solid-rounding.md`.
 pub(crate) const HEIGHTS: f64 = 1.5;
-/// The same of boxes, besides: how far their middles and extents reach along a normal is off by less than a noise, and
-/// heights of vertices, by which the margin is checked, by less than another.
+/// Additional rounding error of boxes, in noises: less than one for their centres and extents along a normal, and less
+/// than one for the heights of vertices that verify the margin.
 const BOXES: f64 = 2.0;
 
-/// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
-/// always where large faces are apart by no more than they were shrunk.
+/// Finds a plane, parallel to the direction, that separates the offset bodies. `None` if rounding errors leave every
+/// plane in doubt, and sometimes for large faces whose distance is at most the offset.
 pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
     let boxes = [&scene.moving, &scene.fixed].map(Side::boxed);
     between_boxes(scene, &boxes).or_else(|| between_hulls(scene))
 }
 
-/// Whether the boxes of two bodies are so far apart that the separating axes of their query, by which a proof is
-/// checked, say so as well: they take a node for 2 noises more than it is along each coordinate.
+/// Checks whether the boxes of two bodies are separated by so much that the separating axes of the query confirm it.
+/// The verification of a proof uses those axes, which enlarge a node by 2 noises along each coordinate.
 pub(crate) fn shadows_apart(scene: &Scene, p: &Projected, q: &Projected) -> bool {
     let clear = |found: Separation| found.margin > ROUNDING * scene.noise;
     !scene.keeps() && between_boxes(scene, &[p.local, q.local]).is_some_and(clear)
 }
 
-/// The plane between the boxes of both bodies that leaves the most room, along an edge of one of them.
+/// Finds the plane between the boxes of both bodies with the largest margin, parallel to the direction and to an edge
+/// of one of them.
 fn between_boxes(scene: &Scene, boxes: &[Aabb; 2]) -> Option<Separation> {
     let boxes = Boxes::new(&scene.setting, boxes);
     let normal = boxes.across(0.0)?;
@@ -63,7 +61,7 @@ pub(crate) struct Boxes<'s, 'a> {
     setting: &'s Setting<'a, Solid>,
     matrices: [DMat3; 2],
     halves: [DVec3; 2],
-    /// From the middle of the moving body's box to that of the fixed one's, in the setting frame.
+    /// Vector from the centre of the moving body's box to that of the fixed one's, in the setting frame.
     apart: DVec3,
 }
 
@@ -75,8 +73,11 @@ impl<'s, 'a> Boxes<'s, 'a> {
         Self { setting, matrices, halves, apart: q + setting.offset - p }
     }
 
-    /// Across the direction and an edge of one of the boxes, the normal along which they are farthest apart, from the moving
-    /// body on; `None` if they overlap along all of them by more than `slack`. A guess, but for what it is across.
+    /// Returns the normal, orthogonal to the direction and to an edge of one of the boxes, along which the boxes are
+    /// farthest apart, from the moving body to the fixed one. Only its orthogonality to the direction is accurate.
+    ///
+    /// `None` if the boxes overlap by more than `slack` along all these normals, or if the line along the direction
+    /// through the centre of the moving box meets the fixed one.
     pub(crate) fn across(&self, slack: f64) -> Option<DVec3> {
         let Self { matrices, halves, apart, .. } = self;
         let unit = self.setting.unit;
@@ -84,13 +85,13 @@ impl<'s, 'a> Boxes<'s, 'a> {
             return None;
         }
         let between = matrices[0].transpose() * matrices[1];
-        // Of distances their squares, with their signs: no roots are needed to compare them.
+        // Signed squares of distances are compared, which avoids square roots.
         let (mut most, mut widest) = (-slack * slack, None);
         for (k, other) in [(0, between.transpose()), (1, between)] {
             let back = matrices[k].transpose();
             let (along, apart) = (back * unit, back * *apart);
             for axis in 0..3 {
-                // Of the direction's cross product with the axis the two parts that are not 0.
+                // The two components, which are not 0, of the cross product of the direction and the axis.
                 let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
                 let (x, y) = (along[j], -along[i]);
                 let away = apart[i] * x + apart[j] * y;
@@ -108,7 +109,8 @@ impl<'s, 'a> Boxes<'s, 'a> {
         widest?.reject_from_normalized(unit).try_normalize()
     }
 
-    /// Whether the line through the middle of the moving one meets the fixed one: then no plane along it parts them.
+    /// Checks whether the line along the direction through the centre of the moving box meets the fixed one. Then no
+    /// plane parallel to the direction separates them.
     fn is_middle_ahead(&self) -> bool {
         let back = self.matrices[1].transpose();
         let (along, apart, half) = (back * self.setting.unit, back * self.apart, self.halves[1]);
@@ -117,18 +119,19 @@ impl<'s, 'a> Boxes<'s, 'a> {
         away.cmple(reach).all()
     }
 
-    /// Whether they touch, to within rounding, of bodies that have the axes of the world, up to signs.
+    /// Checks whether the boxes of two bodies with the axes of the world, up to signs, touch within the rounding error.
     pub(crate) fn touch(&self, rounding: f64) -> bool {
         let [p, q] = [0, 1].map(|k| (self.matrices[k] * self.halves[k]).abs());
         (self.apart.abs() - p - q).max_element().abs() <= rounding
     }
 
-    /// The margin that is proven along a normal of the world, from the moving body on.
+    /// Returns the margin that is proven along a normal of the world, from the moving body to the fixed one.
     pub(crate) fn margin(&self, normal: DVec3, noise: f64) -> f64 {
         self.room(normal) - (ROUNDING + BOXES) * noise - closing(self.setting, normal, noise)
     }
 
-    /// Whether the moving one is below a side of one of them for certain, and does not come nearer to it.
+    /// Checks whether a plane parallel to a side of one box certainly separates the boxes, and the moving box does not
+    /// approach it.
     pub(crate) fn are_left_behind(&self, noise: f64) -> bool {
         self.matrices.iter().any(|matrix| {
             [matrix.x_axis, matrix.y_axis, matrix.z_axis].into_iter().any(|axis| {
@@ -138,7 +141,7 @@ impl<'s, 'a> Boxes<'s, 'a> {
         })
     }
 
-    /// How far they are apart along a normal of the world.
+    /// Returns the distance of the boxes along a normal of the world.
     fn room(&self, normal: DVec3) -> f64 {
         let half = |k: usize| (self.matrices[k].transpose() * normal).abs().dot(self.halves[k]);
         normal.dot(self.apart) - half(0) - half(1)
@@ -171,10 +174,11 @@ fn between_hulls(scene: &Scene) -> Option<Separation> {
     None
 }
 
-/// Checks a separating plane; the margin that is proven.
+/// Verifies a separating plane and returns the margin that is proven.
 ///
 /// # Errors
-/// It is none.
+/// Returns an error if the normal is not a unit vector orthogonal to the direction, or the claimed margin is not
+/// proven.
 pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, CertificateError> {
     let normal = separation.normal;
     let unit = (normal.length() - 1.0).abs() <= UNIT_VECTOR;
@@ -187,7 +191,7 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
         heights.fold(f64::NEG_INFINITY, f64::max)
     };
     let reaches = [&scene.moving, &scene.fixed].map(highest);
-    // Nothing is taken for a tie here.
+    // Nothing counts as a tie here.
     let proven = margin(scene, normal, reaches) + TIES * scene.noise;
     let claimed = separation.margin;
     if claimed > scene.keep && claimed <= proven {
@@ -197,50 +201,53 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     }
 }
 
-/// Whether all of the bodies is on either side of a plane, the moving one below.
+/// Checks whether a plane with this normal certainly separates the bodies, with the moving body below.
 pub(crate) fn parts(scene: &Scene, normal: DVec3) -> bool {
     let [p, q] = facing_sides(scene, normal).map(|side| side.reach());
     normal.dot(scene.fixed.offset[0]) - q - p > HEIGHTS * scene.noise
 }
 
-/// No vertex of a body is farther along a normal of the world, from its frame's origin; rounded, see [`HEIGHTS`].
+/// Returns an upper bound of the coordinates of a body's vertices along a normal of the world, from the origin of its
+/// frame, up to the rounding error of [`HEIGHTS`].
 pub(crate) fn farthest(side: &Side, normal: DVec3) -> f64 {
     Farthest::new(side, normal).reach()
 }
 
-/// Points of `D`, the first so many.
+/// Points of `D`: their number, and the points.
 type Simplex = (usize, [DVec2; 3]);
 
-/// What of the moving body is farthest along a normal of the world, and of the fixed one against it.
+/// Finds the farthest vertex of the moving body along a normal of the world, and of the fixed body against it.
 fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a>; 2] {
     [Farthest::new(&scene.moving, normal), Farthest::new(&scene.fixed, -normal)]
 }
 
-/// The margin along a normal, of the moving body that reaches so far along it, and of the fixed one against it.
+/// Returns the margin along a normal, given the extents of the moving body along it, and of the fixed body against it.
 fn margin(scene: &Scene, normal: DVec3, [moving, fixed]: [f64; 2]) -> f64 {
     let fixed = normal.dot(scene.fixed.offset[0]) - fixed;
     fixed - moving - ROUNDING * scene.noise - closing(&scene.setting, normal, scene.noise)
 }
 
-/// How far a normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
+/// Bounds how much the gap closes over the size of the configuration because the normal is not exactly orthogonal to
+/// the direction.
 pub(crate) fn closing<B>(setting: &Setting<B>, normal: DVec3, noise: f64) -> f64 {
     (normal.dot(setting.direction) / setting.length).abs() * size(noise)
 }
 
-/// Leaves that are looked into for one farthest vertex. More are needed where a large flat face is
-/// tied with itself and shrinking has made its vertices differ.
+/// Maximum number of leaves that are visited for one farthest vertex. More are needed if the vertices of a large flat
+/// face are tied and the offset has made their heights differ.
 const MOST_LEAVES: u32 = 64;
 
-/// The vertex of a body farthest along a normal of the world, from the tree.
+/// The vertex of a body that is farthest along a normal of the world, from the tree.
 struct Farthest<'s, 'a> {
     side: &'s Side<'a>,
-    /// The normal in the body's frame.
+    /// The normal in the body frame.
     local: DVec3,
-    /// Of what was looked at, the farthest; its height along the normal from the body's origin.
+    /// The farthest visited vertex, and its height along the normal from the origin of the body frame.
     vertex: u32,
     height: f64,
-    /// Bound on the heights of what was not looked at.
+    /// Upper bound on the heights of vertices that were not visited.
     beyond: f64,
+    /// Number of visited leaves.
     leaves: u32,
 }
 
@@ -258,12 +265,12 @@ impl<'s, 'a> Farthest<'s, 'a> {
         search
     }
 
-    /// No vertex is farther along the normal, up to rounding.
+    /// Returns an upper bound of the heights of all vertices along the normal, up to rounding.
     fn reach(&self) -> f64 {
         self.height.max(self.beyond)
     }
 
-    /// The shadow of the vertex.
+    /// Returns the shadow of the vertex.
     fn at(&self) -> DVec2 {
         self.side.corner(self.vertex).at.truncate()
     }
@@ -293,7 +300,7 @@ impl<'s, 'a> Farthest<'s, 'a> {
         if parts[1].0 > parts[0].0 {
             parts.swap(0, 1);
         }
-        // Of a flat face that the normal looks along all vertices are farthest: one of them will do.
+        // All vertices of a flat face orthogonal to the normal are farthest, and one of them is sufficient.
         let tie = 8.0 * f64::EPSILON * self.side.solid.reach();
         for (bound, k) in parts {
             if bound <= self.height + tie {
@@ -308,8 +315,8 @@ impl<'s, 'a> Farthest<'s, 'a> {
     }
 }
 
-/// The point of a simplex nearest to the origin and the part of the simplex that it lies on; `None`
-/// if the origin is in it.
+/// Returns the part of a simplex that contains its point nearest to the origin, and this point; `None` if the simplex
+/// contains the origin.
 fn nearest((count, points): Simplex) -> Option<(Simplex, DVec2)> {
     let [a, b, c] = points;
     match count {

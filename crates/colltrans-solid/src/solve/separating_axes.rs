@@ -1,23 +1,15 @@
-//! The directions along which a query compares nodes.
+//! Directions along which a query compares nodes: separating axes of boxes that move.
 //!
-//! A plane with a normal `n`, `n.d = 1`, bounds the gaps between two sets: `h_b - h_a` is at least the
-//! least `n.x` over the one less the largest over the other. For two boxes the best of all planes is
-//! one of 15: its normal is an axis of a box, or orthogonal to an axis of each. Boxes of one body have
-//! the same axes, so these normals are those of the whole query, and how far a node reaches along
-//! each is computed once: a pair of nodes is compared by fifteen sums. The 16th is the direction.
-//! In the same way shadows of boxes are apart if they are so across the shadow of one of the six axes,
-//! from one side or the other: `n.d = 0` (Gottschalk, Lin and Manocha, "A hierarchical structure for
-//! rapid interference detection", SIGGRAPH 1996, for boxes that do not move).
-//!
-//! Nodes are less than boxes by their cuts, which makes both bounds better.
-//!
-//! A node of the moving body reaches so far along `n`, one of the fixed body along `-n`; less than
-//! nothing for both together is by how much they are apart.
-//!
-//! Rounding. A point's coordinates in the query frame are off by a noise each, and computing how far a
-//! node reaches along `n` by less than another `|n|_1` noises: `n` in the body frame is off by
-//! `4 u |n|_1`, the box's middle and half extents, products with them and sums with the offset by
-//! `15 u |n|_1` times their sizes, the cuts by `8 u |n|_1` times the body's.
+//! - A plane with a normal `n`, `n.d = 1`, bounds the gap of two sets: `h_b - h_a` is at least the least `n.x` of one
+//!   minus the largest `n.x` of the other.
+//! - The best plane between two boxes is one of 15: its normal is an axis of a box, or orthogonal to an axis of each.
+//!   All boxes of one body have the same axes. Therefore the extent of a node along each normal is computed once, and a
+//!   pair of nodes needs fifteen sums. The 16th normal is the direction.
+//! - Shadows of boxes are disjoint if they are disjoint across the shadow of one of the six axes, `n.d = 0`
+//!   (Gottschalk, Lin and Manocha, "A hierarchical structure for rapid interference detection", SIGGRAPH 1996, for
+//!   boxes that do not move).
+//! - Cuts make a node smaller than its box. Its extent is measured along `n` for the moving body and along `-n` for the
+//!   fixed one. A negative sum of both is the separation. Rounding: `docs/theory/solid-rounding.md`.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
@@ -26,35 +18,40 @@ use super::scene::{Scene, Side};
 use crate::body::cuts::{Depths, Parts, depths};
 use colltrans_convex::body::Aabb;
 
-/// Normals orthogonal to an axis of each box, the direction, and the axes of the moving and the fixed
-/// one.
+/// Number of normals that are orthogonal to an axis of each box.
 const EDGES: usize = 9;
+/// Position of the first axis of the moving and the fixed body among the normals; the direction precedes them.
 const AXES: [usize; 2] = [EDGES + 1, EDGES + 4];
-/// Normals of planes that bound gaps.
+/// Number of normals of planes that bound gaps.
 const NORMALS: usize = 16;
-/// Lines across the shadows of the axes, in the same order; each is a direction on both sides.
+/// Position of the lines across the shadows of the axes, for the moving and the fixed body. Each line is a direction on
+/// both sides.
 const LINES: [usize; 2] = [NORMALS, NORMALS + 3];
+/// Number of directions without the reversed lines.
 const SHARED: usize = NORMALS + 6;
+/// Number of directions with the reversed lines.
 const ALL: usize = NORMALS + 12;
-/// Planes steeper than this say little.
+/// Cosine to the direction below which planes are too steep to be useful.
 const STEEP: f64 = 1.0 / 1024.0;
-/// Sines smaller than this are those of parallel axes.
+/// Sine below which two axes count as parallel.
 const PARALLEL: f64 = 1e-6;
 
-/// The directions of a query, as the moving body and the fixed one see them.
+/// The directions of a query, in the frames of the moving and the fixed body.
 pub(crate) struct SeparatingAxes([View; 2]);
 
-/// Directions in a body's frame, by coordinates.
+/// Directions in a body's frame, stored by coordinate.
 struct View {
-    /// Their coordinates, which meet the middles of boxes, and by size half their extents.
+    /// Coordinates of the directions. They multiply the centres of boxes, and their absolute values half the extents.
     local: [[f64; SHARED]; 3],
-    /// The body's offset along each, and what rounding may add.
+    /// Translation of the body along each direction.
     offset: [f64; SHARED],
+    /// Bound on rounding errors along each direction, plus the enlargement of the body.
     slack: [f64; SHARED],
-    /// Which cuts are along each, and how much of them.
+    /// The cuts along each direction and their weights.
     parts: [Parts; ALL],
-    /// The first of the other body's axes, and of the lines of its own and of the other one.
+    /// Position of the first axis of the other body.
     others: usize,
+    /// Positions of the lines across the shadows of its own axes, and of the other body's.
     lines: [usize; 2],
 }
 
@@ -74,7 +71,7 @@ impl View {
         }
     }
 
-    /// How far a box reaches, by its middle and half its extents.
+    /// Computes the extents of a box from its centre and half its size.
     #[inline]
     fn box_reach(&self, middle: DVec3, half: DVec3, reach: &mut [f64; ALL]) {
         let (mut at, mut width) = (self.offset, self.slack);
@@ -93,8 +90,8 @@ impl View {
         }
     }
 
-    /// Takes off what the cuts leave free. A body's own axes are along no cut; what is orthogonal to
-    /// one of them is along edges alone.
+    /// Subtracts the space that the cuts leave free. A body's own axes have no cut along them, and directions
+    /// orthogonal to one of them only cuts of edges.
     #[inline]
     fn cut(&self, depths: &Depths, reach: &mut [f64; ALL]) {
         let [own, other] = self.lines;
@@ -131,7 +128,7 @@ impl SeparatingAxes {
         Self([&scene.moving, &scene.fixed].map(|side| View::new(side, &all, scene.noise)))
     }
 
-    /// How far a node reaches along the directions.
+    /// Computes the extents of a node along all directions.
     #[inline]
     pub(crate) fn reach(&self, side: &Side, projected: &Projected) -> Reach {
         let Aabb { low, high } = projected.local;
@@ -144,25 +141,26 @@ impl SeparatingAxes {
     }
 }
 
-/// How far a node reaches along the directions of a query.
+/// Extents of a node along the directions of a query.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reach([f64; ALL]);
 
 impl Reach {
-    /// No gap between a node of the moving body and one of the fixed body is smaller.
+    /// Returns a lower bound of all gaps between a node of the moving body and a node of the fixed one.
     #[inline]
     pub(crate) fn least_gap(&self, fixed: &Self) -> f64 {
         -least_sum(&self.0[..NORMALS], &fixed.0[..NORMALS])
     }
 
-    /// Whether the shadows are apart.
+    /// Checks whether the shadows are disjoint.
     #[inline]
     pub(crate) fn is_apart(&self, fixed: &Self) -> bool {
         least_sum(&self.0[NORMALS..], &fixed.0[NORMALS..]) < 0.0
     }
 }
 
-/// Four at a time, as processors do; sums that are no numbers are none of them.
+/// Returns the least sum of two entries, four at a time so that the compiler vectorises it; sums that are NaN are
+/// skipped.
 #[inline]
 fn least_sum(a: &[f64], b: &[f64]) -> f64 {
     let mut least = [f64::INFINITY; 4];

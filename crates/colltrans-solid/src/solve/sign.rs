@@ -1,12 +1,12 @@
-//! Signs of determinants of points: exact, by a filter first.
+//! Exact signs of determinants of points, by a filter first.
 //!
-//! With `x, y, z` differences of two points, each of whose coordinates is off by at most
-//! `e = 2 noise`, and sizes in the sum norm (plane) or the maximum norm (space), the rounded
-//! determinant is off by at most
-//! `2 e (|x| + |y| + e) + 8 u |x| |y|` in the plane and
-//! `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z|) + e^2) + 48 u |x||y||z|` in space.
-//! Where that cannot tell, coordinates that are exact in `f64` go to the adaptive predicates of the
-//! `robust` crate, others to numbers of twice the precision, and what these leave in doubt to whole numbers.
+//! Let `x, y, z` be differences of two points whose coordinates have errors of at most `e = 2 noise` each, and `|x|`
+//! the sum norm in the plane and the maximum norm in space. Then the rounded determinant has an error of at most
+//! - `2 e (|x| + |y| + e) + 8 u |x| |y|` in the plane,
+//! - `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z|) + e^2) + 48 u |x||y||z|` in space.
+//!
+//! If this does not decide the sign, coordinates that `f64` represents exactly use the adaptive predicates of the
+//! `robust` crate. All others use double-double numbers, and then large integers.
 
 use std::cmp::Ordering;
 
@@ -19,12 +19,12 @@ use colltrans_kernel::predicates::{orient2d, orient3d, sign};
 
 const U: f64 = f64::EPSILON / 2.0;
 
-/// The sign of a number that has room for all there are.
+/// Returns the sign of a number whose size suffices for all inputs.
 fn decided(number: &Integer<LARGE>) -> Ordering {
     number.sign().unwrap_or(Ordering::Equal)
 }
 
-/// `det[b - a, c - a, d]` in shadow coordinates, and a bound of its error.
+/// Computes `det[b - a, c - a, d]` in shadow coordinates, and a bound on its error.
 #[inline]
 pub(crate) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
     let e = 2.0 * scene.noise;
@@ -34,7 +34,7 @@ pub(crate) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f
 }
 
 impl Scene<'_> {
-    /// Sign of `det[b - a, c - a, d]`: which way the shadows turn.
+    /// Returns the sign of `det[b - a, c - a, d]`: the orientation of the shadows.
     pub(crate) fn turn(
         &self,
         a: &impl ExactPoint,
@@ -53,7 +53,7 @@ impl Scene<'_> {
             .unwrap_or_else(|| decided(&self.turn_wide::<LARGE>(a, b, c)))
     }
 
-    /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
+    /// Returns the sign of `det[b - a, c - a, e - a]`: `Greater` if `e` is on the outer side of the facet `a b c`.
     pub fn outside(
         &self,
         a: &impl ExactPoint,
@@ -84,7 +84,7 @@ impl Scene<'_> {
             .unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
     }
 
-    /// Points as seen from another, itself.
+    /// Returns points relative to another point, exactly.
     pub(crate) fn spans_wide<const N: usize>(
         &self,
         from: &impl ExactPoint,
@@ -94,7 +94,7 @@ impl Scene<'_> {
         points.map(|q| difference(&q.wide(self), &p))
     }
 
-    /// Sign of `det[b - a, c - a, e - a]` if twice the usual precision tells it.
+    /// Returns the sign of `det[b - a, c - a, e - a]`; `None` if double-double precision does not decide it.
     fn outside_fine(
         &self,
         a: &impl ExactPoint,
@@ -106,7 +106,7 @@ impl Scene<'_> {
         fine::determinant_sign(ends.each_ref().map(|q| p.to(q)))
     }
 
-    /// Sign of `det[b - a, c - a, d]`, likewise.
+    /// Returns the sign of `det[b - a, c - a, d]`; `None` if double-double precision does not decide it.
     fn turn_fine(
         &self,
         a: &impl ExactPoint,
@@ -118,7 +118,7 @@ impl Scene<'_> {
         fine::determinant_sign([p.to(&q), p.to(&r), Fine::ORIGIN.to(&d)])
     }
 
-    /// Sign of `det[b - a, c - a, e]`, likewise.
+    /// Returns the sign of `det[b - a, c - a, e]`; `None` if double-double precision does not decide it.
     fn turn_about_fine(
         &self,
         axis: usize,
@@ -130,7 +130,7 @@ impl Scene<'_> {
         fine::minor_sign([p.to(&q), p.to(&r)], [(axis + 1) % 3, (axis + 2) % 3])
     }
 
-    /// `det[b - a, c - a, e - a]` itself.
+    /// Computes `det[b - a, c - a, e - a]` exactly.
     fn outside_wide<const N: usize>(
         &self,
         a: &impl ExactPoint,
@@ -143,7 +143,7 @@ impl Scene<'_> {
         determinant(&x, &y, &z)
     }
 
-    /// `det[b - a, c - a, d]` itself.
+    /// Computes `det[b - a, c - a, d]` exactly.
     fn turn_wide<const N: usize>(
         &self,
         a: &impl ExactPoint,
@@ -155,7 +155,7 @@ impl Scene<'_> {
         determinant(&x, &y, &d)
     }
 
-    /// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis of the world.
+    /// Returns the sign of `det[b - a, c - a, e]` for the unit vector `e` of an axis of the world.
     #[inline]
     pub fn turn_about(
         &self,
@@ -177,8 +177,9 @@ impl Scene<'_> {
             .unwrap_or_else(|| decided(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
     }
 
-    /// From the query frame, whose axes are orthogonal to within a few `u`: turned back, a coordinate
-    /// is off by two noises.
+    /// Computes the determinant of [`Self::turn_about`] from the query frame, and a bound on its error. The axes of
+    /// that frame are orthogonal within a few `u`. Therefore a coordinate that is rotated back has an error of two
+    /// noises.
     fn rough_turn_about(&self, axis: usize, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let back = self.frame.transpose();
@@ -200,8 +201,8 @@ impl Scene<'_> {
         x[i].multiply(&y[j]).subtract(&x[j].multiply(&y[i]))
     }
 
-    /// Sign of `(b - a).(e x d)` with `e` the unit vector of an axis of the world: how
-    /// `det[b - a, c - a, d]` changes when `c` moves along that axis.
+    /// Returns the sign of `(b - a).(e x d)` for the unit vector `e` of an axis of the world. It shows how `det[b - a,
+    /// c - a, d]` changes when `c` moves along that axis.
     pub(crate) fn drift(&self, axis: usize, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let x = difference::<LARGE>(&b.wide(self), &a.wide(self));
@@ -210,7 +211,7 @@ impl Scene<'_> {
         decided(&x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])))
     }
 
-    /// How `a` and `b` are ordered along an axis of the world.
+    /// Returns the order of `a` and `b` along an axis of the world.
     pub(crate) fn order(&self, axis: usize, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
         if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
             return sign(a[axis] - b[axis]);

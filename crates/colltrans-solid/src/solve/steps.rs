@@ -1,14 +1,14 @@
-//! How much work an answer about solids was.
+//! Counters for the work of a query between solids.
 
-/// Work done for one answer between solids: of the searches for an overlap at the start, for what stops
-/// the body, and for the least tolerance of an overlap.
+/// Work done for one answer between solids: the searches for an overlap at the start, for what blocks the body, and for
+/// the least tolerance of an overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidSteps {
-    /// Pairs of nodes of the two trees that were looked at.
+    /// Number of pairs of nodes of the two trees that were compared.
     pub nodes: u32,
-    /// Pairs of leaves, facet by facet.
+    /// Number of pairs of leaves whose facets were compared.
     pub leaves: u32,
 }
 

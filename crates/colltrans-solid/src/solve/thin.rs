@@ -1,14 +1,14 @@
 //! Points and segments: facets without area, each an open shell of its own.
 //!
-//! A segment overlaps a closed shell where a part of it is inside, and an open shell where it passes from one side to
-//! the other. A point overlaps what it is inside of. Unless an end of the segment is inside, it
-//! shares a point with the surface:
+//! A segment overlaps a closed shell if a part of it is inside, and an open shell if it passes from one side to the
+//! other. A point overlaps the closed shells that contain it. Unless an end of the segment is inside, it shares a point
+//! with the surface:
 //!
-//! 1. It meets a facet of a closed shell, and one of its ends lies on the inner side of the facet's plane. It runs inside
-//!    if it [enters](super::line::enters) the body there.
-//! 2. It passes through an open facet, inside of which it has a point.
-//! 3. It passes an edge of an open shell, whose facets lie on both sides of it.
-//! 4. It passes a vertex of an open shell, as the [`fan`](super::fan) around the vertex says.
+//! 1. It meets a facet of a closed shell, and one of its ends lies on the inner side of the facet's plane. It runs
+//!    inside if it [enters](super::line::enters) the body there.
+//! 2. It passes through the interior of an open facet.
+//! 3. It passes an edge of an open shell whose facets lie on both sides of the segment.
+//! 4. It passes a vertex of an open shell, according to the [`fan`](super::fan) around the vertex.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -20,7 +20,7 @@ use super::scene::{Corner, Scene};
 use super::triangle::Triangle;
 use crate::body::wedge::Ray;
 
-/// Returns the ends of a facet without area, equal for a point; `None` of any other facet.
+/// Returns the ends of a facet without area, equal for a point; `None` for any other facet.
 pub(super) fn ends(triangle: &Triangle) -> Option<[Corner; 2]> {
     let thin = triangle.side.solid.is_without_area(triangle.index);
     thin.then_some([triangle.corners[0], triangle.corners[1]])
@@ -48,7 +48,7 @@ fn runs_into(scene: &Scene, segment: [Corner; 2], facet: &Triangle) -> bool {
         || (0..3).any(|k| passes_vertex(scene, &segment, facet, k))
 }
 
-/// Case 1.
+/// Checks case 1.
 fn runs_inside(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
     let (from, to, outer) = match [p, q].map(|end| scene.outside(a, b, c, end)) {
@@ -63,7 +63,7 @@ fn runs_inside(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
     is_met && line::enters(scene, &line, facet.side, facet.index as u32, outer == Greater)
 }
 
-/// Case 2.
+/// Checks case 2.
 fn passes_facet(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
     let [x, y] = [p, q].map(|end| scene.outside(a, b, c, end));
@@ -73,14 +73,14 @@ fn passes_facet(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
     }
 }
 
-/// Case 3, for edge `k` of a facet.
+/// Checks case 3 for edge `k` of a facet.
 fn passes_edge(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
     let (a, b) = (&facet.corners[k], &facet.corners[(k + 1) % 3]);
     let Some(across) = facet.across(k) else { return false };
     if scene.outside(a, b, p, q) != Equal {
         return false;
     }
-    // Across an axis along which the plane of both has an area.
+    // An axis along which the plane of both has an area.
     let strictly = |axis: &usize| {
         let [x, y] = [a, b].map(|end| scene.turn_about(*axis, p, q, end));
         x != Equal && x == y.reverse()
@@ -95,7 +95,7 @@ fn passes_edge(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) 
     own.overlaps(&Stuff::Bend([Ray::to(2), Ray::to(3)]), &Around { scene, p: a, q: b, points })
 }
 
-/// Case 4, for corner `k` of a facet.
+/// Checks case 4 for corner `k` of a facet.
 fn passes_vertex(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
     let v = &facet.corners[k];
     let is_end = |end: &Corner| (0..3).all(|axis| scene.order(axis, v, end) == Equal);
@@ -118,7 +118,7 @@ fn are_strictly_one(x: Ordering, y: Ordering) -> bool {
     x != Equal && x == y
 }
 
-/// Checks whether two segments, or points, have a point in common.
+/// Checks whether two segments or points have a common point.
 pub(super) fn share_a_point(scene: &Scene, [p, q]: [Corner; 2], [r, s]: [Corner; 2]) -> bool {
     let boxed = (0..3).all(|axis| {
         let orders = [(&p, &r), (&p, &s), (&q, &r), (&q, &s)].map(|(a, b)| scene.order(axis, a, b));

@@ -1,4 +1,4 @@
-//! A triangle of one of the bodies, in exact arithmetic.
+//! A triangle of one of the bodies, with exact predicates.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use super::scene::{Corner, ExactPoint, Scene, Side};
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
 
-/// A triangle of one body.
+/// A placed triangle of one body.
 pub(crate) struct Triangle<'s, 'a> {
     pub(crate) side: &'s Side<'a>,
     pub(crate) index: usize,
@@ -21,13 +21,13 @@ impl<'s, 'a> Triangle<'s, 'a> {
         Self { side, index, corners, bounds }
     }
 
-    /// On which side of the plane the corners of another triangle are.
+    /// Returns on which side of the triangle's plane the corners of another triangle are.
     pub(crate) fn sides(&self, scene: &Scene, other: &Self) -> [Ordering; 3] {
         let [a, b, c] = &self.corners;
         std::array::from_fn(|k| scene.outside(a, b, c, &other.corners[k]))
     }
 
-    /// An axis of the world along which the triangle has an area.
+    /// Returns an axis of the world along which the projection of the triangle has an area, and its orientation.
     pub(crate) fn open_axis(&self, scene: &Scene) -> (usize, Ordering) {
         let [a, b, c] = &self.corners;
         let normal = (b.at - a.at).cross(c.at - a.at);
@@ -42,7 +42,7 @@ impl<'s, 'a> Triangle<'s, 'a> {
         self.side.solid.is_open(self.index)
     }
 
-    /// The corner of the neighbour across edge `k` that is not on the edge.
+    /// Returns the corner of the neighbour across edge `k` that is not on the edge; `None` at a boundary.
     pub(crate) fn across(&self, k: usize) -> Option<Corner> {
         let solid = self.side.solid;
         let n = solid.neighbours()[self.index][k];
@@ -56,7 +56,7 @@ impl<'s, 'a> Triangle<'s, 'a> {
     }
 }
 
-/// Whether a point lies on a triangle, its rim included.
+/// Checks whether a point lies on a triangle, its edges included.
 pub(crate) fn lies_on(scene: &Scene, point: &impl ExactPoint, triangle: &Triangle) -> bool {
     let [a, b, c] = &triangle.corners;
     let at = Aabb { low: point.at(), high: point.at() };

@@ -1,8 +1,8 @@
-//! The gap of two facets with exact signs, its values exact but for their last roundings.
+//! The gap of two facets with exact signs; its values are exact except for their last roundings.
 //!
-//! Each gap is a quotient, [`Above`]: six times the volume of a tetrahedron over that of one whose last edge
-//! is the direction. Numbers of twice the usual precision are tried first, then whole numbers of ordinary
-//! size; large ones have room for all there are.
+//! Each gap is a quotient ([`Above`]): six times the volume of a tetrahedron over that of a tetrahedron whose last edge
+//! is the direction. Double-double numbers are tried first, then small integers, then large ones, whose size suffices
+//! for all inputs.
 
 use std::cmp::Ordering;
 
@@ -12,11 +12,10 @@ use crate::solve::scene::{Corner, ExactPoint, Scene};
 use colltrans_kernel::fine::{self, Fine, Way};
 use colltrans_kernel::integer::{Integer, LARGE, SMALL, determinant, difference};
 
-/// A gap may be off by so much of the noise of coordinates and is still exact but for its last roundings.
+/// Maximum error, in noises, of a gap that counts as exact except for its last roundings.
 const UNSEEN: f64 = f64::EPSILON / 4.0;
 
-/// The gap from exact signs at those corners of the common shadow that are to be kept, its values
-/// exact but for their last roundings.
+/// Computes the gap from exact signs at those corners of the common shadow for which `keep` returns true.
 pub(super) fn exact(
     scene: &Scene,
     f: &Facet,
@@ -37,13 +36,13 @@ pub(super) fn exact(
             .above(at)
             .or_else(|| above_at::<SMALL>(scene, f, g, at))
             .or_else(|| above_at::<LARGE>(scene, f, g, at));
-        // Large numbers have room for all there are.
+        // Large integers never overflow, so the alternative is not used.
         gap.add(scene, above.unwrap_or(Above::LEVEL), at);
     }
     gap
 }
 
-/// The corners of the common shadow.
+/// Returns the corners of the common shadow.
 fn corners<'t>(of_f: &'t Turns, of_g: &'t Turns) -> impl Iterator<Item = Meeting> + 't {
     let ends = (0..3_u8).flat_map(|k| [Meeting::Corner(k), Meeting::Under(k)]);
     let sides = (0..3_u8).flat_map(|k| (0..3_u8).map(move |j| Meeting::Sides(k, j)));
@@ -55,7 +54,7 @@ fn corners<'t>(of_f: &'t Turns, of_g: &'t Turns) -> impl Iterator<Item = Meeting
     })
 }
 
-/// Before any corner is looked at.
+/// The gap before any corner is added.
 pub(crate) const NO_GAP: Gap = Gap {
     least: f64::INFINITY,
     largest: f64::NEG_INFINITY,
@@ -64,7 +63,7 @@ pub(crate) const NO_GAP: Gap = Gap {
     error: 0.0,
 };
 
-/// How far the second facet is above the first at a corner of the common shadow; `None` if a number does
+/// Computes the height of the second facet above the first at a corner of the common shadow; `None` if a number does
 /// not fit.
 fn above_at<const N: usize>(scene: &Scene, f: &Facet, g: &Facet, at: Meeting) -> Option<Above> {
     let direction = scene.setting.direction.to_array().map(Integer::<N>::number);
@@ -78,10 +77,10 @@ fn above_at<const N: usize>(scene: &Scene, f: &Facet, g: &Facet, at: Meeting) ->
     }
 }
 
-/// Two facets in twice the usual precision.
+/// Two facets in double-double precision.
 struct FinePair<'s, 'a> {
     scene: &'s Scene<'a>,
-    /// Their corners.
+    /// Corners of both facets.
     points: [[Fine; 3]; 2],
     direction: Fine,
 }
@@ -93,7 +92,7 @@ impl<'s, 'a> FinePair<'s, 'a> {
         Self { scene, points, direction }
     }
 
-    /// As [`above_at`]; `None` where that is not known well enough.
+    /// Computes the height of [`above_at`]; `None` if the precision does not suffice.
     fn above(&self, at: Meeting) -> Option<Above> {
         match at {
             Meeting::Corner(k) => Some(self.above_facet(1, k.into())?.reversed()),
@@ -103,14 +102,16 @@ impl<'s, 'a> FinePair<'s, 'a> {
         }
     }
 
-    /// How far a corner of the other facet is above the plane of one.
+    /// Computes the height of a corner of the other facet above the plane of `facet`; `None` if the precision does not
+    /// suffice.
     fn above_facet(&self, facet: usize, corner: usize) -> Option<Above> {
         let [a, b, c] = &self.points[facet];
         let [x, y, z] = [b, c, &self.points[1 - facet][corner]].map(|q| a.to(q));
         self.quotient([x, y, z], [x, y])
     }
 
-    /// How far side `j` of the second facet is above side `k` of the first where their shadows cross.
+    /// Computes the height of side `j` of the second facet above side `k` of the first where their shadows cross;
+    /// `None` if the precision does not suffice.
     fn above_side(&self, k: usize, j: usize) -> Option<Above> {
         let [p, q] = &self.points;
         let (c, e) = (&q[j], &q[(j + 1) % 3]);
@@ -118,7 +119,7 @@ impl<'s, 'a> FinePair<'s, 'a> {
         Some(self.quotient([x, y, z], [x, c.to(e)])?.reversed())
     }
 
-    /// A volume over an area.
+    /// Returns a volume over an area; `None` if the precision does not suffice.
     fn quotient(&self, volume: [Way; 3], [x, y]: [Way; 2]) -> Option<Above> {
         let over = fine::determinant(volume);
         let Some(sign) = over.sign() else {
@@ -132,8 +133,8 @@ impl<'s, 'a> FinePair<'s, 'a> {
     }
 }
 
-/// How far a corner is above the plane through a facet, which turns counter-clockwise from below; `None`
-/// if a number does not fit.
+/// Computes the height of a corner above the plane of a facet, which is counter-clockwise from below; `None` if a
+/// number does not fit.
 fn above_facet<const N: usize>(
     scene: &Scene,
     direction: &[Integer<N>; 3],
@@ -145,7 +146,7 @@ fn above_facet<const N: usize>(
     Above::new(&determinant(&x, &y, &z), &determinant(&x, &y, direction))
 }
 
-/// How far side `c e` is above side `a b` where their shadows cross; `None` if a number does not fit.
+/// Computes the height of side `c e` above side `a b` where their shadows cross; `None` if a number does not fit.
 fn above_side<const N: usize>(
     scene: &Scene,
     direction: &[Integer<N>; 3],
@@ -157,7 +158,7 @@ fn above_side<const N: usize>(
     Some(Above::new(&determinant(&x, &y, &z), &plane)?.reversed())
 }
 
-/// How far a corner is above a facet whose shadow holds its own.
+/// Computes the height of a corner above a facet whose shadow contains that of the corner.
 pub(crate) fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
     let d = scene.setting.direction.to_array();
     let small = above_facet::<SMALL>(scene, &d.map(Integer::number), facet, corner);
@@ -165,7 +166,7 @@ pub(crate) fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above
     small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
-/// How far a side is above another one where their shadows cross.
+/// Computes the height of the side `above` over `side` where their shadows cross.
 pub(crate) fn over_side(scene: &Scene, side: [&Corner; 2], above: [&Corner; 2]) -> Above {
     let d = scene.setting.direction.to_array();
     let small = above_side::<SMALL>(scene, &d.map(Integer::number), side, above);
@@ -173,7 +174,7 @@ pub(crate) fn over_side(scene: &Scene, side: [&Corner; 2], above: [&Corner; 2]) 
     small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
-/// A quotient of two numbers: its sign, and its value to within a few roundings.
+/// A quotient of two numbers: its exact sign, and its value within a few roundings.
 #[derive(Clone, Copy)]
 pub(crate) struct Above {
     sign: Ordering,
@@ -181,10 +182,10 @@ pub(crate) struct Above {
 }
 
 impl Above {
-    /// For numbers that do not fit, of which there are none.
+    /// Height 0, also the replacement for numbers that do not fit, which do not occur.
     pub(crate) const LEVEL: Self = Self { sign: Ordering::Equal, value: 0.0 };
 
-    /// `None` if one of them did not fit.
+    /// Builds the quotient; `None` if a number does not fit.
     pub(crate) fn new<const N: usize>(volume: &Integer<N>, plane: &Integer<N>) -> Option<Self> {
         let sign = match plane.sign()? {
             Ordering::Less => volume.sign()?.reverse(),
@@ -199,7 +200,7 @@ impl Above {
 }
 
 impl Gap {
-    /// With one more corner of the common shadow, in multiples of the direction.
+    /// Adds a corner of the common shadow. `above` is a multiple of the direction.
     pub(crate) fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
         let Above { sign, value } = above;
         let value = if sign == Ordering::Equal { 0.0 } else { value * scene.setting.length };

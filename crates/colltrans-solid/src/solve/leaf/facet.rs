@@ -1,7 +1,7 @@
-//! A facet, its plane as heights over its shadow, and on which sides of its own sides the corners of another
-//! lie.
+//! A facet, the heights of its plane over its shadow, and the orientations of its sides with the corners of another
+//! facet.
 //!
-//! The signs of [`Turns`] are rounded ones with their errors until they are resolved; then they are exact.
+//! The signs in [`Turns`] are rounded, with error bounds, until they are resolved. Then they are exact.
 
 use std::cmp::Ordering;
 
@@ -13,22 +13,22 @@ use crate::body::Solid;
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
 
-/// Cosine of the angle from which on a facet is folded back onto the next one.
+/// Cosine between two normals below which a facet is folded back onto its neighbour.
 const FOLDED: f64 = -0.999;
 
-/// A facet, its shadow running counter-clockwise.
+/// A facet whose shadow is counter-clockwise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facet {
     pub(crate) triangle: u32,
     pub(crate) corners: [Corner; 3],
     pub(crate) bounds: Aabb,
-    /// Its plane.
+    /// The plane of the facet.
     slope: Slope,
 }
 
 impl Facet {
-    /// The facet if it is a front (`Greater`) or back (`Less`) facet of its body; without a side, it is
-    /// both.
+    /// Builds a facet if it is a front (`Greater`) or back (`Less`) facet of its body; `None` otherwise. A facet of an
+    /// open shell is both.
     pub(crate) fn facing(
         scene: &Scene,
         moving: bool,
@@ -38,7 +38,7 @@ impl Facet {
         let side = scene.side(moving);
         let (corners, turn) = listed(scene, side, triangle);
         let counts = match turn {
-            // What is on edge has no gap; it can be near, as the rim of what has no thickness is.
+            // An edge-on facet has no gap, but it can be near. An example is the boundary of a body without thickness.
             Ordering::Equal => scene.keeps() && is_thin(side.solid, triangle),
             turn => turn == wanted || side.solid.is_open(triangle),
         };
@@ -50,8 +50,8 @@ impl Facet {
         Some(Self { triangle: triangle as u32, corners, bounds, slope })
     }
 
-    /// At least so far all corners of another facet lie below the plane, for a `sign` of 1, or above it,
-    /// for -1.
+    /// Returns a lower bound on the distance, along the direction, of all corners of another facet below the plane
+    /// (`sign` 1) or above it (-1).
     pub(super) fn least_off(&self, other: &Self, sign: f64) -> f64 {
         let off = |c: &Corner| self.height_above(c.at);
         other
@@ -62,12 +62,12 @@ impl Facet {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// How far its plane lies above a point, and a bound of the error.
+    /// Returns the height of the plane above a point, and a bound on its error.
     pub(super) fn height_above(&self, p: DVec3) -> (f64, f64) {
         self.slope.height_above(p)
     }
 
-    /// Whether both lie in one plane across the direction, for certain.
+    /// Checks whether both facets certainly lie in one plane orthogonal to the direction.
     pub(super) fn is_level_with(&self, other: &Self) -> bool {
         let height = self.corners[0].at.z;
         let mut corners = self.corners.iter().chain(&other.corners);
@@ -79,7 +79,7 @@ impl Facet {
     }
 }
 
-/// Whether a triangle is of an open shell, or one next to it is folded back onto it, to within a little.
+/// Checks whether a triangle belongs to an open shell, or a neighbour is nearly folded back onto it.
 fn is_thin(solid: &Solid, triangle: usize) -> bool {
     let normal = |t: usize| {
         let [a, b, c] = solid.triangles()[t].map(|v| solid.vertices()[v as usize]);
@@ -90,8 +90,8 @@ fn is_thin(solid: &Solid, triangle: usize) -> bool {
     solid.is_open(triangle) || solid.neighbours()[triangle].iter().any(folded)
 }
 
-/// The corners of a triangle, listed so that its shadow runs counter-clockwise if it has an area, and
-/// which way it runs as it is.
+/// Returns the corners of a triangle, in the order in which its shadow is counter-clockwise if it has an area, and the
+/// orientation of the original order.
 pub(crate) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3], Ordering) {
     let mut corners = side.corners(triangle);
     let turn = scene.turn(&corners[0], &corners[1], &corners[2]);
@@ -101,19 +101,20 @@ pub(crate) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3
     (corners, turn)
 }
 
-/// The plane of a facet as heights over the shadow.
+/// The plane of a facet, as heights over the shadow.
 #[derive(Debug, Clone, Copy)]
 struct Slope {
     origin: DVec3,
     normal: DVec3,
-    /// Error of a height over a point at distance 1, and at the origin.
+    /// Error of a height per unit of lateral distance from the origin.
     tilt: f64,
+    /// Error of a height at the origin.
     level: f64,
 }
 
 impl Slope {
     fn new(scene: &Scene, [a, b, c]: [DVec3; 3]) -> Self {
-        // From the two shorter sides, which determine the plane best.
+        // The two shorter sides determine the plane best.
         let sides = [b - a, c - b, a - c];
         let lengths = sides.map(DVec3::length_squared);
         let longest = if lengths[0] >= lengths[1].max(lengths[2]) {
@@ -132,23 +133,23 @@ impl Slope {
         Self {
             origin: [a, b, c][j],
             normal,
-            // A turned normal: its error over its upward part, and what that makes of the rest.
+            // Error of the normal over its vertical component, and its effect on the lateral components.
             tilt: if upright { 6.0 * noise / normal.z * steep } else { f64::INFINITY },
             level: if upright { 8.0 * scene.noise * steep } else { f64::INFINITY },
         }
     }
 
-    /// How far the plane lies above a point.
+    /// Returns the height of the plane above a point, and a bound on its error.
     fn height_above(&self, p: DVec3) -> (f64, f64) {
         let to = self.origin - p;
         let error = self.level + self.tilt * to.abs().max_element();
         let height = self.normal.dot(to) / self.normal.z;
-        // A facet on edge has no heights to speak of.
+        // A plane that is nearly edge-on has no usable heights.
         if height.is_finite() && !error.is_nan() { (height, error) } else { (0.0, f64::INFINITY) }
     }
 }
 
-/// On which side of a side a corner lies: rounded, the error of that, and exactly once resolved.
+/// The orientation of a side and a corner: rounded, with its error, and exact once it is resolved.
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
     pub(super) value: f64,
@@ -156,18 +157,18 @@ pub(super) struct Turn {
     pub(super) sign: Ordering,
 }
 
-/// The turns of each side of one facet with each corner of the other.
+/// The orientations of each side of one facet with each corner of the other.
 pub(super) struct Turns(pub(super) [[Turn; 3]; 3]);
 
 impl Turns {
-    /// With exact signs.
+    /// Computes all orientations with exact signs.
     pub(super) fn exact(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
         let mut turns = Self([0, 1, 2].map(|k| Self::about(scene, sides, k, corners)));
         turns.resolve(scene, sides, corners);
         turns
     }
 
-    /// `None` if a side certainly has all corners on its outer side.
+    /// Computes all rounded orientations; `None` if all corners are certainly on the outer side of a side.
     pub(super) fn unless_apart(scene: &Scene, sides: &Facet, corners: &Facet) -> Option<Self> {
         let mut turns = [[Turn { value: 0.0, error: 0.0, sign: Ordering::Equal }; 3]; 3];
         for (k, row) in turns.iter_mut().enumerate() {
@@ -179,7 +180,7 @@ impl Turns {
         Some(Self(turns))
     }
 
-    /// Those of side `k`.
+    /// Computes the rounded orientations of side `k`.
     fn about(scene: &Scene, sides: &Facet, k: usize, corners: &Facet) -> [Turn; 3] {
         let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
         corners.corners.each_ref().map(|corner| {
@@ -206,28 +207,28 @@ impl Turns {
         }
     }
 
-    /// Whether rounding leaves no sign in doubt.
+    /// Checks whether rounding leaves no sign in doubt.
     pub(super) fn are_certain(&self) -> bool {
         self.0.iter().flatten().all(|turn| turn.value.abs() > turn.error)
     }
 
-    /// Whether side `k` certainly has a corner on its inner side.
+    /// Checks whether a corner is certainly on the inner side of side `k`.
     pub(super) fn admits(&self, k: usize) -> bool {
         self.0[k].iter().any(|t| t.value > t.error)
     }
 
-    /// Whether rounding cannot tell that corner `j` lies outside the shadow of the facet of the sides.
+    /// Checks whether rounding leaves open that corner `j` lies in the shadow of the facet with the sides.
     pub(super) fn may_contain(&self, j: usize) -> bool {
         self.0.iter().all(|side| side[j].value >= -side[j].error)
     }
 
-    /// Whether corner `j` lies in the shadow of the facet of the sides, or on its rim.
+    /// Checks whether corner `j` lies in the shadow of the facet with the sides, boundary included.
     pub(super) fn contain(&self, j: usize) -> bool {
         self.0.iter().all(|side| side[j].sign != Ordering::Less)
     }
 }
 
-/// Whether side `k` of `f` and side `j` of `g` may cross.
+/// Checks whether side `k` of `f` and side `j` of `g` may cross.
 pub(super) fn may_cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool {
     let next = |k: usize| (k + 1) % 3;
     let one_side = |x: Turn, y: Turn| {
@@ -236,14 +237,14 @@ pub(super) fn may_cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool 
     !one_side(of_f.0[k][j], of_f.0[k][next(j)]) && !one_side(of_g.0[j][k], of_g.0[j][next(k)])
 }
 
-/// Whether side `k` of `f` and side `j` of `g` cross in points that are no ends of them.
+/// Checks whether side `k` of `f` and side `j` of `g` cross in points other than their ends.
 pub(super) fn cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool {
     let next = |k: usize| (k + 1) % 3;
     let strictly = |x: Turn, y: Turn| x.sign != Ordering::Equal && x.sign == y.sign.reverse();
     strictly(of_f.0[k][j], of_f.0[k][next(j)]) && strictly(of_g.0[j][k], of_g.0[j][next(k)])
 }
 
-/// Whether side `k` of a facet has no corner of the other on its inner side, exactly.
+/// Checks exactly whether no corner of the other facet is on the inner side of side `k`.
 pub(super) fn separates(scene: &Scene, facet: &Facet, k: usize, other: &Facet) -> bool {
     let [a, b] = facet.side(k);
     other.corners.iter().all(|c| scene.turn(a, b, c) != Ordering::Greater)

@@ -1,16 +1,15 @@
-//! Facets that are to keep a gap.
+//! Pairs of facets with a minimum gap.
 //!
-//! A body is grown by the gap, in all that a search sees of its nodes ([`Side::swell`]), and a pair of facets is the
-//! cast of a point at the difference of two triangles grown by a ball ([`keep`](colltrans_convex::solve::keep)). What comes
-//! nearer than the gap for the first time does so with a facet that looks along the direction, and one that looks
-//! against it: at the nearest points `p`, `q` the normal `n` from one to the other has `n.d > 0`; if no facet at `p`
-//! looked along `d`, `d` would lead into the body from there, and nothing of it lies beyond the plane across `n`.
-//! Open shells have no side, and closed ones may have no thickness: of the first all facets are looked at, of the
-//! second those on edge that others are folded back onto.
-//!
-//! *Grazing.* Whether facets pass each other at the gap or by rounding less, nobody can tell. Those that a plane along the
-//! direction shows to stay so near to it, up to [`GRAZE`] noises less, do not block, nor do those that are so near at
-//! the start and do not come nearer. A gap of no more noises is none.
+//! - Each pair is the cast of a point at the difference of two triangles that is grown by a ball
+//!   ([`keep`](colltrans_convex::solve::keep)). The bounds of nodes are enlarged by the gap ([`Side::swell`]).
+//! - The distance first falls below the gap between a facet that faces along the direction and one that faces against
+//!   it. Let `p`, `q` be the nearest points, and `n`, with `n.d > 0`, the normal from one to the other. If no facet at
+//!   `p` faced along `d`, `d` would lead into the body, but no part of the body is beyond the plane across `n`.
+//! - All facets of open shells are tested, because they have no side. Of closed shells, which may have no thickness,
+//!   edge-on facets are tested if others are folded back onto them.
+//! - *Grazing*: rounding errors hide whether facets pass each other at exactly the gap. Facets do not block if a plane
+//!   parallel to the direction proves a distance of the gap minus [`GRAZE`] noises, or if they start that near and do
+//!   not approach. A gap of at most as many noises is ignored.
 
 use glam::DVec3;
 
@@ -20,10 +19,10 @@ use super::{Facet, Gap, Meeting, Wanted};
 use colltrans_convex::solve::keep::{Line, Look, Plane, Target, Travel, shadow, travel};
 use colltrans_kernel::noise::UNIT_VECTOR;
 
-/// How far below the gap, in noises, facets may pass each other.
+/// Distance below the gap, in noises, at which facets may pass each other.
 const GRAZE: f64 = 8.0;
 
-/// Looks for a point that is near enough where none was found on the way.
+/// Maximum number of distance samples for a point that is near enough, if the search found none on its way.
 const MOST_DEEPER: usize = 8;
 
 /// The difference of two triangles in the setting frame.
@@ -39,7 +38,7 @@ impl Facets {
         Self { moving: placed(f), fixed: placed(g), noise: scene.noise }
     }
 
-    /// Along the direction of a scene, or against it.
+    /// Returns the line of the search along the direction of a scene (`sign` 1) or against it (-1).
     fn line(scene: &Scene, sign: f64) -> Line {
         let unit = scene.setting.direction / scene.setting.length * sign;
         Line::new(unit, scene.keep, scene.size() - scene.keep)
@@ -50,20 +49,21 @@ impl Facets {
         Plane { normal, height, beyond: 0.0, support: () }
     }
 
-    /// Whether they are nearer than a gap for certain, or as near with `touching`.
+    /// Checks whether the facets are certainly nearer than a gap or, with `touching`, at most as far.
     pub(crate) fn are_within(&self, gap: f64, touching: bool) -> bool {
         let nearest = triangle::nearest(&self.moving, &self.fixed, self.noise);
         let length = nearest.length + triangle::LENGTH * self.noise;
         length < gap || touching && length == gap
     }
 
-    /// Whether they stay as far apart as the gap from here on, but for what counts as grazing.
+    /// Checks whether the distance of the facets remains at least the gap from the start on, except for grazing.
     fn part(&mut self, line: &Line) -> bool {
         let Some(plane) = self.look(DVec3::ZERO).plane else { return false };
         line.slope(plane.normal) <= UNIT_VECTOR && plane.height >= line.keep - GRAZE * self.noise
     }
 
-    /// A point that the line is nearest to, to within some looks from where it begins to be near.
+    /// Returns a point of the difference near the line, from distance samples that begin at `lower`. It ends at the
+    /// first point nearer to the line than the gap, or after [`MOST_DEEPER`] samples.
     fn deeper(&mut self, line: &Line, lower: f64) -> DVec3 {
         let mut point = self.look(line.unit * lower).point;
         for _ in 0..MOST_DEEPER {
@@ -75,7 +75,7 @@ impl Facets {
         point
     }
 
-    /// Whether a plane along the line keeps them apart, but for what counts as grazing.
+    /// Checks whether a plane parallel to the line separates the facets, except for grazing.
     fn pass(&mut self, line: &Line) -> bool {
         let toward = self.fixed[0] - self.moving[0];
         let found = shadow(self, line, toward);
@@ -116,8 +116,8 @@ impl Target for Facets {
     }
 }
 
-/// When two facets are first as near as the gap, if they come nearer than that by more than rounding; `limit` is what
-/// it has to stay below.
+/// Computes the travel at which the distance of two facets falls to the minimum gap. `None` if it does not fall below
+/// the gap by more than rounding errors, if its lower bound is not below `limit`, or if the pair is not wanted.
 pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
     let reach = scene.keep + 4.0 * scene.noise;
     let apart = |axis: usize| f.bounds.is_apart(&g.bounds, axis, reach);
@@ -143,14 +143,14 @@ pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     Some(measured(facets, &found, line))
 }
 
-/// Whether the line may only graze.
+/// Checks whether the line may merely graze.
 fn is_shallow(found: &Travel<Facets>, line: &Line) -> bool {
     let Some(near) = found.near else { return true };
     let aside = near.point.reject_from_normalized(line.unit).length();
     line.keep - aside <= 2.0 * GRAZE * line.noise.point()
 }
 
-/// The gap of facets that are found to come nearer than it.
+/// Converts the bounds of a search to a gap with its error, for facets that come nearer than the minimum gap.
 fn measured(facets: &mut Facets, found: &Travel<Facets>, line: &Line) -> Gap {
     use std::cmp::Ordering::Greater;
     let near = found.near.map(|near| near.point);
@@ -158,11 +158,11 @@ fn measured(facets: &mut Facets, found: &Travel<Facets>, line: &Line) -> Gap {
     let upper = line.upper(point).unwrap_or_else(|| point.dot(line.unit)).max(found.lower);
     let least = line.estimate(point).unwrap_or(upper).clamp(found.lower, upper);
     let error = (least - found.lower).max(upper - least);
-    // Those that cross are not asked for where that matters.
+    // Pairs that cross are excluded earlier if they are not wanted.
     Gap { least, largest: f64::INFINITY, signs: [Greater; 2], at: Meeting::Near, error }
 }
 
-/// The weights of the points of two facets that are nearest after a way along the direction, and the normal
+/// Returns the weights of the nearest points of two facets after a travel `way` along the direction, and the normal
 /// from one to the other.
 pub(crate) fn nearest_after(
     scene: &Scene,

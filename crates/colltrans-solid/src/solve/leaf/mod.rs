@@ -1,19 +1,15 @@
-//! Two facets: whether their pair counts, and for how much.
+//! Comparison of two facets: whether their pair counts, and its gap.
 //!
-//! `f` is a front facet of the moving body (its shadow runs counter-clockwise), `g` a back facet of
-//! the fixed one, its corners listed backwards so that its shadow runs counter-clockwise too. The
-//! interiors of the shadows overlap unless a side of one separates them. Over the common shadow the
-//! gap `h_g - h_f` is linear; its corners are corners of `f` under `g`, corners of `g` over `f`, and
-//! crossings of sides. The pair *counts* if the largest gap is positive, or zero all over. A facet of an
-//! open shell has no side: it is both a front and a back facet, unless it is [on edge](super::rim).
-//!
-//! All that is decided is decided exactly: rounded values are used where their error bounds allow,
-//! and else the signs are those of
-//! `outside(g, f_i)` (corner of `f` under `g`), `outside(f, g_j)` (corner of `g` over `f`) and
-//! `-outside(p, q, r, s) turn(p, q, s)` (side `p q` of `f` under side `r s` of `g`).
-//!
-//! [`facet`] has a facet and the turns of its sides, [`rounded`] the gap with bounds of its error, [`exact`]
-//! the gap in whole numbers; here they are asked in turn. [`keep`] is about facets that are to keep a gap.
+//! - `f` is a front facet of the moving body: its shadow is counter-clockwise. `g` is a back facet of the fixed body.
+//!   Its corners are listed in reverse, so that its shadow is counter-clockwise as well. A facet of an open shell is
+//!   both a front and a back facet, unless it is [edge-on](super::rim).
+//! - The interiors of the shadows overlap unless a side of one separates them. Over the common shadow the gap `h_g -
+//!   h_f` is linear. Corners of the common shadow are corners of `f` under `g`, corners of `g` over `f`, and crossings
+//!   of sides.
+//! - The pair *counts* if the largest gap is positive, or the gap is zero over the whole common shadow.
+//! - All decisions are exact. [`rounded`] gaps are used where their error bounds permit. Otherwise [`exact`] computes
+//!   the signs of `outside(g, f_i)`, `outside(f, g_j)`, and `-outside(p, q, r, s) turn(p, q, s)` for side `p q` of `f`
+//!   under side `r s` of `g`. [`facet`] has facets and orientations of their sides, [`keep`] facets with a minimum gap.
 
 mod exact;
 mod facet;
@@ -31,25 +27,25 @@ use exact::exact;
 use facet::{Turns, may_cross, separates};
 use rounded::{Rounded, crossing, each_gap, rounded};
 
-/// Rounded gaps are used while their error is below so many times the noise of coordinates, `2e-10 S`;
-/// the one that decides is taken again exactly if its error is not below [`FINE`] times the noise.
+/// Maximum error, in noises, of rounded gaps that are used: `2e-10 S`.
 pub(crate) const SHARP: f64 = 65_536.0;
+/// Maximum error, in noises, of the rounded gap that decides. With a larger error the gap is computed exactly.
 pub(crate) const FINE: f64 = 256.0;
 
-/// What meets what at a corner of the common shadow; numbers are positions among the [`listed`] corners.
+/// The features that meet at a corner of the common shadow. Numbers are positions among the [`listed`] corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Meeting {
     /// A corner of the moving facet and the fixed facet.
     Corner(u8),
     /// The moving facet and a corner of the fixed one.
     Under(u8),
-    /// Two sides, each named by its first corner.
+    /// Two sides, each given by its first corner.
     Sides(u8, u8),
     /// A corner of the moving facet and a side of the fixed one.
     OnSide(u8, u8),
     /// A side of the moving facet and a corner of the fixed one.
     UnderSide(u8, u8),
-    /// They are as near as the gap that is to be kept, wherever that is.
+    /// Any two points whose distance equals the minimum gap.
     Near,
 }
 
@@ -58,34 +54,35 @@ pub(crate) enum Meeting {
 pub(crate) struct Gap {
     /// The least gap, as a length.
     pub(crate) least: f64,
+    /// The largest gap, as a length.
     pub(crate) largest: f64,
-    /// Their signs, exactly.
+    /// Exact signs of the least and the largest gap.
     pub(crate) signs: [Ordering; 2],
-    /// Where the gap is least.
+    /// The features at which the gap is least.
     pub(crate) at: Meeting,
-    /// Bound of the error of its values.
+    /// Bound on the error of both values.
     pub(crate) error: f64,
 }
 
 impl Gap {
-    /// Whether the largest gap is positive, or the gap zero all over.
+    /// Checks whether the largest gap is positive, or the gap is zero over the whole common shadow.
     pub(crate) fn counts(&self) -> bool {
         matches!(self.signs, [_, Ordering::Greater] | [Ordering::Equal, Ordering::Equal])
     }
 }
 
-/// Which pairs are of interest.
+/// The pairs of facets of interest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
     All,
-    /// The largest gap is not negative; the sign of the least one is not needed.
+    /// Pairs whose largest gap is not negative. The sign of the least gap is not needed.
     NotParting,
-    /// Nor is the least.
+    /// Pairs whose largest and least gaps are not negative.
     NotCrossing,
 }
 
-/// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
-/// has to stay below.
+/// Computes the gap of two facets; `None` if the interiors of their shadows are disjoint, the pair is not of interest,
+/// or bounds show that the gap is not below `limit`.
 pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
     if scene.keeps() {
         return keep::gap(scene, f, g, limit, wanted);
@@ -95,7 +92,7 @@ pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - noise >= limit {
         return None;
     }
-    // A gap is linear over either facet: nowhere less than at the corners of one.
+    // The gap is linear over each facet, so nowhere less than at the corners of one.
     if f.least_off(g, -1.0).max(g.least_off(f, 1.0)) >= limit {
         return None;
     }
@@ -109,7 +106,7 @@ pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     of_f.resolve(scene, f, g);
     of_g.resolve(scene, g, f);
     let range = rounded(scene, f, g, &of_f, &of_g);
-    // Certain whatever the other corners are: nothing more needs to be known of slivers that cross.
+    // Certain for all corners, so the exact gap of slivers that cross is not needed.
     let parting = wanted != Wanted::All && range.bound[1] < 0.0;
     if parting || wanted == Wanted::NotCrossing && range.negative {
         return None;
@@ -121,8 +118,8 @@ pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     }
 }
 
-/// The least gap of two facets whose shadows overlap, exact but for its last roundings, and where.
-/// Corners of the common shadow that rounding says are not the lowest are left out.
+/// Computes the least gap of two facets whose shadows overlap, exact except for its last roundings, and its position.
+/// Corners of the common shadow that rounded gaps exclude are skipped.
 pub(crate) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
     let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
     let mut least = f64::INFINITY;
@@ -141,28 +138,28 @@ pub(crate) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meetin
     (gap.least, gap.at)
 }
 
-/// The gap of two facets whose shadows overlap, exact but for its last roundings.
+/// Computes the gap of two facets whose shadows overlap, exact except for its last roundings.
 pub(crate) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
     let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
     exact(scene, f, g, &of_f, &of_g, |_| true)
 }
 
-/// Two facets, one that looks along the direction, of the moving body, and one that looks against it.
+/// A facet of the moving body that faces along the direction, and a facet of the fixed body that faces against it.
 pub(crate) struct Opposed {
     f: Facet,
     g: Facet,
 }
 
 impl Opposed {
-    /// Two triangles, if they do.
+    /// Builds the pair of two triangles; `None` if they do not face each other.
     pub(crate) fn new(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<Self> {
         let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
         let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
         Some(Self { f, g })
     }
 
-    /// Their least gap, where they certainly block each other, and its error; `None` as well where only whole
-    /// numbers could tell that, which would take longer than a search.
+    /// Computes the least gap and its error if the facets certainly block each other. Returns `None` also if only large
+    /// integers could decide this, because they would take longer than a search.
     pub(crate) fn least_gap(&self, scene: &Scene) -> Option<(f64, f64)> {
         let Self { f, g } = self;
         if scene.keeps() {
@@ -172,7 +169,7 @@ impl Opposed {
         let mut of_f = Turns::unless_apart(scene, f, g)?;
         let mut of_g = Turns::unless_apart(scene, g, f)?;
         if scene.is_aligned() {
-            // Coordinates are exact, and so are signs of them, at no cost.
+            // Exact coordinates give exact signs without extra cost.
             of_f.resolve(scene, f, g);
             of_g.resolve(scene, g, f);
             let separated = (0..3).any(|k| separates(scene, f, k, g) || separates(scene, g, k, f));
@@ -185,21 +182,21 @@ impl Opposed {
         match rounded(scene, f, g, &of_f, &of_g).judge(SHARP * scene.noise, false) {
             Rounded::Known(gap) if !gap.counts() => None,
             Rounded::Known(gap) if gap.error <= FINE * scene.noise => Some((gap.least, gap.error)),
-            // Slivers.
+            // For slivers.
             Rounded::Known(_) => Some((least_exactly(scene, f, g).0, 0.0)),
             Rounded::Beyond(_) => None,
         }
     }
 
-    /// They have no smaller gap than this where the interiors of their shadows overlap, whatever rounding leaves in
-    /// doubt; infinite if they certainly do not overlap.
+    /// Returns a lower bound of the gap in all cases that rounding errors leave open; infinity if the interiors of the
+    /// shadows certainly do not overlap.
     pub(crate) fn least_in_doubt(&self, scene: &Scene) -> f64 {
         let Self { f, g } = self;
         let of_f = Turns::unless_apart(scene, f, g);
         let of_g = Turns::unless_apart(scene, g, f);
         let (Some(of_f), Some(of_g)) = (of_f, of_g) else { return f64::INFINITY };
-        // The gap is linear over either facet, so nowhere less than at the corners of one; and least at a
-        // corner of the common shadow, which is one of those that may be.
+        // The gap is linear over each facet, so nowhere less than at the corners of one. It is least at a corner of the
+        // common shadow, which is one of the possible corners.
         let anywhere = f.least_off(g, -1.0).max(g.least_off(f, 1.0));
         let mut least = f64::INFINITY;
         let mut add = |(value, error): (f64, f64)| least = least.min(value - error);
@@ -218,10 +215,10 @@ impl Opposed {
         least.max(anywhere)
     }
 
-    /// Their gap where it is wanted, exact but for its last roundings.
+    /// Computes the gap, exact except for its last roundings; `None` if the pair is not wanted.
     pub(crate) fn exact_gap(&self, scene: &Scene, wanted: Wanted) -> Option<Gap> {
         let found = gap(scene, &self.f, &self.g, f64::INFINITY, wanted)?;
-        // Taken exactly already, or a gap that is kept, which is sharp.
+        // Errors of 0 are exact already. Gaps of pairs with a minimum gap are sharp.
         let sharp = found.error == 0.0 || found.at == Meeting::Near;
         Some(if sharp { found } else { sharpened(scene, &self.f, &self.g) })
     }
@@ -259,7 +256,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4_000))]
 
-        /// Corners over corners, sides over sides: in turned poses rounding leaves them in doubt.
+        /// Corners over corners and sides over sides: in rotated poses rounding errors leave them in doubt.
         #[test]
         fn no_gap_is_less_than_the_least_possible_one(
             a in triangle(), b in triangle(), q in rotation(), d in point(), t in point(),

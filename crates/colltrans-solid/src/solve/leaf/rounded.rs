@@ -1,5 +1,5 @@
-//! The gap of two facets from rounded coordinates: its values at the corners of the common shadow with bounds
-//! of their errors, and what these leave certain.
+//! The gap of two facets from rounded coordinates: values at the corners of the common shadow, bounds on their errors,
+//! and the conclusions that these permit.
 
 use std::cmp::Ordering;
 
@@ -7,23 +7,24 @@ use super::facet::{Facet, Turn, Turns, cross};
 use super::{Gap, Meeting};
 use crate::solve::scene::Scene;
 
-/// The gap from rounded coordinates.
+/// A gap from rounded coordinates.
 pub(super) enum Rounded {
-    /// Errors are small and the signs are certain.
+    /// The errors are small and the signs are certain.
     Known(Gap),
-    /// The least gap is certainly not smaller than this.
+    /// The least gap is certainly not smaller than this value.
     Beyond(f64),
 }
 
-/// Gathers gaps at the corners of the common shadow.
+/// Collects gaps at the corners of the common shadow.
 pub(super) struct Range {
     least: f64,
     largest: f64,
     at: Meeting,
     pub(super) negative: bool,
     positive: bool,
-    /// Bounds of all gaps, and the largest error of one.
+    /// Lower and upper bound of all gaps.
     pub(super) bound: [f64; 2],
+    /// The largest error of a gap.
     worst: f64,
 }
 
@@ -75,7 +76,8 @@ pub(super) fn rounded(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &
     range
 }
 
-/// The rounded gap at each corner of the common shadow, and a bound of its error.
+/// Calls `add` with the rounded gap at each corner of the common shadow, a bound on its error, and the features that
+/// meet there.
 pub(super) fn each_gap(
     scene: &Scene,
     f: &Facet,
@@ -103,7 +105,7 @@ pub(super) fn each_gap(
     }
 }
 
-/// The gap where side `k` of `f` crosses side `j` of `g`, and a bound of its error.
+/// Computes the gap where side `k` of `f` crosses side `j` of `g`, and a bound on its error.
 pub(super) fn crossing(
     scene: &Scene,
     [f, g]: [&Facet; 2],
@@ -117,7 +119,7 @@ pub(super) fn crossing(
     let ([a, b], [c, e]) = (f.side(k).map(|c| c.at), g.side(j).map(|c| c.at));
     let (across, back) = (p.value - q.value, r.value - s.value);
     let gap = c.z + (e.z - c.z) * (r.value / back) - a.z - (b.z - a.z) * (p.value / across);
-    // Where on its side the crossing is, and what that makes of the height.
+    // Error of a height caused by the uncertain position of the crossing along a side.
     let slide = |width: f64, x: Turn, y: Turn, rise: f64| {
         let share = (x.error + y.error) / width.abs();
         if share < 0.25 { 2.0 * share * rise.abs() } else { f64::INFINITY }

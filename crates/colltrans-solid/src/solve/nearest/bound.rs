@@ -1,19 +1,14 @@
-//! How near two nodes can be to each other.
+//! Lower bounds of the distance of two nodes.
 //!
-//! Between two convex sets any unit vector `n` gives a bound: how far one reaches along it less than the other
-//! does. Between boxes three of them, at right angles, give more: the length of the three gaps. Tried are the axes
-//! of the fixed body, those of the moving one, the axes of the nodes' slabs, and the direction of the longest
-//! of the first two. Nodes are less than boxes by their cuts, and by their slabs.
+//! - Any unit vector `n` gives a bound for two convex sets: the least coordinate of one along `n` minus the largest of
+//!   the other. For boxes, three gaps along orthogonal vectors give a better one: the length of their vector.
+//! - Tried are the axes of the fixed body, those of the moving one, the axes of the nodes' slabs, and the direction of
+//!   the longer of the first two vectors. Cuts and slabs make a node smaller than its box.
+//! - A pose's matrix `R` is a rotation only up to rounding. A coordinate along the axis `n` of a slab in the body frame
+//!   is one along `R^-T n` in the setting frame, exactly. The three gaps along the columns of `R` are those of `R^T v`,
+//!   which is at most the norm of `R` times as long as `v`.
 //!
-//! A pose's matrix `R` need not be a rotation to the last digit. What lies along the axis `n` of a slab in the body
-//! frame lies along `R^-T n` in the setting frame, exactly. The three gaps along the columns of `R` are those of
-//! `R^T v`, which is longer than `v` by the norm of `R` at most.
-//!
-//! Rounding, for a body with the reach `r` at the offset `o`. How far a node reaches along a unit vector is off
-//! by `5.2 u r` for the vector in the body frame, `11 u r` for the box's middle and half extents and products with
-//! them, `14 u r` for the cuts, `22 u r` for what of the vector is along the slab, `5 u (r + o)` for the vector that is
-//! left, `9 u o` for the offset: less than `58 u (r + o)`. Along an axis of a body it is `31 u (r + o)`, and
-//! the length of three is off by `sqrt 3` times that. So [`ROUNDING`] noises, `64 u S`, cover both bodies.
+//! Derivation of [`ROUNDING`]: `docs/theory/solid-rounding.md`.
 
 use glam::{DMat3, DVec3};
 
@@ -24,12 +19,12 @@ use colltrans_kernel::pose::rotation_defect;
 
 use super::triangle::unit;
 
-/// What bounds are lowered by, in noises.
+/// Noises by which bounds are lowered to cover rounding errors of both bodies.
 const ROUNDING: f64 = 2.0;
-/// Cosine from which on a slab bounds more along an axis than the box does.
+/// Cosine above which a slab gives better bounds along an axis than the box.
 const PARALLEL: f64 = 0.75;
 
-/// What shows that no two facets of a pair of nodes are nearer than a distance: what a proof says of them.
+/// Reason in a proof why no two facets of a pair of nodes are nearer than a distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -39,31 +34,31 @@ const PARALLEL: f64 = 0.75;
 pub enum Apart {
     /// The gaps of their boxes along the axes of the fixed body.
     AxesOfFixed,
-    /// The same along those of the moving body.
+    /// The gaps of their boxes along the axes of the moving body.
     AxesOfMoving,
     /// The slab of the moving body's node.
     SlabOfMoving,
     /// The slab of the fixed body's node.
     SlabOfFixed,
-    /// A plane across the shortest way between their boxes.
+    /// A plane orthogonal to the shortest vector between their boxes.
     Way,
-    /// Two leaves: each pair of facets was looked at by itself.
+    /// Both nodes are leaves, and each pair of their facets was compared individually.
     Examined,
 }
 
 /// The axes along which all nodes are measured: those of the fixed and of the moving body.
 pub(crate) struct Axes {
-    /// As the moving and as the fixed body see them.
+    /// The axes in the frames of the moving and of the fixed body.
     seen: [[Axis; 6]; 2],
-    /// What the length of three gaps is multiplied by.
+    /// Factor for the length of three gaps, because the axes are only nearly orthonormal.
     shares: [f64; 2],
-    /// The axes in the setting frame, by columns.
+    /// The axes in the setting frame, as columns.
     frames: [DMat3; 2],
-    /// Of the moving and of the fixed body, where the axes of slabs go.
+    /// Maps the axes of slabs of the moving and of the fixed body to the setting frame.
     duals: [DMat3; 2],
-    /// Whether the moving body has the axes of the fixed one.
+    /// Whether both bodies have the same axes.
     pub(super) shared: bool,
-    /// What bounds are lowered by.
+    /// Length by which bounds are lowered.
     rounding: f64,
 }
 
@@ -72,7 +67,7 @@ pub(crate) struct Axes {
 struct Axis {
     local: DVec3,
     offset: f64,
-    /// Which cuts are along it, and against it.
+    /// The cuts along the axis and against it.
     parts: [Parts; 2],
 }
 
@@ -83,7 +78,7 @@ impl Axis {
         Self { local, offset: axis.dot(side.offset[0]), parts }
     }
 
-    /// The least and the largest place of a node along it.
+    /// Returns the least and the largest coordinate of a node along the axis.
     #[inline]
     fn range(&self, middle: DVec3, half: DVec3, depths: &Depths) -> [f64; 2] {
         let (at, width) = (self.local.dot(middle) + self.offset, self.local.abs().dot(half));
@@ -109,13 +104,13 @@ impl Axes {
 /// A node in the setting frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
-    /// Along the axes of the fixed and of the moving body.
+    /// Least coordinates along the axes of the fixed and of the moving body.
     low: [DVec3; 2],
     high: [DVec3; 2],
-    /// The axis of its slab, of length 1, and where that is; 0 if there is none.
+    /// Unit vector of the axis of its slab; 0 if there is none.
     axis: DVec3,
     slab: [f64; 2],
-    /// The box in the body frame.
+    /// Centre of the box in the body frame.
     middle: DVec3,
     half: DVec3,
     pub(super) node: u32,
@@ -148,7 +143,7 @@ impl View {
         }
     }
 
-    /// The least `n.x` over the node, `n` a unit vector.
+    /// Returns a lower bound of `n.x` over the node for a unit vector `n`.
     fn least_along(&self, side: &Side, n: DVec3) -> f64 {
         let along = self.axis.dot(n);
         let (mut rest, mut by_slab) = (n, 0.0);
@@ -164,7 +159,7 @@ impl View {
     }
 }
 
-/// The slab of a node in the setting frame.
+/// Returns the slab of a node in the setting frame: its axis and range. The axis is 0 if there is no slab.
 fn slab(dual: DMat3, side: &Side, node: &Node) -> (DVec3, [f64; 2]) {
     let axis = dual * node.axis;
     let length = axis.length();
@@ -186,7 +181,7 @@ pub(super) struct Couple<'s, 'a> {
 }
 
 impl Couple<'_, '_> {
-    /// No point of one is nearer to the other, by one reason.
+    /// Returns a lower bound of the distance of the nodes, from one reason.
     pub(super) fn bound(&self, reason: Apart) -> f64 {
         let gap = match reason {
             Apart::AxesOfFixed => self.gaps(0).length() * self.axes.shares[0],
@@ -199,7 +194,7 @@ impl Couple<'_, '_> {
         if gap.is_nan() { 0.0 } else { (gap - self.axes.rounding).max(0.0) }
     }
 
-    /// The largest bound, and why; what is not below `limit` will do.
+    /// Returns the largest bound and its reason. Stops at the first bound that is not below `limit`.
     pub(super) fn best(&self, limit: f64) -> (f64, Apart) {
         let mut best = (self.bound(Apart::AxesOfFixed), Apart::AxesOfFixed);
         let rest = [Apart::AxesOfMoving, Apart::SlabOfMoving, Apart::SlabOfFixed, Apart::Way];
@@ -215,7 +210,7 @@ impl Couple<'_, '_> {
         best
     }
 
-    /// The gaps of the boxes along the axes of a frame, signed from the moving to the fixed body.
+    /// Returns the gaps of the boxes along the axes of a frame, signed from the moving to the fixed body.
     #[inline]
     fn gaps(&self, frame: usize) -> DVec3 {
         let ahead = self.fixed.low[frame] - self.moving.high[frame];
@@ -223,7 +218,7 @@ impl Couple<'_, '_> {
         ahead.max(DVec3::ZERO) - behind.max(DVec3::ZERO)
     }
 
-    /// From the slab of the moving node to the fixed one, on whichever side that is.
+    /// Returns the distance from the slab of the moving node to the fixed node, on the side where the fixed node is.
     fn past_moving(&self) -> f64 {
         let Self { scene, moving, fixed, .. } = self;
         let n = moving.axis;
@@ -251,7 +246,7 @@ impl Couple<'_, '_> {
         }
     }
 
-    /// Whether the fixed node is farther along a vector.
+    /// Checks whether the fixed node is farther along a vector than the moving one.
     fn toward(&self, n: DVec3) -> bool {
         let [p, q] = [(&self.scene.moving, self.moving), (&self.scene.fixed, self.fixed)]
             .map(|(side, view)| side.matrix * view.middle + side.offset[0]);
@@ -261,7 +256,7 @@ impl Couple<'_, '_> {
     fn along_way(&self) -> f64 {
         let gaps = [0, 1].map(|frame| self.gaps(frame));
         let frame = usize::from(gaps[1].length_squared() > gaps[0].length_squared());
-        // Of the gaps along the axes, what is between the bodies.
+        // The shortest vector between the boxes, from the gaps along the axes.
         let Some(n) = unit(self.axes.frames[frame] * gaps[frame]) else {
             return f64::NEG_INFINITY;
         };

@@ -1,10 +1,11 @@
-//! How far two solids are apart.
+//! Distance of two solids.
 //!
-//! Data flow: two placed solids -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes
-//! and [`triangle`] for pairs of facets) -> the two facets that are nearest, and a length that no pair is below.
-//! That is of surfaces alone: whether one body lies inside the other is asked of [`inside`](super::inside).
-//! A direction plays no part: the scene's is `z`, so that its query frame is the setting frame. The questions are
-//! in `pair/solid`.
+//! - Data flow: two placed solids -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
+//!   [`triangle`] for pairs of facets) -> the nearest two facets, and a lower bound of the distance of all pairs.
+//! - The search compares surfaces only. [`inside`](super::inside) tests whether one body lies inside the other.
+//! - The direction has no effect. The scene's direction is `z`, so that its query frame equals the setting frame.
+//!
+//! The queries themselves are in `pair`.
 
 mod bound;
 pub(crate) mod search;
@@ -21,7 +22,7 @@ use colltrans_convex::body::Feature;
 use search::{Found, corners};
 use triangle::Nearest;
 
-/// The proof that two solids are not farther from each other than a number.
+/// Proof of an upper bound of the distance of two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -31,19 +32,19 @@ use triangle::Nearest;
 pub enum SolidNear {
     /// A point of each body.
     Points {
-        /// The triangles that they are of, as positions in [`Solid::triangles`](crate::Solid::triangles).
+        /// The triangles that contain the points, as positions in [`Solid::triangles`](crate::Solid::triangles).
         triangles: [u32; 2],
-        /// The weights of their corners, not negative: the points are `sum w_i p_i / sum w_i`.
+        /// Weights of the triangles' corners, not negative: the points are `sum w_i p_i / sum w_i`.
         weights: [[f64; 3]; 2],
-        /// At least the distance of the two points, in world units, rounded up.
+        /// Upper bound of the distance of the two points, in world units, rounded up.
         distance: f64,
     },
-    /// The bodies have a point in common: two facets have, or a shell is inside.
+    /// The bodies have a common point: two facets share one, or a shell is inside the other body.
     Meeting(Overlap),
 }
 
 impl SolidNear {
-    /// At least the distance of the bodies.
+    /// Returns an upper bound of the distance of the bodies.
     pub const fn distance(&self) -> f64 {
         match self {
             Self::Points { distance, .. } => *distance,
@@ -52,16 +53,16 @@ impl SolidNear {
     }
 }
 
-/// How near two solids are at least, as a search has found. What proves it covers all pairs of facets, and is
-/// asked for apart: [`SolidPair::certified_distance`](crate::SolidPair::certified_distance).
+/// Lower bound of the distance of two solids, found by a search. Its proof covers all pairs of facets and is computed
+/// on request by [`SolidPair::certified_distance`](crate::SolidPair::certified_distance).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolidGap {
-    /// At most the distance of any two points of the bodies, in world units, rounded down.
+    /// Lower bound of the distance of any two points of the bodies, in world units, rounded down.
     pub gap: f64,
 }
 
-/// Two points of the bodies and where they are.
+/// A point of each of two triangles, nearest to the other one.
 #[derive(Debug, Clone, Copy)]
 pub struct Spot {
     pub triangles: [u32; 2],
@@ -69,7 +70,7 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// Of two triangles.
+    /// Computes the nearest points of two triangles.
     pub(crate) fn of(scene: &Scene, triangles: [u32; 2]) -> Self {
         let [f, g] = of_both(scene, triangles);
         Self { triangles, nearest: triangle::nearest(&f, &g, scene.noise) }
@@ -82,13 +83,13 @@ impl Spot {
         SolidNear::Points { triangles: self.triangles, weights, distance }
     }
 
-    /// The two points in the setting frame.
+    /// Returns the two points in the setting frame.
     #[inline]
     pub fn points(&self, scene: &Scene) -> [DVec3; 2] {
         points_of(scene, self.triangles, self.nearest.weights)
     }
 
-    /// What of each body is there.
+    /// Returns the features of both bodies at the points.
     #[inline]
     pub fn features(&self, scene: &Scene) -> [Feature; 2] {
         let sides = [&scene.moving, &scene.fixed];
@@ -114,19 +115,20 @@ fn of_both(scene: &Scene, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
     [corners(&scene.moving, s as usize), corners(&scene.fixed, t as usize)]
 }
 
-/// The points of two triangles that weights say, in the setting frame.
+/// Returns the points of two triangles with the given weights, in the setting frame.
 #[inline]
 pub fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
     let corners = of_both(scene, triangles);
     [0, 1].map(|k| triangle::mean(&corners[k], weights[k]))
 }
 
-/// Where the bodies have a point in common, given how far their surfaces are apart at least.
+/// Finds a place where the bodies have a common point, given a lower bound of the distance of their surfaces; `None` if
+/// there is no such place.
 pub(crate) fn meeting(scene: &Scene, surfaces: f64, steps: &mut SolidSteps) -> Option<Overlap> {
     if surfaces > 0.0 { overlap::nested(scene) } else { overlap::touch(scene, steps) }
 }
 
-/// A point that both bodies have, in the setting frame, each body's own to within rounding.
+/// Returns a common point of both bodies in the setting frame, once for each body, equal within rounding.
 pub(crate) fn shared_points(scene: &Scene, place: Overlap) -> [DVec3; 2] {
     let corner = |side: &Side, t: u32| [corners(side, t as usize)[0]; 2];
     match place {
@@ -136,8 +138,8 @@ pub(crate) fn shared_points(scene: &Scene, place: Overlap) -> [DVec3; 2] {
     }
 }
 
-/// At least the distance of points that are claimed to be of the bodies, in world units; nothing if there are no
-/// such points.
+/// Returns an upper bound of the distance of the points with the claimed weights, in world units; `None` if a triangle
+/// does not exist.
 pub(crate) fn distance_of(
     scene: &Scene,
     triangles: [u32; 2],

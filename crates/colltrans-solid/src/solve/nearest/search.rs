@@ -1,8 +1,9 @@
-//! [Best first](best_first) through both trees.
+//! Distance of two solids, [best first](best_first) through both trees.
 //!
-//! The search ends when no bound is below the *limit*: the least length found less [`SLACK`] noises, as bounds of nodes that
-//! are exactly as far apart as the nearest facets are lowered by their rounding. Every pair of nodes that is not split is a
-//! *cut*, with its reason: together they are the proof that nothing is nearer.
+//! - The search ends when no bound is below the *limit*: the least length found, minus [`SLACK`] noises. Without this
+//!   slack, rounded bounds of nodes exactly as distant as the nearest facets would be below the limit.
+//! - Every pair of nodes that is not split is a *cut* with a reason. Together the cuts form the cover, which proves
+//!   that no pair of facets is nearer.
 
 use std::collections::BinaryHeap;
 
@@ -13,54 +14,54 @@ use crate::solve::steps::SolidSteps;
 use colltrans_kernel::descent::{Entry, Pairs, Seen, best_first, node_to_split, replaced};
 use colltrans_kernel::work;
 
-/// How far, in noises, the limit is below the least length found.
+/// Distance, in noises, of the limit below the least length found.
 const SLACK: f64 = 3.0;
 
-/// The two facets that are nearest to each other.
+/// The two nearest facets.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) triangles: [u32; 2],
     pub(crate) nearest: Nearest,
 }
 
-/// When a search may end.
+/// Conditions under which a search may end early.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Until {
-    /// Pairs at this distance or beyond are of no interest.
+    /// Distance from which on pairs are of no interest.
     pub(crate) beyond: f64,
-    /// A pair that is no farther apart will do, as computed.
+    /// Computed distance up to which a pair is sufficient.
     pub(crate) enough: f64,
 }
 
 impl Until {
-    /// The least distance.
+    /// Searches for the least distance.
     pub(crate) const LEAST: Self = Self { beyond: f64::INFINITY, enough: f64::NEG_INFINITY };
 }
 
-/// The facets of a leaf.
+/// Returns the facets of a leaf.
 fn facets(side: &Side, node: u32) -> impl Iterator<Item = Corners> {
     side.solid.nodes()[node as usize].facets().map(|t| corners(side, t))
 }
 
-/// A facet in the setting frame.
+/// Returns the corners of a facet in the setting frame.
 pub(crate) fn corners(side: &Side, triangle: usize) -> Corners {
     let vertices = side.solid.vertices();
     side.solid.triangles()[triangle].map(|v| side.matrix * vertices[v as usize] + side.offset[0])
 }
 
-/// One search under way.
+/// State of a search.
 pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Apart)> {
     scene: &'s Scene<'a>,
     axes: Axes,
-    /// The nodes of either body that it has come to, and the facets of leaves.
+    /// The visited nodes of each body, and the facets of their leaves.
     seen: [Seen<View, Corners>; 2],
     until: Until,
-    /// Pairs at this distance or beyond are of no interest.
+    /// Distance from which on pairs are of no interest now.
     limit: f64,
     found: Option<Found>,
-    /// No pair of facets that was looked at is nearer.
+    /// Lower bound on the distance of all pairs of facets that were examined.
     examined: f64,
-    /// Told of every pair of nodes that is not split, and why.
+    /// Callback that receives every pair of nodes that is not split, and the reason.
     cut: F,
     pub(crate) steps: SolidSteps,
 }
@@ -80,7 +81,8 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
         }
     }
 
-    /// The nearest pair below the limit, and a length that no pair is below.
+    /// Returns the nearest pair below the limit, if there is one, and a lower bound of the distance of all pairs. The
+    /// bound is 0 if a sufficient pair ended the search.
     pub(crate) fn run(&mut self) -> (Option<Found>, f64) {
         self.seen[0].start(View::new(&self.axes, &self.scene.moving, 0));
         self.seen[1].start(View::new(&self.axes, &self.scene.fixed, 0));
@@ -93,7 +95,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
         [0, 1].map(|k| self.seen[k].view(views[k]).node)
     }
 
-    /// All pairs of facets of two leaves.
+    /// Examines all pairs of facets of two leaves.
     fn leaves(&mut self, views: [u32; 2], nodes: [u32; 2]) {
         self.steps.leaves += 1;
         let sides = [&self.scene.moving, &self.scene.fixed];
@@ -110,7 +112,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
     #[inline]
     fn facets(&mut self, triangles: [u32; 2], f: &Corners, g: &Corners) {
         let noise = self.scene.noise;
-        // Most of what is near the best pair is beyond a plane across the same normal.
+        // A plane with the normal of the best pair excludes most pairs near it.
         if let Some(best) = &self.found
             && triangle::gap(f, g, best.nearest.normal) - GAP * noise >= self.limit
         {
@@ -180,7 +182,7 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
     }
 }
 
-/// What a reason proves of two nodes: no pair of their facets is nearer.
+/// Returns the lower bound, proven by `reason`, of the distance of all facets of two nodes.
 pub(crate) fn proven(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
     if reason != Apart::Examined {
         let moving = View::new(axes, &scene.moving, nodes[0]);

@@ -1,56 +1,39 @@
-//! How far two triangles are apart: two points of them, and a plane between.
+//! Distance of two triangles: a point of each, and a separating plane.
 //!
-//! Above: two points of the triangles, `p` of `f` and `q` of `g`, by weights of corners. Below: along any
-//! unit vector `n`, no two points are nearer than the *gap*, the least `n.q` of `g`'s corners less the
-//! largest `n.p` of `f`'s. The nearest points are a corner and a point within the other triangle, or points of
-//! two edges (then `q - p` along `n` is the gap), or the triangles cross. [`examine`] tries the edges first, as
-//! Larsen, Gottschalk, Lin and Manocha do ("Fast distance queries with rectangular swept sphere volumes",
-//! ICRA 2000), and ends at the first pair of points between which a plane shows that nothing is nearer. No
-//! answer hangs on the way there: where the plane's gap is not within [`TIGHT`] noises of the length, as for
-//! slivers, parallel edges and triangles that all but touch, [`carefully`] takes the best of *all* pairs of
-//! features and the best of all planes that the features span.
-//!
-//! The normal of a short `v = q - p` is not `v / |v|`, which rounding turns by `u S / |v|`: that tilts the
-//! plane by as much times the triangles' length. Planes are those of the features: across two edges, of a face,
-//! or `v` made orthogonal to an edge. A product of two edges that are nearly parallel, or of those of a sliver,
-//! is turned by `u / s` (`s` the sine of their angle), but made orthogonal to the longer edge it is off that one
-//! by `u` alone, and what is left of the turn acts on no more than `s` times the other's length. If the best
-//! normal lies within the range of those that have the same two corners in front, `v / |v|` is as good as it
-//! but for `(u S)^2 / |v|`; if it is nearer than `u S / |v|` to the end of that range, so is one of the others.
-//!
-//! Rounding. Corners in the setting frame are off by `5.2 u |v|` for the matrix (`3 u` for each product of a
-//! row, the rows together `sqrt 3`), those of the fixed body by `u |q|` for adding the offset and `u` of it
-//! for its own rounding more: those of the two bodies together by less than `6.5 u S`.
-//!
-//! - *Length.* A mean of corners is off by `3 u` of their size, and by `2 u` as the weights' sum is 1 but for that:
-//!   `5 u S` for both; the difference by `u S`; the length by `4 u S`. Together less than `17 u S`: one noise
-//!   (`32 u S`) above the computed length is a distance of points that belong to the bodies.
-//! - *Gap.* The products with `n` are off by `3 u S`, their difference by `u S`, and by `4 u S` as the length of `n`
-//!   is 1 but for `4 u`. Together less than `15 u S`: half a noise below the computed gap is a lower bound.
+//! - Upper bound: the distance of points `p` of `f` and `q` of `g`, given by weights of corners. Lower bound: along any
+//!   unit vector `n`, the *gap*, the least `n.q` of `g`'s corners minus the largest `n.p` of `f`'s.
+//! - The nearest points are a corner and a point within the other triangle, or points of two edges (then the gap is
+//!   `n.(q - p)`), or the triangles cross.
+//! - [`examine`] tries the edges first (Larsen, Gottschalk, Lin and Manocha, "Fast distance queries with rectangular
+//!   swept sphere volumes", ICRA 2000). It ends when a plane proves that no points are nearer than those found.
+//! - The result does not depend on that path. If the gap is not within [`TIGHT`] noises of the length, [`carefully`]
+//!   takes the best of *all* pairs of features and of all planes that the features span. Choice of normals, and
+//!   rounding: `docs/theory/solid-distance.md`.
 
 use glam::DVec3;
 
-/// How many noises a length may be above the gap of its plane before everything is tried.
+/// Difference, in noises, of a length and the gap of its plane above which all features are tried.
 const TIGHT: f64 = 0.5;
 
-/// What a computed gap is lowered by, in noises.
+/// Noises by which a computed gap is lowered.
 pub const GAP: f64 = 0.5;
 
-/// What a computed length is raised by, in noises.
+/// Noises by which a computed length is raised.
 pub const LENGTH: f64 = 1.0;
 
 /// The corners of a triangle in the setting frame.
 pub type Corners = [DVec3; 3];
 
-/// Two points of two triangles, and a plane between.
+/// A point of each of two triangles, and a plane between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
-    /// Of the corners of each.
+    /// Weights of the corners of each triangle.
     pub weights: [DVec3; 2],
-    /// How far the points are apart, as computed.
+    /// Computed distance of the points.
     pub(crate) length: f64,
-    /// A unit vector from `f` to `g`, and the gap along it, as computed; below 0 where the triangles cross.
+    /// Unit vector from `f` to `g`.
     pub normal: DVec3,
+    /// Computed gap along `normal`; negative if the triangles cross.
     pub gap: f64,
 }
 
@@ -60,7 +43,7 @@ impl Nearest {
         Candidate { weights, way, square: way.length_squared() }
     }
 
-    /// The same with the best of two planes.
+    /// Returns this result with the better of two planes: its own, and the one with the normal `along`.
     fn with_plane(self, f: &Corners, g: &Corners, along: DVec3) -> Self {
         let Some(normal) = unit(along) else { return self };
         let gap = gap(f, g, normal);
@@ -68,7 +51,7 @@ impl Nearest {
     }
 }
 
-/// Two points, on their way to be the nearest.
+/// Two points that may be the nearest ones.
 #[derive(Clone, Copy)]
 struct Candidate {
     weights: [DVec3; 2],
@@ -76,19 +59,19 @@ struct Candidate {
     square: f64,
 }
 
-/// The point of a triangle with these weights.
+/// Returns the point of a triangle with the given weights.
 #[inline]
 pub fn mean([a, b, c]: &Corners, weights: DVec3) -> DVec3 {
     *a * weights.x + *b * weights.y + *c * weights.z
 }
 
-/// How far apart points with these weights are, as computed.
+/// Returns the computed distance of the points with the given weights.
 #[inline]
 pub fn length(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> f64 {
     (mean(g, weights[1]) - mean(f, weights[0])).length()
 }
 
-/// How far `g` is before `f` along a vector.
+/// Returns the gap from `f` to `g` along a vector, in multiples of its length; negative if they overlap along it.
 #[inline]
 pub(crate) fn gap(f: &Corners, g: &Corners, n: DVec3) -> f64 {
     least(g, n) - largest(f, n)
@@ -104,14 +87,14 @@ pub(crate) fn least([a, b, c]: &Corners, n: DVec3) -> f64 {
     n.dot(*a).min(n.dot(*b)).min(n.dot(*c))
 }
 
-/// A vector at length 1, to within `4 u`; lengths whose squares would leave the range are none.
+/// Normalises a vector, within `4 u`. `None` if its squared length is outside the range from `1e-280` to `1e280`.
 pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
     let square = v.length_squared();
     (square > 1e-280 && square < 1e280).then(|| v / square.sqrt())
 }
 
-/// Two points of the triangles that are nearest, and a plane between; `None` if a plane shows that they
-/// are at least `limit` apart.
+/// Finds nearest points of two triangles, and a plane between; `None` if a plane shows that their distance is at least
+/// `limit`.
 pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Option<Nearest> {
     let end = limit + GAP * noise;
     match by_features(f, g, end) {
@@ -138,28 +121,28 @@ pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Optio
     }
 }
 
-/// Two points of the triangles that are nearest, and a plane between.
+/// Finds nearest points of two triangles, and a plane between.
 #[inline]
 pub fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
     examine(f, g, f64::INFINITY, noise).unwrap_or_else(|| {
-        // No plane is infinitely far from another; any points will do.
+        // No plane proves an infinite distance, so any points are valid here.
         let weights = [DVec3::X; 2];
         let length = length(f, g, weights);
         Nearest { weights, length, normal: DVec3::X, gap: f64::NEG_INFINITY }
     })
 }
 
-/// What [`by_features`] comes to.
+/// The result of [`by_features`].
 enum Quick {
-    /// No two points are as near as asked.
+    /// A plane shows that no two points are nearer than the limit.
     Beyond,
-    /// The nearest, and what a plane between might be across.
+    /// The nearest points, and a candidate for the normal of a plane between.
     Found(Candidate, DVec3),
-    /// Nothing showed that they do not cross.
+    /// Nothing showed that the triangles do not cross.
     Crossing(Candidate),
 }
 
-/// The nearest points but for what rounding does.
+/// Finds the nearest points, up to rounding errors.
 fn by_features(f: &Corners, g: &Corners, end: f64) -> Quick {
     let (e, h) = (edges(f), edges(g));
     let mut best = (f64::INFINITY, [0, 0], [0.0; 2]);
@@ -170,12 +153,12 @@ fn by_features(f: &Corners, g: &Corners, end: f64) -> Quick {
             let (p, q) = (f[i] + e[i] * s, g[j] + h[j] * t);
             let way = q - p;
             let square = way.length_squared();
-            // Nothing is nearer than what is not a number: an edge without a length.
+            // The distance of an edge without length is NaN. It is never the nearest.
             if square.is_nan() || square >= best.0 {
                 continue;
             }
             best = (square, [i, j], [s, t]);
-            // How far the third corners reach into the gap between the edges.
+            // Distances by which the third corners extend into the gap between the edges.
             let into = (f[(i + 2) % 3] - p).dot(way).max(0.0);
             let back = (g[(j + 2) % 3] - q).dot(way).min(0.0);
             if into == 0.0 && back == 0.0 {
@@ -209,12 +192,12 @@ fn by_features(f: &Corners, g: &Corners, end: f64) -> Quick {
     if apart { edge_pair(f, g, best) } else { Quick::Crossing(edge_points(f, g, best)) }
 }
 
-/// Whether a plane shows that they are farther apart.
+/// Checks whether a plane with this normal shows a distance of at least `end`.
 fn is_beyond(f: &Corners, g: &Corners, along: DVec3, end: f64) -> bool {
     unit(along).is_some_and(|n| gap(f, g, n) >= end)
 }
 
-/// The points on two edges.
+/// Returns the points on two edges.
 fn edge_points(
     f: &Corners,
     g: &Corners,
@@ -247,14 +230,15 @@ fn along_edge(k: usize, s: f64) -> DVec3 {
     DVec3::from_array(weights)
 }
 
-/// The shares at which two segments, each from a point by a vector, are nearest, to within rounding.
+/// Returns the positions, from 0 to 1, at which two segments are nearest, up to rounding. Each segment is given by a
+/// point and a vector.
 fn on_edges((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
     let way = b - a;
     let (ee, hh, eh) = (e.length_squared(), h.length_squared(), e.dot(h));
     let (we, wh) = (way.dot(e), way.dot(h));
     let s = share(we * hh - wh * eh, ee * hh - eh * eh);
     let t = (s * eh - wh) / hh;
-    // An edge without a length is its first end.
+    // An edge without length is represented by its first end.
     if t <= 0.0 || hh == 0.0 {
         [share(we, ee), 0.0]
     } else if t >= 1.0 {
@@ -264,19 +248,19 @@ fn on_edges((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
     }
 }
 
-/// A quotient between 0 and 1; 0 if it is none.
+/// Returns a quotient clamped to the range from 0 to 1; 0 if it is NaN.
 fn share(a: f64, b: f64) -> f64 {
     let x = a / b;
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
-/// Where the corners of a triangle are beside the plane of another.
+/// The position of a triangle's corners relative to the plane of another one.
 enum Side {
-    /// On both sides, or on it.
+    /// The corners are on both sides, or on the plane.
     Through,
-    /// On one side, to which this points, but the nearest of them not over the face.
+    /// All corners are on the side to which the normal points. The nearest one is not over the face.
     Off(DVec3),
-    /// The nearest corner over the face: the weights of the point below, which corner, and the normal.
+    /// The nearest corner is over the face: weights of the point below it, its number, and the normal.
     Foot(DVec3, usize, DVec3),
 }
 
@@ -295,7 +279,7 @@ fn on_face(face: &Corners, other: &Corners) -> Side {
     }
 }
 
-/// A normal of a triangle, of its edges' size squared; see the module's head.
+/// Returns a normal of a triangle, as long as the square of its edges. It is orthogonal to the longest edge.
 fn plane(corners: &Corners) -> DVec3 {
     let [e, h, k] = edges(corners);
     let (x, y, z) = (e.length_squared(), h.length_squared(), k.length_squared());
@@ -309,31 +293,32 @@ fn plane(corners: &Corners) -> DVec3 {
     without(n, longest)
 }
 
-/// The weights of the point of a triangle below or above another point, if there is one.
+/// Returns the weights of the point of a triangle below or above another point; `None` if that point is outside the
+/// triangle.
 fn foot([a, b, c]: &Corners, normal: DVec3, point: DVec3) -> Option<DVec3> {
     let (u, v, square) = (*b - *a, *c - *a, normal.length_squared());
     let solve = |x: DVec3| [x.cross(v).dot(normal) / square, u.cross(x).dot(normal) / square];
     let x = point - *a;
     let [s, t] = solve(x);
-    // Once more for what is left: a sliver's first answer is off by its length over its height.
+    // A second step for the remainder: the first solution of a sliver is inaccurate by its length over its height.
     let [ds, dt] = solve(x - u * s - v * t);
     let (s, t) = (s + ds, t + dt);
     (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then(|| DVec3::new(1.0 - (s + t), s, t))
 }
 
-/// A vector less its part along another one.
+/// Returns a vector minus its component along another one.
 fn without(v: DVec3, edge: DVec3) -> DVec3 {
     let square = edge.length_squared();
     if square > 0.0 { v - edge * (v.dot(edge) / square) } else { v }
 }
 
-/// A vector orthogonal to two, the longer one exactly but for `u`.
+/// Returns a vector orthogonal to two others, within `u` for the longer one.
 fn across(e: DVec3, h: DVec3) -> DVec3 {
     let longer = if e.length_squared() >= h.length_squared() { e } else { h };
     without(e.cross(h), longer)
 }
 
-/// The best of all pairs of features and of all planes.
+/// Returns the best of all pairs of features and of all planes.
 #[cold]
 fn carefully(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
     let mut best = known;
@@ -360,8 +345,8 @@ fn carefully(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
     best
 }
 
-/// Tells of points of a face and shares of an edge that may be nearest: below its first end, and where it
-/// goes through.
+/// Calls `tell` with points of a face and positions along an edge that may be nearest: below its first end, and where
+/// the edge passes through the face.
 fn points_over(face: &Corners, [a, b]: [DVec3; 2], mut tell: impl FnMut(DVec3, f64)) {
     let normal = plane(face);
     if let Some(on) = foot(face, normal, a) {
@@ -376,8 +361,8 @@ fn points_over(face: &Corners, [a, b]: [DVec3; 2], mut tell: impl FnMut(DVec3, f
     }
 }
 
-/// As [`on_edges`], for edges that may be all but parallel: by their product, which has the angle itself
-/// and not its square, and then each share once more for the other.
+/// Returns the positions of [`on_edges`] for edges that may be nearly parallel. The cross product of the edges depends
+/// on the angle itself and not on its square. Then each position is computed once more from the other.
 fn on_edges_carefully((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
     let (way, normal) = (b - a, e.cross(h));
     let mut s = share(way.cross(h).dot(normal), normal.length_squared());
@@ -389,7 +374,7 @@ fn on_edges_carefully((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2
     [s, t]
 }
 
-/// The normals of all planes that features of the two span, without a sign.
+/// Returns the normals of all planes that the features span, with either sign.
 fn planes(f: &Corners, g: &Corners, best: Nearest) -> impl Iterator<Item = DVec3> {
     let (e, h) = (edges(f), edges(g));
     let way = mean(g, best.weights[1]) - mean(f, best.weights[0]);
@@ -411,7 +396,7 @@ mod tests {
     use crate::body::exact::turn;
     use colltrans_kernel::noise::Noise;
 
-    /// Corners with ties, slivers and flat places; the second triangle near the first one or not.
+    /// Returns triangles with ties, slivers and coplanar places. The second triangle need not be near the first one.
     fn draw(random: &mut Random) -> [Corners; 2] {
         let kind = random.int(0, 7);
         let any = |r: &mut Random| DVec3::from_array([0; 3].map(|_| r.range(-1.0, 1.0)));
@@ -428,12 +413,12 @@ mod tests {
                     let [a, b, c] = free;
                     [a, b, a + (b - a) * share + c * thin]
                 }
-                // Edges that are all but parallel.
+                // Nearly parallel edges.
                 5 => {
                     let thin = 10.0_f64.powf(r.range(-15.0, -3.0));
                     [free[0], free[0] + DVec3::X + any(r) * thin, free[2]]
                 }
-                // One plane.
+                // Coplanar triangles.
                 6 => free.map(|v| DVec3::new(v.x, v.y, 0.25)),
                 _ => grid.map(|v| DVec3::new(v.x, v.y, 1.0)),
             }
@@ -447,7 +432,7 @@ mod tests {
         [triangle(random), triangle(random)]
     }
 
-    /// The second triangle moved so that the gap along its plane is about so much.
+    /// Moves the second triangle so that the gap along its plane is about `gap`.
     fn put_near(f: &Corners, g: Corners, gap: f64) -> Corners {
         let Some(nearest) = examine(f, &g, f64::INFINITY, 1e-15) else { return g };
         let by = nearest.normal * (gap - nearest.gap);

@@ -15,11 +15,11 @@ use crate::cast::tolerance::least_tolerance_from;
 use crate::cast::{Claim, Cover};
 #[cfg(feature = "serde")]
 use crate::solve::nearest::points_of;
-use crate::solve::nearest::search::{Search, Until, proven};
+use crate::solve::nearest::search::{Search, Until, proven_bound};
 use crate::solve::nearest::{
-    Apart, Axes, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
+    Apart, Axes, SolidGap, SolidNear, Spot, distance_of, find_common_point, shared_points, triangle,
 };
-use crate::solve::overlap::{is_touch, nested};
+use crate::solve::overlap::{is_touch, nested_shell};
 use crate::solve::scene::Scene;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{CertificateError, Distance, Within, are_weights, checked_as};
@@ -265,7 +265,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
         let NearestFacets { spot, lower, cover, mut steps } =
             search_nearest(self, &scene, until, prove && until.beyond.is_finite());
         let near = spot.map(|spot| spot.near(&scene));
-        let meeting = || nested(&scene).map(SolidNear::Meeting);
+        let meeting = || nested_shell(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
         if let Some(near) = closer {
             return Ok(((Within::Closer(near), steps), Unproven { near, cover: None }));
@@ -408,7 +408,7 @@ fn least_proven_distance(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, Cer
         if reason == Apart::Examined && !(leaf(0) && leaf(1)) {
             return false;
         }
-        least = least.min(proven(scene, &axes, nodes, reason));
+        least = least.min(proven_bound(scene, &axes, nodes, reason));
         least > 0.0
     });
     walked.map_err(|entry| CertificateError::Cover { entry })?;
@@ -447,7 +447,7 @@ fn verify_cover(scene: &Scene, certificate: &DistanceCertificate) -> Result<f64,
     if !(0.0..=proven).contains(claimed) || met {
         return Err(CertificateError::Bound { proven, claimed: *claimed });
     }
-    if nested(scene).is_some() {
+    if nested_shell(scene).is_some() {
         return Err(CertificateError::Start);
     }
     Ok(proven)

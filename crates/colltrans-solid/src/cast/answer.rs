@@ -25,9 +25,9 @@ use crate::body::{AsSolid, Solid};
 use crate::solve::bound::Reason;
 use crate::solve::contact::{SolidContact, contact, true_place};
 use crate::solve::overlap::{self, Overlap};
-use crate::solve::scene::{Scene, noise_of, permutes};
+use crate::solve::scene::{Scene, noise_and_gap, permutes_axes};
 use crate::solve::search::{Aim, Found, Search, Workspace, node_rounding};
-use crate::solve::separate::separation;
+use crate::solve::separate::find_separation;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{Bounded, CertificateError, Clearance, Outcome};
 use colltrans_convex::body::Placed;
@@ -55,8 +55,9 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     fn tolerance(&self) -> f64 {
         self.options.tolerance.unwrap_or_else(|| {
             let (setting, keep) = (&self.setting, self.options.keep);
-            let permuted = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
-            default_tolerance(permuted, noise_of(setting.scale(), keep).0)
+            let permuted =
+                permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
+            default_tolerance(permuted, noise_and_gap(setting.scale(), keep).0)
         })
     }
 
@@ -172,7 +173,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, &mut steps);
         Ok(match found {
             Some(found) => Outcome::Contact(contact(&scene, &found, found.bounded(&scene), steps)),
-            None => Outcome::Separated(SolidFree { separation: separation(&scene), steps }),
+            None => Outcome::Separated(SolidFree { separation: find_separation(&scene), steps }),
         })
     }
 
@@ -228,7 +229,7 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
         }
         let mut entries = Vec::new();
         let mut note = |entry| {
-            steps.count(entry);
+            steps.count_pair(entry);
             entries.push(entry);
         };
         match overlap::find_with(scene, &mut note) {
@@ -277,7 +278,7 @@ fn answer_without_search<'a>(
         return Ok(EarlyAnswer::Answer(answer));
     }
     let scene = get_or_build_scene(cast, scene)?;
-    if touching && overlap::pass(scene, gap_limit(cast, scene)) {
+    if touching && overlap::boxes_exclude_contact(scene, gap_limit(cast, scene)) {
         steps.nodes += 1;
         return Ok(EarlyAnswer::Answer(answer_from_search(cast, scene, None, *steps)));
     }
@@ -374,7 +375,7 @@ fn answer_from_search(
 ) -> Clearance<Solid> {
     let Some(found) = found else {
         let to_the_end = cast.options.before.is_none();
-        let separation = to_the_end.then(|| separation(scene)).flatten();
+        let separation = to_the_end.then(|| find_separation(scene)).flatten();
         return Clearance::Free(SolidFree { separation, steps });
     };
     // Distances of contacts are at least 0.

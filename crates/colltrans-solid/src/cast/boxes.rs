@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::{DEFAULT_TOLERANCE_NOISES, SolidCast, SolidFree, check_thickness};
 use crate::body::Solid;
-use crate::solve::scene::permutes;
+use crate::solve::scene::permutes_axes;
 use crate::solve::separate::Boxes;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{Clearance, Separation};
@@ -38,11 +38,11 @@ pub(super) fn answer_by_boxes(cast: &Cast<'_, Solid>) -> BoxAnswer {
     // The boxes of the offset bodies are smaller.
     let slack = TOUCHING_NOISES * noise
         + 2.0 * options.tolerance.unwrap_or(DEFAULT_TOLERANCE_NOISES * noise);
-    if let Some(free) = boxes.across(slack).and_then(|normal| free_by_boxes(cast, normal)) {
+    if let Some(free) = boxes.widest_normal(slack).and_then(|normal| free_by_boxes(cast, normal)) {
         return BoxAnswer::Free(free);
     }
-    let is_axis_aligned = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
-    if is_axis_aligned && boxes.touch(TOUCHING_NOISES * noise) {
+    let is_axis_aligned = permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
+    if is_axis_aligned && boxes.are_touching(TOUCHING_NOISES * noise) {
         BoxAnswer::Touching
     } else {
         BoxAnswer::Undecided

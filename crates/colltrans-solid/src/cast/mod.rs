@@ -240,7 +240,7 @@ impl CastBody for Solid {
 
     fn intersects(cast: &Cast<'_, Self>) -> Result<Intersection<Self>, QueryError> {
         let mut steps = SolidSteps::default();
-        let place = overlap::touch(&cast.scene(0.0), &mut steps);
+        let place = overlap::find_contact(&cast.scene(0.0), &mut steps);
         let evidence = SolidMeeting { place, steps };
         Ok(Intersection { meets: place.is_some(), evidence })
     }
@@ -248,7 +248,9 @@ impl CastBody for Solid {
     fn verify_cast(cast: &Cast<'_, Self>, proof: SolidProof<'_>) -> Result<f64, CertificateError> {
         match proof {
             SolidProof::Clearance(certificate) => verify::verify_clearance(cast, certificate),
-            SolidProof::Separation(separation) => separate::verify(&cast.asked(), separation),
+            SolidProof::Separation(separation) => {
+                separate::verify_separation(&cast.asked(), separation)
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use super::{SolidOptions, StartOverlap};
 use crate::body::Solid;
 use crate::body::tree::split_pair;
-use crate::solve::bound::{Profile, Reason, holds};
+use crate::solve::bound::{Profile, Reason, reason_holds};
 use crate::solve::leaf::{self, Facet, Gap, Meeting};
 use crate::solve::overlap::Overlap;
 use crate::solve::projected::Projected;
@@ -226,20 +226,22 @@ pub(crate) fn leaf_gap_bound(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f6
         for g in &back {
             // Gaps somewhat above the limit count too, because their errors are subtracted.
             let end = limit + leaf::SHARP * scene.noise;
-            let gap = leaf::gap(scene, f, g, end, aim.wanted());
+            let gap = leaf::facet_gap(scene, f, g, end, aim.gap_filter());
             let sharp = |gap: Gap| {
                 let blunt = gap.error > leaf::FINE * scene.noise && gap.at != Meeting::Near;
-                if blunt { leaf::sharpened(scene, f, g) } else { gap }
+                if blunt { leaf::exact_facet_gap(scene, f, g) } else { gap }
             };
             let value = gap.map(sharp);
-            let value = value.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.noise));
+            let value =
+                value.and_then(|gap| Some(aim.contribution(&gap)? - gap.error - scene.noise));
             least = least.min(value.unwrap_or(f64::INFINITY));
         }
     }
-    if rim::matters(scene, nodes) {
+    if rim::may_have_edge_on(scene, nodes) {
         let [f, g] = [true, false].map(|m| Upright::of_leaf(scene, m, nodes[usize::from(!m)]));
         rim::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
-            least = least.min(aim.value(&gap).map_or(f64::INFINITY, |value| value - scene.noise));
+            least = least
+                .min(aim.contribution(&gap).map_or(f64::INFINITY, |value| value - scene.noise));
         });
     }
     least
@@ -257,12 +259,12 @@ pub(crate) fn entry_holds(
     let [p, q] = [&scene.moving, &scene.fixed];
     let projected =
         [Projected::new(scene, p, nodes[0] as usize), Projected::new(scene, q, nodes[1] as usize)];
-    let reaches = [axes.reach(p, &projected[0]), axes.reach(q, &projected[1])];
+    let reaches = [axes.node_extents(p, &projected[0]), axes.node_extents(q, &projected[1])];
     let [a, b] = [0, 1].map(|k| Profile { projected: &projected[k], reach: Some(&reaches[k]) });
     match reason {
         Reason::NotBefore if lower <= 0.0 => aim != Aim::Least,
         Reason::Disjoint | Reason::FaceToFace | Reason::Examined => false,
         Reason::Parting if aim == Aim::Least => false,
-        _ => holds(scene, a, b, reason, lower + node_rounding(scene)),
+        _ => reason_holds(scene, a, b, reason, lower + node_rounding(scene)),
     }
 }

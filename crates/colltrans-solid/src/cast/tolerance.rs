@@ -66,7 +66,7 @@ pub(crate) fn least_tolerance_from(
         let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
         (place, overlapping) = (next, least);
     }
-    let convex = !nominal.keeps() && hulls::are_convex(cast);
+    let convex = !nominal.has_min_gap() && hulls::are_convex(cast);
     let mut between = None;
     let mut is_free = |tolerance| {
         if vanishes(tolerance) {
@@ -77,7 +77,7 @@ pub(crate) fn least_tolerance_from(
         if overlap::is_overlap(&smaller, place) {
             return false;
         }
-        if convex && let Some(normal) = parted::plane(&smaller, between) {
+        if convex && let Some(normal) = parted::separating_normal(&smaller, between) {
             between = Some(normal);
             return true;
         }
@@ -93,8 +93,8 @@ pub(crate) fn least_tolerance_from(
 /// Checks whether the plane with the widest gap between the two facets of a place separates the bodies. Returns
 /// `false` for a shell.
 fn facets_separate_bodies(scene: &Scene, place: Overlap) -> bool {
-    let plane = overlap::widest(scene, place);
-    plane.is_some_and(|(gap, normal)| gap > 0.0 && separate::parts(scene, normal))
+    let plane = overlap::widest_separation(scene, place);
+    plane.is_some_and(|(gap, normal)| gap > 0.0 && separate::is_separating(scene, normal))
 }
 
 /// Computes an upper bound of the tolerance from which on a place shows no overlap. At the tolerance `overlapping`
@@ -111,7 +111,7 @@ fn place_tolerance(
         *tests += 1;
         tolerance > overlapping && !overlap::is_overlap(&shrunk(tolerance), place)
     };
-    let gap = |tolerance| overlap::widest(&shrunk(tolerance), place).map(|(gap, _)| gap);
+    let gap = |tolerance| overlap::widest_separation(&shrunk(tolerance), place).map(|(gap, _)| gap);
     let (ends, noise) = ([overlapping, max_offset_tolerance], nominal.noise);
     let ends = match secant_root(gap, overlapping, noise) {
         Some(guess) if guess < max_offset_tolerance => {

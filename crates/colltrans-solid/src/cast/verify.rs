@@ -3,9 +3,9 @@
 use super::proof::{Cover, SolidCertificate, StartProof, StopProof, entry_holds, leaf_gap_bound};
 use super::{SolidCast, SolidScene};
 use crate::body::Solid;
-use crate::solve::bound::{Reason, apart};
+use crate::solve::bound::{Reason, are_separated};
 use crate::solve::leaf;
-use crate::solve::overlap::{is_overlap, leaves_apart, nested, never_overlap};
+use crate::solve::overlap::{is_overlap, leaves_apart, nested_shell, never_overlap};
 use crate::solve::projected::Projected;
 use crate::solve::scene::Scene;
 use crate::solve::search::{Aim, SLACK, exact_gap, node_rounding};
@@ -97,7 +97,8 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
         Reason::Disjoint if nodes == [0, 0] && boxes_disjoint => true,
         Reason::Disjoint => apart(scene, &projected(true, nodes[0]), &projected(false, nodes[1])),
         Reason::FaceToFace => {
-            !scene.keeps() && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
+            !scene.has_min_gap()
+                && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
         }
         Reason::Examined => {
             let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
@@ -148,10 +149,10 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<f64, Certifi
         return Err(refused);
     }
     let (least, error) = exact_gap(scene, aim, stop.triangles).ok_or(refused)?;
-    let proven = aim.clamp(least) / scene.setting.length;
+    let proven = aim.clamp_gap(least) / scene.setting.length;
     let tolerance = (error + leaf::FINE * scene.noise) / scene.setting.length;
     if (stop.shrunk_distance - proven).abs() <= tolerance {
-        Ok(if scene.keeps() { error } else { 0.0 })
+        Ok(if scene.has_min_gap() { error } else { 0.0 })
     } else {
         Err(CertificateError::Bound { proven, claimed: stop.shrunk_distance })
     }

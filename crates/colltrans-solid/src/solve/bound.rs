@@ -11,7 +11,7 @@ use super::separating_axes::Reach;
 use colltrans_convex::body::Aabb;
 
 /// Length ratio above which the facets of a long leaf, instead of its box, are compared with the box of another node.
-const LONG: f64 = 4.0;
+const MIN_LENGTH_RATIO: f64 = 4.0;
 
 /// Reason in a proof why no two facets of a pair of nodes need to be compared further.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -62,27 +62,32 @@ impl Profile<'_> {
 
 /// Returns the reason why no pair of facets under two nodes has a gap below `limit` that counts; `None` if boxes and
 /// facing directions do not show one. If `parting` is set, pairs whose largest gap is negative do not count.
-pub(crate) fn dismissed(a: &Projected, b: &Projected, limit: f64, parting: bool) -> Option<Reason> {
-    if a.looks_back() {
+pub(crate) fn dismissal_reason(
+    a: &Projected,
+    b: &Projected,
+    limit: f64,
+    parting: bool,
+) -> Option<Reason> {
+    if a.faces_backward() {
         return Some(Reason::MovingFacesAway);
     }
-    if b.looks_ahead() {
+    if b.faces_forward() {
         return Some(Reason::FixedFacesAway);
     }
-    if boxes_apart(a, b) {
+    if are_box_shadows_disjoint(a, b) {
         return Some(Reason::ShadowsApart);
     }
     let [least, largest] = box_gaps(a, b);
     if least >= limit {
         return Some(Reason::NotBefore);
     }
-    (parting && parts(a, b, largest)).then_some(Reason::Parting)
+    (parting && none_can_block(a, b, largest)).then_some(Reason::Parting)
 }
 
 /// Checks whether no pair of facets under two nodes counts, given that their boxes bound all gaps by `largest`. No gap
 /// may be positive, and none zero over a whole common shadow, which needs level facets in the plane where the boxes
 /// meet.
-fn parts(a: &Projected, b: &Projected, largest: f64) -> bool {
+fn none_can_block(a: &Projected, b: &Projected, largest: f64) -> bool {
     largest < 0.0 || largest == 0.0 && !(a.may_be_level() && b.may_be_level())
 }
 
@@ -98,7 +103,7 @@ pub(crate) fn least_gap(
     parting: bool,
 ) -> Result<f64, Reason> {
     let (a, b) = (p.projected, q.projected);
-    if let Some(reason) = dismissed(a, b, limit, parting) {
+    if let Some(reason) = dismissal_reason(a, b, limit, parting) {
         return Err(reason);
     }
     let rough = p.gap_along_axes(q).max(box_gaps(a, b)[0]);
@@ -123,13 +128,22 @@ pub(crate) fn least_gap(
 }
 
 /// Checks independently of the search whether a reason to cut a pair of nodes is valid; `limit` as in [`least_gap`].
-pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit: f64) -> bool {
+/// Returns `false` for reasons that bounds cannot show.
+pub(crate) fn reason_holds(
+    scene: &Scene,
+    p: Profile,
+    q: Profile,
+    reason: Reason,
+    limit: f64,
+) -> bool {
     let (a, b) = (p.projected, q.projected);
     match reason {
-        Reason::MovingFacesAway => a.looks_back(),
-        Reason::FixedFacesAway => b.looks_ahead(),
-        Reason::ShadowsApart => boxes_apart(a, b) || p.is_apart_along_axes(q),
-        Reason::Parting => parts(a, b, box_gaps(a, b)[1]) || slab_gaps(scene, a, b)[1] < 0.0,
+        Reason::MovingFacesAway => a.faces_backward(),
+        Reason::FixedFacesAway => b.faces_forward(),
+        Reason::ShadowsApart => are_box_shadows_disjoint(a, b) || p.is_apart_along_axes(q),
+        Reason::Parting => {
+            none_can_block(a, b, box_gaps(a, b)[1]) || slab_gaps(scene, a, b)[1] < 0.0
+        }
         Reason::NotBefore => {
             let along_axes = p.gap_along_axes(q);
             along_axes.max(box_gaps(a, b)[0]).max(least_slab_gap(scene, a, b)) >= limit
@@ -139,7 +153,7 @@ pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit
 }
 
 /// Checks whether the interiors of the boxes' shadows are disjoint.
-fn boxes_apart(a: &Projected, b: &Projected) -> bool {
+fn are_box_shadows_disjoint(a: &Projected, b: &Projected) -> bool {
     let (a, b) = (&a.bounds, &b.bounds);
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));
     low.x >= high.x || low.y >= high.y
@@ -161,11 +175,11 @@ fn slab_gaps(scene: &Scene, a: &Projected, b: &Projected) -> [f64; 2] {
         largest = largest.min((low * inverse).max(high * inverse));
     };
     if a.has_heights() {
-        let [low, high] = b.range(&scene.fixed, a.axis, 2.0 * scene.noise);
+        let [low, high] = b.range_along(&scene.fixed, a.axis, 2.0 * scene.noise);
         add(low - a.slab[1], high - a.slab[0], a.axis.z);
     }
     if b.has_heights() {
-        let [low, high] = a.range(&scene.moving, b.axis, 2.0 * scene.noise);
+        let [low, high] = a.range_along(&scene.moving, b.axis, 2.0 * scene.noise);
         add(b.slab[0] - high, b.slab[1] - low, b.axis.z);
     }
     [least, largest]
@@ -190,18 +204,18 @@ fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
 }
 
 /// Checks whether two nodes have no point in common, by their boxes, slabs, and the facets of long leaves.
-pub(crate) fn apart(scene: &Scene, a: &Projected, b: &Projected) -> bool {
+pub(crate) fn are_separated(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
     // The boxes of both bodies are boxes of the query frame only if both have its axes.
     !a.bounds.meets(&b.bounds)
-        || beyond(scene, (p, a), (q, b))
-        || beyond(scene, (q, b), (p, a))
+        || is_beyond_side(scene, (p, a), (q, b))
+        || is_beyond_side(scene, (q, b), (p, a))
         || leaf_avoids(scene, (p, a), (q, b))
         || leaf_avoids(scene, (q, b), (p, a))
 }
 
-/// Checks whether the first node is a leaf, longer than the second node by [`LONG`], whose facets certainly have no
-/// point in the box of the second node.
+/// Checks whether the first node is a leaf, longer than the second node by [`MIN_LENGTH_RATIO`], whose facets certainly
+/// have no point in the box of the second node.
 ///
 /// The box of a long thin facet contains large parts of the other body, for example all teeth of a comb.
 fn leaf_avoids(
@@ -212,7 +226,7 @@ fn leaf_avoids(
     let node = &p.solid.nodes()[leaf.node as usize];
     let length = |node: &Projected| node.local.size().max_element();
     node.is_leaf()
-        && length(leaf) > LONG * length(other)
+        && length(leaf) > MIN_LENGTH_RATIO * length(other)
         && node.facets().all(|t| facet_avoids(scene, p.corners(t), p.swell, (q, &other.local)))
 }
 
@@ -229,7 +243,7 @@ fn facet_avoids(
     swell: f64,
     (side, bounds): (&Side, &Aabb),
 ) -> bool {
-    let margin = 4.0 * scene.noise + swell + side.swell + side.skew();
+    let margin = 4.0 * scene.noise + swell + side.swell + side.skew_bound();
     let (center, half) = (bounds.center(), bounds.size() * 0.5 + margin);
     let corners = corners.map(|c| side.view.transpose() * (c.at - side.view_offset) - center);
     let separates = |axis: DVec3| {
@@ -247,7 +261,7 @@ fn facet_avoids(
 
 /// Checks whether a node is certainly beyond a side of another node's box or slab. Of two opposite sides only the
 /// nearer one is tested.
-pub(crate) fn beyond(
+pub(crate) fn is_beyond_side(
     scene: &Scene,
     (p, a): (&Side, &Projected),
     (q, b): (&Side, &Projected),
@@ -274,7 +288,7 @@ mod tests {
     use colltrans_convex::body::Pose;
     use colltrans_convex::cast::Cast;
 
-    fn triangle(most: i16) -> impl Strategy<Value = Solid> {
+    fn any_triangle(most: i16) -> impl Strategy<Value = Solid> {
         let point = (-most..=most, -most..=most, -most..=most);
         let point = point.prop_map(|(x, y, z)| DVec3::from([x, y, z].map(f64::from)));
         [point.clone(), point.clone(), point].prop_filter_map("no area", |corners| {
@@ -289,7 +303,7 @@ mod tests {
         /// contact in rounding errors.
         #[test]
         fn a_long_facet_that_avoids_a_box_has_no_point_in_it(
-            long in triangle(40), small in triangle(3), at in [-20..20_i16, -20..20, -20..20],
+            long in any_triangle(40), small in any_triangle(3), at in [-20..20_i16, -20..20, -20..20],
             q in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, 0.25..1.0], is_turned: bool, is_moving: bool,
         ) {
             let q = if is_turned { DQuat::from_array(q).normalize() } else { DQuat::IDENTITY };
@@ -301,7 +315,7 @@ mod tests {
             let [a, b] = if is_moving { [a, b] } else { [b, a] };
             let cast = Cast::new(a, b, q * DVec3::new(0.3, 0.5, 1.0)).expect("a query");
             let scene = cast.with_tolerance(0.0).expect("a tolerance").asked();
-            let [p, r] = Projected::roots(&scene);
+            let [p, r] = Projected::root_bounds(&scene);
             let sides = [(&scene.moving, &p), (&scene.fixed, &r)];
             let [leaf, other] = if is_moving { sides } else { [sides[1], sides[0]] };
             if leaf_avoids(&scene, leaf, other) {

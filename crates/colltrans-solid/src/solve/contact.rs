@@ -74,25 +74,25 @@ impl SolidContact {
 }
 
 /// A point of a facet, given by the weights of its corners.
-struct Foot {
+struct FacetPoint {
     vertices: [u32; 3],
     weights: DVec3,
 }
 
-impl Foot {
+impl FacetPoint {
     /// Returns the point of the nominal body in the setting frame.
-    fn point(&self, side: &Side) -> DVec3 {
-        let local = self.mean(|v| side.solid.vertices()[v as usize]);
+    fn nominal_point(&self, side: &Side) -> DVec3 {
+        let local = self.weighted_mean(|v| side.solid.vertices()[v as usize]);
         side.matrix * local + side.offset[0]
     }
 
     /// Returns the displacement of the point by the offset, in the setting frame.
-    fn displacement(&self, side: &Side) -> DVec3 {
+    fn offset_displacement(&self, side: &Side) -> DVec3 {
         let Some(shrinking) = side.shrinking else { return DVec3::ZERO };
-        side.matrix * self.mean(|v| shrinking.field[v as usize] * side.amount)
+        side.matrix * self.weighted_mean(|v| shrinking.field[v as usize] * side.amount)
     }
 
-    fn mean(&self, value: impl Fn(u32) -> DVec3) -> DVec3 {
+    fn weighted_mean(&self, value: impl Fn(u32) -> DVec3) -> DVec3 {
         let [a, b, c] = self.vertices.map(value);
         a * self.weights.x + b * self.weights.y + c * self.weights.z
     }
@@ -101,12 +101,12 @@ impl Foot {
 impl Found {
     /// Returns the gap as a translation with its bounds; see the head of the module.
     pub(crate) fn bounded(&self, scene: &Scene) -> Bounded {
-        bounded(scene, (self.gap, self.error), self.others)
+        bounded_gap(scene, (self.gap, self.error), self.others)
     }
 }
 
 /// Converts a gap with its error to a translation with bounds, given a lower bound `others` of all other gaps.
-fn bounded(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
+fn bounded_gap(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
     let lower = others.min(gap - error) - scene.noise;
     let upper = gap + error + scene.noise;
     let [value, lower, upper] = [gap, lower, upper].map(|length| length / scene.setting.length);
@@ -123,69 +123,86 @@ pub(crate) fn contact(
 ) -> SolidContact {
     let origin = scene.setting.translations[0];
     let (moving, fixed) = (&scene.moving, &scene.fixed);
-    let of_f = Listed::new(scene, moving, found.moving);
-    let of_g = Listed::new(scene, fixed, found.fixed);
+    let of_f = ListedTriangle::new(scene, moving, found.moving);
+    let of_g = ListedTriangle::new(scene, fixed, found.fixed);
     let (p, q) = (of_f.places, of_g.places);
     let gap = DVec3::Z * found.gap;
     let (on_f, on_g, normal) = match found.at {
         Meeting::Corner(k) => {
             let within = of_f.is_within_face(moving.solid, k as usize);
-            (corner(k), over(q, p[k as usize] + gap), plane(if within { p } else { q }))
+            (
+                corner_weights(k),
+                weights_below_or_above(q, p[k as usize] + gap),
+                plane_normal(if within { p } else { q }),
+            )
         }
         Meeting::Under(k) => {
             let within = of_g.is_within_face(fixed.solid, k as usize);
-            (over(p, q[k as usize] - gap), corner(k), plane(if within { q } else { p }))
+            (
+                weights_below_or_above(p, q[k as usize] - gap),
+                corner_weights(k),
+                plane_normal(if within { q } else { p }),
+            )
         }
         Meeting::Sides(k, j) => {
             let (k, j) = (k as usize, j as usize);
             let (a, b) = ([p[k], p[(k + 1) % 3]], [q[j], q[(j + 1) % 3]]);
-            let (s, t) = meeting(a, b);
+            let (s, t) = crossing_positions(a, b);
             // A side or corner that lies within a face makes contact with the face.
             let flats = (of_f.is_flat(moving.solid, k), of_g.is_flat(fixed.solid, j));
             let normal = match flats {
-                (_, true) => plane(q),
-                (true, _) => plane(p),
+                (_, true) => plane_normal(q),
+                (true, _) => plane_normal(p),
                 _ => (a[1] - a[0]).cross(b[1] - b[0]),
             };
-            (along(k, s), along(j, t), normal * normal.z.signum())
+            (side_weights(k, s), side_weights(j, t), normal * normal.z.signum())
         }
         Meeting::OnSide(k, j) => {
             let side = [q[j as usize], q[(j as usize + 1) % 3]];
-            (corner(k), along(j as usize, share(side, p[k as usize])), upright(side))
+            (
+                corner_weights(k),
+                side_weights(j as usize, position_on_side(side, p[k as usize])),
+                side_plane_normal(side),
+            )
         }
         Meeting::UnderSide(k, j) => {
             let side = [p[k as usize], p[(k as usize + 1) % 3]];
-            (along(k as usize, share(side, q[j as usize])), corner(j), upright(side))
+            (
+                side_weights(k as usize, position_on_side(side, q[j as usize])),
+                corner_weights(j),
+                side_plane_normal(side),
+            )
         }
         Meeting::Near => {
             let corners = [&of_f, &of_g].map(|of| of.corners);
             // Only pairs with a minimum gap have this kind of contact.
-            let near =
-                scene.keeps().then(|| nearest_after(scene, &corners[0], &corners[1], found.gap));
+            let near = scene
+                .has_min_gap()
+                .then(|| nearest_after(scene, &corners[0], &corners[1], found.gap));
             let (weights, normal) = near.unwrap_or_default();
             (weights[0], weights[1], scene.frame * normal)
         }
     };
-    let on_f = Foot { vertices: of_f.vertices, weights: on_f };
-    let on_g = Foot { vertices: of_g.vertices, weights: on_g };
+    let on_f = FacetPoint { vertices: of_f.vertices, weights: on_f };
+    let on_g = FacetPoint { vertices: of_g.vertices, weights: on_g };
     let normal = (scene.frame.transpose() * normal).normalize_or_zero();
     let translation = if moving.amount == 0.0 && fixed.amount == 0.0 {
         shrunk_distance
     } else {
-        let shift = on_f.displacement(moving) - on_g.displacement(fixed);
+        let shift = on_f.offset_displacement(moving) - on_g.offset_displacement(fixed);
         let pair = [found.moving, found.fixed];
         true_place(&scene.shrunk(0.0, 0.0), pair, shrunk_distance, normal, shift)
     };
-    let named = |side: &Side, triangle, foot: &Foot| {
-        let at = foot.mean(|v| side.solid.vertices()[v as usize]);
+    let named = |side: &Side, triangle, foot: &FacetPoint| {
+        let at = foot.weighted_mean(|v| side.solid.vertices()[v as usize]);
         feature(side.solid, triangle, (at, side.matrix.transpose() * normal), scene.noise)
     };
     SolidContact {
         translation,
         shrunk_distance,
         normal,
-        point_on_moving: on_f.point(moving) + origin,
-        point_on_fixed: on_g.point(fixed) + origin,
+        point_on_moving: on_f.nominal_point(moving) + origin,
+        point_on_fixed: on_g.nominal_point(fixed) + origin,
         moving_feature: named(moving, found.moving, &on_f),
         fixed_feature: named(fixed, found.fixed, &on_g),
         triangles: [found.moving, found.fixed],
@@ -195,9 +212,9 @@ pub(crate) fn contact(
 
 /// Maximum shortfall, in noises, of the approximate lower bound below the nominal translation. If it is exceeded, the
 /// bound is computed again, exactly.
-const ENOUGH: f64 = 64.0;
+const MAX_SHORTFALL: f64 = 64.0;
 /// Cosine of the contact normal and the direction at or below which the contact is not moved back along its plane.
-const STEEPEST: f64 = 1e-3;
+const MIN_COSINE: f64 = 1e-3;
 
 /// Computes the translation at which the facets of a contact of offset bodies meet in nominal position. `bare` is the
 /// scene without offsets, and `shift` the displacement, by the offset, of the moving contact point relative to the
@@ -210,12 +227,12 @@ pub(crate) fn true_place(
     shift: DVec3,
 ) -> Bounded {
     let known = |gap: (f64, f64)| {
-        let place = bounded(bare, gap, gap.0);
+        let place = bounded_gap(bare, gap, gap.0);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
     let facets = Opposed::new(bare, pair);
     let gap = facets.as_ref().and_then(|facets| facets.least_gap(bare));
-    if bare.keeps() {
+    if bare.has_min_gap() {
         return gap.map_or(shrunk, known);
     }
     if let Some(gap) = gap.or_else(|| rim::least_gap_of(bare, &Gap::counts, pair)) {
@@ -223,22 +240,22 @@ pub(crate) fn true_place(
     }
     let slope = normal.dot(bare.setting.direction);
     // Two planes nearly parallel to the direction carry no information about where the bodies meet.
-    let steep = slope <= STEEPEST * bare.setting.length;
+    let steep = slope <= MIN_COSINE * bare.setting.length;
     let noise = bare.noise / bare.setting.length;
     let [back, error] =
         if steep { [0.0, noise] } else { [normal.dot(shift), bare.noise].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
     let least = if let Some(facets) = facets {
         let in_doubt = facets.least_in_doubt(bare) / bare.setting.length;
-        if in_doubt >= value - ENOUGH * noise {
+        if in_doubt >= value - MAX_SHORTFALL * noise {
             in_doubt
         } else if let Some(gap) = exact_gap_of(bare, Aim::Stop, &facets) {
             return known(gap);
         } else {
-            first_meeting(bare, pair)
+            first_meeting_bound(bare, pair)
         }
     } else {
-        first_meeting(bare, pair)
+        first_meeting_bound(bare, pair)
     };
     let lower = (least - noise).min(value - error).min(shrunk.lower);
     Bounded { value, lower, upper: shrunk.upper }
@@ -246,24 +263,24 @@ pub(crate) fn true_place(
 
 /// Maximum distance, in noises, of the origin from a shadow that counts as containing it: the error of differences of
 /// corners.
-const ROUND: f64 = 4.0;
-/// Width of a shadow, in multiples of [`ROUND`] noises, at or below which it counts as a segment.
-const NARROW: f64 = 64.0;
+const DIFFERENCE_ERROR: f64 = 4.0;
+/// Width of a shadow, in multiples of [`DIFFERENCE_ERROR`] noises, at or below which it counts as a segment.
+const MIN_WIDTH: f64 = 64.0;
 
 /// Returns a lower bound of the translation at which two triangles meet, whichever way they face; infinity if they
 /// never meet.
 ///
 /// The direction enters the convex hull of the differences of their corners at the lowest point above the origin. This
 /// point lies in one of the triangles of three differences, or in one of its sides if its shadow is too narrow.
-fn first_meeting(bare: &Scene, pair: [u32; 2]) -> f64 {
+fn first_meeting_bound(bare: &Scene, pair: [u32; 2]) -> f64 {
     let corners = |side: &Side, t: u32| side.corners(t as usize).map(|corner| corner.at);
     let (f, g) = (corners(&bare.moving, pair[0]), corners(&bare.fixed, pair[1]));
     let difference = |k: usize| g[k % 3] - f[k / 3];
-    let (mut least, off) = (f64::INFINITY, ROUND * bare.noise);
+    let (mut least, off) = (f64::INFINITY, DIFFERENCE_ERROR * bare.noise);
     for a in 0..9 {
         for b in a + 1..9 {
             for c in b + 1..9 {
-                least = least.min(height_of([a, b, c].map(difference), off));
+                least = least.min(triangle_height_bound([a, b, c].map(difference), off));
             }
         }
     }
@@ -272,14 +289,15 @@ fn first_meeting(bare: &Scene, pair: [u32; 2]) -> f64 {
 
 /// Returns a lower bound of the height of a triangle above the origin; infinity if the origin is farther than `off`
 /// from its shadow.
-fn height_of(corners: [DVec3; 3], off: f64) -> f64 {
+fn triangle_height_bound(corners: [DVec3; 3], off: f64) -> f64 {
     let flat = corners.map(DVec3::truncate);
     let side = |k: usize| flat[(k + 2) % 3] - flat[(k + 1) % 3];
     let longest = (0..3).map(|k| side(k).length()).fold(0.0, f64::max);
     let whole = side(2).perp_dot(flat[2] - flat[0]);
     let width = whole.abs() / longest;
-    if longest == 0.0 || width <= NARROW * off {
-        let of_side = |k: usize| height_of_side(corners[(k + 1) % 3], corners[(k + 2) % 3], off);
+    if longest == 0.0 || width <= MIN_WIDTH * off {
+        let of_side =
+            |k: usize| segment_height_bound(corners[(k + 1) % 3], corners[(k + 2) % 3], off);
         return (0..3).map(of_side).fold(f64::INFINITY, f64::min);
     }
     // Twice the area of the origin and the side opposite to corner `k`. It determines the weight of the corner, and the
@@ -289,17 +307,17 @@ fn height_of(corners: [DVec3; 3], off: f64) -> f64 {
         return f64::INFINITY;
     }
     let height: f64 = (0..3).map(|k| area(k) / whole.abs() * corners[k].z).sum();
-    let [low, high] = range(&corners);
+    let [low, high] = height_range(&corners);
     height - off - 2.0 * off / width * (high - low)
 }
 
-/// Returns a lower bound of the height, above the origin, of a segment and all points of a narrow triangle beside it;
+/// Returns a lower bound of the height, above the origin, of a segment and all points of a narrow triangle around it;
 /// infinity if the origin is too far from its shadow.
-fn height_of_side(a: DVec3, b: DVec3, off: f64) -> f64 {
-    let near = (NARROW + ROUND) * off;
+fn segment_height_bound(a: DVec3, b: DVec3, off: f64) -> f64 {
+    let near = (MIN_WIDTH + DIFFERENCE_ERROR) * off;
     let along = (b - a).truncate();
     let length = along.length();
-    let [low, high] = range(&[a, b]);
+    let [low, high] = height_range(&[a, b]);
     if length <= 4.0 * near {
         let is_near = a.truncate().length().min(b.truncate().length()) <= 5.0 * near;
         return if is_near { low - off } else { f64::INFINITY };
@@ -314,18 +332,18 @@ fn height_of_side(a: DVec3, b: DVec3, off: f64) -> f64 {
 }
 
 /// Returns the least and the largest height.
-fn range(of: &[DVec3]) -> [f64; 2] {
+fn height_range(of: &[DVec3]) -> [f64; 2] {
     let ends = |[low, high]: [f64; 2], v: &DVec3| [low.min(v.z), high.max(v.z)];
     of.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends)
 }
 
 /// Returns a normal of the plane through three points.
-fn plane([a, b, c]: [DVec3; 3]) -> DVec3 {
+fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
 /// A triangle with its corners in the order of [`listed`].
-struct Listed {
+struct ListedTriangle {
     triangle: u32,
     vertices: [u32; 3],
     corners: [Corner; 3],
@@ -334,7 +352,7 @@ struct Listed {
     turn: Ordering,
 }
 
-impl Listed {
+impl ListedTriangle {
     fn new(scene: &Scene, side: &Side, triangle: u32) -> Self {
         let (corners, turn) = listed(scene, side, triangle as usize);
         let mut vertices = side.solid.triangles()[triangle as usize];
@@ -358,22 +376,22 @@ impl Listed {
 
 /// Returns the position along a side, from 0 to 1, of the point whose shadow is that of `p`. The side must not be
 /// vertical.
-fn share([a, b]: [DVec3; 2], p: DVec3) -> f64 {
+fn position_on_side([a, b]: [DVec3; 2], p: DVec3) -> f64 {
     let (u, v) = ((b - a).truncate(), (p - a).truncate());
     (v.dot(u) / u.length_squared()).clamp(0.0, 1.0)
 }
 
 /// Returns the normal of a side in the plane that contains the side and the direction.
-fn upright([a, b]: [DVec3; 2]) -> DVec3 {
+fn side_plane_normal([a, b]: [DVec3; 2]) -> DVec3 {
     let u = (b - a).normalize_or_zero();
     DVec3::Z - u * u.z
 }
 
-fn corner(k: u8) -> DVec3 {
+fn corner_weights(k: u8) -> DVec3 {
     DVec3::AXES[k as usize]
 }
 
-fn along(k: usize, s: f64) -> DVec3 {
+fn side_weights(k: usize, s: f64) -> DVec3 {
     let mut weights = [0.0; 3];
     (weights[k], weights[(k + 1) % 3]) = (1.0 - s, s);
     DVec3::from_array(weights)
@@ -381,7 +399,7 @@ fn along(k: usize, s: f64) -> DVec3 {
 
 /// Returns the weights of the point of a triangle below or above `p`, whose shadow lies in that of the triangle up to
 /// rounding errors.
-fn over([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
+fn weights_below_or_above([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
     let flat = |u: DVec3, v: DVec3| u.truncate().perp_dot(v.truncate());
     let normal = (b - a).cross(c - a);
     let steep = flat(b - a, c - a) == 0.0;
@@ -396,7 +414,7 @@ fn over([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
 }
 
 /// Returns the positions, from 0 to 1 along each segment, where the shadows of two segments cross.
-fn meeting(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
+fn crossing_positions(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
     let flat = |v: DVec3| v.truncate();
     let (u, v, w) = (flat(a[1] - a[0]), flat(b[1] - b[0]), flat(b[0] - a[0]));
     let whole = u.perp_dot(v);

@@ -12,7 +12,7 @@
 use std::cmp::Ordering;
 use std::cmp::Ordering::Equal;
 
-use super::inside::{Mean, WEIGHTS};
+use super::inside::{FacetMean, WEIGHTS};
 use super::line::Line;
 use super::scene::{Corner, Scene, Side};
 use crate::body::edges::NONE;
@@ -34,7 +34,7 @@ impl<'s, 'a> Fan<'s, 'a> {
     ) -> Option<Self> {
         let solid = side.solid;
         let number = |t: u32| solid.triangles()[t as usize];
-        let v = number(triangle).into_iter().find(|&v| side.vertex(v) == vertex.local)?;
+        let v = number(triangle).into_iter().find(|&v| side.offset_vertex(v) == vertex.local)?;
         let (mut around, mut t) = (Vec::new(), triangle);
         loop {
             let corners = number(t);
@@ -51,17 +51,17 @@ impl<'s, 'a> Fan<'s, 'a> {
     }
 
     /// Returns the corners of each facet, beginning with the vertex.
-    pub(super) fn facets(&self) -> impl Iterator<Item = [&Corner; 3]> {
+    pub(super) fn facet_corners(&self) -> impl Iterator<Item = [&Corner; 3]> {
         self.around.iter().map(|[a, b]| [&self.vertex, a, b])
     }
 
     /// Checks whether a line through the vertex passes from one side of an open shell to the other.
     pub(super) fn is_passed(&self, line: &Line) -> bool {
-        if self.around.iter().any(|facet| self.holds(line, facet)) {
+        if self.around.iter().any(|facet| self.cone_contains(line, facet)) {
             return false;
         }
         // If a fan with very many folds has no target, the vertex blocks.
-        self.target(line).is_none_or(|target| {
+        self.target_point(line).is_none_or(|target| {
             let is_over = |facet: &&[Corner; 2]| self.is_over(line, &target, facet);
             self.around.iter().filter(is_over).count() % 2 == 1
         })
@@ -69,12 +69,12 @@ impl<'s, 'a> Fan<'s, 'a> {
 
     /// Returns a point inside a facet whose half-plane with the direction passes through no edge; `None` if no tried
     /// point qualifies.
-    fn target(&self, line: &Line) -> Option<Mean> {
+    fn target_point(&self, line: &Line) -> Option<FacetMean> {
         let (scene, v) = (self.scene, &self.vertex);
         let is_upright = |[a, b]: &[Corner; 2]| line.turn(scene, a, b) == Equal;
         self.around.iter().filter(|facet| !is_upright(facet)).find_map(|&[a, b]| {
             WEIGHTS[..3].iter().find_map(|&weights| {
-                let target = Mean::new(scene, [*v, a, b], weights);
+                let target = FacetMean::new(scene, [*v, a, b], weights);
                 // An edge opposite to the direction is on no half-plane.
                 let on_line = |c: &Corner| (0..3).all(|k| line.turn_about(scene, k, c) == Equal);
                 let passes =
@@ -85,7 +85,7 @@ impl<'s, 'a> Fan<'s, 'a> {
     }
 
     /// Checks whether the direction or its opposite lies in the closed cone of a facet.
-    fn holds(&self, line: &Line, [a, b]: &[Corner; 2]) -> bool {
+    fn cone_contains(&self, line: &Line, [a, b]: &[Corner; 2]) -> bool {
         let (scene, v) = (self.scene, &self.vertex);
         if line.turn(scene, a, b) != Equal {
             return false;
@@ -101,7 +101,7 @@ impl<'s, 'a> Fan<'s, 'a> {
     }
 
     /// Checks whether the half-plane of the direction and the target cuts a facet.
-    fn is_over(&self, line: &Line, target: &Mean, [a, b]: &[Corner; 2]) -> bool {
+    fn is_over(&self, line: &Line, target: &FacetMean, [a, b]: &[Corner; 2]) -> bool {
         let [of_a, of_b] = [a, b].map(|c| line.turn(self.scene, target, c));
         of_a != of_b && of_b == line.turn(self.scene, a, b)
     }

@@ -39,7 +39,7 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         let (middle, half) = (span.bounds.center(), span.bounds.size() * 0.5);
         let at = own.view * middle + own.view_offset;
         let rows = own.view.transpose();
-        let swell = own.moved();
+        let swell = own.max_displacement();
         let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
         let extent = DVec3::from_array(extent) + DVec3::splat(4.0 * scene.noise);
         let grown = |by: f64| {
@@ -53,7 +53,7 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         // Boxes that are not aligned are loose. Then every shell whose box meets the other one is tested.
         let meets = room.bounds.meets(&around);
         let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
-        if meets && (within || !aligned) && decide(scene, own, other, span.triangle) {
+        if meets && (within || !aligned) && is_shell_inside(scene, own, other, span.triangle) {
             return Some(span.triangle);
         }
     }
@@ -62,15 +62,15 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
 
 /// Checks whether the shell that contains this triangle of a body is inside the other body.
 pub(crate) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
-    decide(scene, scene.side(moving), scene.side(!moving), triangle)
+    is_shell_inside(scene, scene.side(moving), scene.side(!moving), triangle)
 }
 
-fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
+fn is_shell_inside(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
     if own.solid.is_without_area(triangle as usize) {
         let [p, q, _] = own.corners(triangle as usize);
-        return [p, q].iter().any(|end| match winding(scene, other, end) {
+        return [p, q].iter().any(|end| match winding_number(scene, other, end) {
             Some(winding) => winding > 0,
-            None => line::holds(scene, other, end),
+            None => line::is_inside_other_piece(scene, other, end),
         });
     }
     let mut seen = [triangle; MOST_TRIANGLES];
@@ -80,13 +80,13 @@ fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
         next += 1;
         let corners = own.corners(t as usize);
         for corner in &corners {
-            if let Some(winding) = winding(scene, other, corner) {
+            if let Some(winding) = winding_number(scene, other, corner) {
                 return winding > 0;
             }
         }
         for weights in WEIGHTS {
-            let mean = Mean::new(scene, corners, weights);
-            if let Some(winding) = winding(scene, other, &mean) {
+            let mean = FacetMean::new(scene, corners, weights);
+            if let Some(winding) = winding_number(scene, other, &mean) {
                 return winding > 0;
             }
         }
@@ -101,13 +101,13 @@ fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
 }
 
 /// A weighted mean of the corners of a facet.
-pub(crate) struct Mean {
+pub(crate) struct FacetMean {
     at: DVec3,
     moving: bool,
     terms: [(f64, DVec3); 3],
 }
 
-impl Mean {
+impl FacetMean {
     pub(crate) fn new(scene: &Scene, corners: [Corner; 3], weights: [f64; 3]) -> Self {
         let terms = [0, 1, 2].map(|k| (weights[k], corners[k].local));
         let local: DVec3 = terms.iter().map(|(w, p)| *p * *w).sum();
@@ -116,7 +116,7 @@ impl Mean {
     }
 }
 
-impl ExactPoint for Mean {
+impl ExactPoint for FacetMean {
     fn at(&self) -> DVec3 {
         self.at
     }
@@ -141,7 +141,7 @@ impl ExactPoint for Mean {
 
 /// Computes the winding number of a point: the number of closed shells of a solid that contain it. `None` if the point
 /// lies on a closed shell.
-fn winding(scene: &Scene, side: &Side, point: &impl ExactPoint) -> Option<i32> {
+fn winding_number(scene: &Scene, side: &Side, point: &impl ExactPoint) -> Option<i32> {
     winding_below(scene, side, point, 0)
 }
 
@@ -160,26 +160,26 @@ fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -
             winding_below(scene, side, point, first)? + winding_below(scene, side, point, second)?,
         );
     }
-    let axes = sideways(scene);
+    let axes = lateral_axes(scene);
     let mut winding = 0;
     // Sheets enclose no volume.
     for t in node.facets().filter(|&t| !side.solid.is_open(t)) {
         if lies_on(scene, point, &Triangle::new(side, t)) {
             return None;
         }
-        winding += crossing(scene, side.corners(t), point, axes);
+        winding += crossing_sign(scene, side.corners(t), point, axes);
     }
     Some(winding)
 }
 
 /// Returns the two axes of the world other than the one with the largest component of the direction.
-fn sideways(scene: &Scene) -> [usize; 2] {
+fn lateral_axes(scene: &Scene) -> [usize; 2] {
     let main = scene.setting.direction.abs().max_position();
     [(main + 1) % 3, (main + 2) % 3]
 }
 
 /// Returns 1 if the ray from the point leaves through the triangle, -1 if it enters, 0 if it misses the triangle.
-fn crossing(
+fn crossing_sign(
     scene: &Scene,
     [a, b, c]: [Corner; 3],
     point: &impl ExactPoint,
@@ -192,8 +192,8 @@ fn crossing(
     let beside = |u: &Corner, v: &Corner| {
         scene
             .turn(u, v, point)
-            .then_with(|| scene.drift(axes[0], u, v))
-            .then_with(|| scene.drift(axes[1], u, v))
+            .then_with(|| scene.drift_sign(axes[0], u, v))
+            .then_with(|| scene.drift_sign(axes[1], u, v))
     };
     let passes = beside(&a, &b) == facing && beside(&b, &c) == facing && beside(&c, &a) == facing;
     if !passes || scene.outside(&a, &b, &c, point) != facing.reverse() {

@@ -30,12 +30,12 @@ use colltrans_kernel::integer::{Integer, SMALL, TWICE_LARGE, determinant, differ
 pub(super) struct Line<'c> {
     /// A point `p` of the line.
     pub(super) from: &'c Corner,
-    pub(super) way: Way<'c>,
+    pub(super) way: LineDirection<'c>,
 }
 
 /// The direction of a line.
 #[derive(Clone, Copy)]
-pub(super) enum Way<'c> {
+pub(super) enum LineDirection<'c> {
     /// The direction of the query, or its opposite.
     Query { forward: bool },
     /// The direction to another point.
@@ -46,26 +46,28 @@ impl Line<'_> {
     /// Returns the sign of `det[u, a - p, b - p]`: the side of the line on which the edge passes.
     pub(super) fn turn(&self, scene: &Scene, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
         match self.way {
-            Way::Query { forward: true } => scene.turn(self.from, a, b),
-            Way::Query { forward: false } => scene.turn(self.from, a, b).reverse(),
-            Way::To(q) => scene.outside(self.from, q, a, b),
+            LineDirection::Query { forward: true } => scene.turn(self.from, a, b),
+            LineDirection::Query { forward: false } => scene.turn(self.from, a, b).reverse(),
+            LineDirection::To(q) => scene.outside(self.from, q, a, b),
         }
     }
 
     /// Returns the sign of `det[u, a - p, e]` for the unit vector `e` of an axis of the world.
     pub(super) fn turn_about(&self, scene: &Scene, axis: usize, a: &Corner) -> Ordering {
         match self.way {
-            Way::Query { forward: true } => scene.drift(axis, self.from, a),
-            Way::Query { forward: false } => scene.drift(axis, self.from, a).reverse(),
-            Way::To(q) => scene.turn_about(axis, self.from, q, a),
+            LineDirection::Query { forward: true } => scene.drift_sign(axis, self.from, a),
+            LineDirection::Query { forward: false } => {
+                scene.drift_sign(axis, self.from, a).reverse()
+            }
+            LineDirection::To(q) => scene.turn_about(axis, self.from, q, a),
         }
     }
 
     /// Checks whether the line may meet a box in the query frame.
     fn may_meet(&self, scene: &Scene, bounds: &Aabb) -> bool {
         let (way, is_exact) = match self.way {
-            Way::Query { .. } => (DVec3::Z, true),
-            Way::To(q) => (q.at - self.from.at, false),
+            LineDirection::Query { .. } => (DVec3::Z, true),
+            LineDirection::To(q) => (q.at - self.from.at, false),
         };
         let noise = 4.0 * scene.noise;
         let (middle, half) = (bounds.center() - self.from.at, bounds.size() * 0.5 + noise);
@@ -85,7 +87,7 @@ impl Line<'_> {
 /// It does if the point past the place is inside. With `through`, the line passes from one side of the facet's plane to
 /// the other. Then it also enters within a face that no other facet touches there, because faces block however thin the
 /// wall behind them is.
-pub(super) fn enters(
+pub(super) fn enters_body(
     scene: &Scene,
     line: &Line,
     side: &Side,
@@ -108,8 +110,8 @@ pub(super) fn enters(
 /// Checks whether a facet of another plane contains the point in which a line meets a facet; `None` if a number does
 /// not fit.
 fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
-    let past = Ray::<N>::past(scene, line, facet.side, &facet.corners)?;
-    let ray = Ray { is_past: false, ..past };
+    let past = PointOnLine::<N>::past_facet(scene, line, facet.side, &facet.corners)?;
+    let ray = PointOnLine { is_past: false, ..past };
     let bounds = facet.bounds.grown(4.0 * scene.noise);
     let [a, b, c] = &facet.corners;
     let mut found = false;
@@ -118,7 +120,7 @@ fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> O
         |t, corners| {
             let is_in_plane = || corners.iter().all(|v| scene.outside(a, b, c, v) == Equal);
             found |= t != facet.index
-                && matches!(ray.relation(corners)?, Relation::Holds)
+                && matches!(ray.facet_relation(corners)?, Relation::Holds)
                 && !is_in_plane();
             Some(())
         },
@@ -129,16 +131,16 @@ fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> O
 /// Checks whether the point past the place where a line meets the plane of a facet is inside the body; `None` if a
 /// number does not fit.
 fn is_inside_past<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
-    Ray::<N>::past(scene, line, facet.side, &facet.corners)?.is_inside()
+    PointOnLine::<N>::past_facet(scene, line, facet.side, &facet.corners)?.is_inside()
 }
 
 /// Checks whether a point of a surface is inside another piece of the body.
-pub(super) fn holds(scene: &Scene, side: &Side, point: &Corner) -> bool {
-    let line = Line { from: point, way: Way::Query { forward: true } };
+pub(super) fn is_inside_other_piece(scene: &Scene, side: &Side, point: &Corner) -> bool {
+    let line = Line { from: point, way: LineDirection::Query { forward: true } };
     let is_inside_one = || {
-        Ray::<SMALL>::at(scene, &line, side)
+        PointOnLine::<SMALL>::from_start(scene, &line, side)
             .is_inside()
-            .or_else(|| Ray::<TWICE_LARGE>::at(scene, &line, side).is_inside())
+            .or_else(|| PointOnLine::<TWICE_LARGE>::from_start(scene, &line, side).is_inside())
     };
     side.solid.spans().len() > 1 && is_inside_one().unwrap_or_default()
 }
@@ -163,7 +165,7 @@ fn is_within_a_face(scene: &Scene, line: &Line, facet: &Triangle) -> bool {
         [j, k, ..] => {
             let shared = if k == j + 1 { k } else { j };
             let fan = Fan::new(scene, facet.side, facet.index as u32, &facet.corners[shared]);
-            fan.is_some_and(|fan| fan.facets().all(continues))
+            fan.is_some_and(|fan| fan.facet_corners().all(continues))
         }
     }
 }
@@ -202,7 +204,7 @@ enum Relation {
 }
 
 /// A point on a line, in integers with `N` limbs. Results that do not fit are `None`.
-struct Ray<'r, 'a, const N: usize> {
+struct PointOnLine<'r, 'a, const N: usize> {
     scene: &'r Scene<'a>,
     line: &'r Line<'r>,
     side: &'r Side<'a>,
@@ -215,17 +217,17 @@ struct Ray<'r, 'a, const N: usize> {
     is_past: bool,
 }
 
-impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
+impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
     /// Builds the point at the start `p` of a line.
-    fn at(scene: &'r Scene<'a>, line: &'r Line<'r>, side: &'r Side<'a>) -> Self {
+    fn from_start(scene: &'r Scene<'a>, line: &'r Line<'r>, side: &'r Side<'a>) -> Self {
         let from = line.from.wide(scene);
         let direction = scene.setting.direction;
         let (way, rough) = match line.way {
-            Way::Query { forward } => {
+            LineDirection::Query { forward } => {
                 let direction = if forward { direction } else { -direction };
                 (direction.to_array().map(Integer::number), direction)
             }
-            Way::To(q) => {
+            LineDirection::To(q) => {
                 let rough = scene.frame.transpose() * (q.at - line.from.at);
                 (difference(&q.wide(scene), &from), rough)
             }
@@ -239,20 +241,20 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
     }
 
     /// Builds the point past the place where a line meets the plane of a facet; `None` if a number does not fit.
-    fn past(
+    fn past_facet(
         scene: &'r Scene<'a>,
         line: &'r Line<'r>,
         side: &'r Side<'a>,
         facet: &[Corner; 3],
     ) -> Option<Self> {
-        let mut ray = Self::at(scene, line, side);
-        let place = ray.place_on(&ray.seen(facet))?;
+        let mut ray = Self::from_start(scene, line, side);
+        let place = ray.place_on(&ray.relative_corners(facet))?;
         (ray.place, ray.is_past) = (place, true);
         Some(ray)
     }
 
     /// Returns the corners of a facet relative to the start of the line.
-    fn seen(&self, corners: &[Corner; 3]) -> [[Integer<N>; 3]; 3] {
+    fn relative_corners(&self, corners: &[Corner; 3]) -> [[Integer<N>; 3]; 3] {
         corners.each_ref().map(|c| difference(&c.wide(self.scene), &self.from))
     }
 
@@ -264,23 +266,23 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
     }
 
     /// Returns the component of `u x v` along an axis: its sign is that of `det[u, v, e]`.
-    fn across(&self, axis: usize, v: &[Integer<N>; 3]) -> Integer<N> {
+    fn cross_component(&self, axis: usize, v: &[Integer<N>; 3]) -> Integer<N> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         self.way[i].multiply(&v[j]).subtract(&self.way[j].multiply(&v[i]))
     }
 
     /// Returns the axes along which the line is displaced.
-    fn sideways(&self) -> [usize; 2] {
+    fn lateral_axes(&self) -> [usize; 2] {
         [(self.main + 1) % 3, (self.main + 2) % 3]
     }
 
-    fn relation(&self, corners: &[Corner; 3]) -> Option<Relation> {
+    fn facet_relation(&self, corners: &[Corner; 3]) -> Option<Relation> {
         let turn = |k: usize| self.line.turn(self.scene, &corners[k], &corners[(k + 1) % 3]);
         let turns = [turn(0), turn(1), turn(2)];
         if turns.contains(&Greater) && turns.contains(&Less) {
             return Some(Relation::Neither);
         }
-        let r = self.seen(corners);
+        let r = self.relative_corners(corners);
         let (x, y) = (difference(&r[1], &r[0]), difference(&r[2], &r[0]));
         let facing = determinant(&x, &y, &self.way).sign()?;
         if facing == Equal {
@@ -294,7 +296,8 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
         for (k, turn) in turns.into_iter().enumerate() {
             if turn == Equal {
                 let edge = difference(&r[(k + 1) % 3], &r[k]);
-                let [first, second] = self.sideways().map(|axis| self.across(axis, &edge).sign());
+                let [first, second] =
+                    self.lateral_axes().map(|axis| self.cross_component(axis, &edge).sign());
                 if first?.then(second?) != facing {
                     return Some(Relation::Neither);
                 }
@@ -309,8 +312,8 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
 
     /// Checks whether the point lies on a facet whose plane contains the line.
     fn is_along(&self, r: &[[Integer<N>; 3]; 3]) -> Option<bool> {
-        let offsets = |axis: usize| r.each_ref().map(|v| self.across(axis, v));
-        let [first, second] = self.sideways().map(offsets);
+        let offsets = |axis: usize| r.each_ref().map(|v| self.cross_component(axis, v));
+        let [first, second] = self.lateral_axes().map(offsets);
         let is_flat = first.iter().all(|s| s.sign() == Some(Equal));
         let offset = if is_flat { second } else { first };
         let mut range: Option<[Fraction<N>; 2]> = None;
@@ -345,7 +348,7 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
         self.each_facet(
             |_| true,
             |t, corners| {
-                match self.relation(corners)? {
+                match self.facet_relation(corners)? {
                     Relation::Holds => on.push(t),
                     Relation::Ahead(count) => ahead.push((t, count)),
                     Relation::Neither => {}

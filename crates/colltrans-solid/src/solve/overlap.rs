@@ -14,9 +14,9 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::bound::{Reason, apart, beyond, dismissed};
+use super::bound::{Reason, are_separated, dismissal_reason, is_beyond_side};
 use super::inside;
-use super::leaf::Facets;
+use super::leaf::FacetDifference;
 use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
 use super::thin;
@@ -47,40 +47,40 @@ pub enum Overlap {
 /// such place.
 #[inline]
 pub fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
-    find_with(scene, &mut |entry| steps.count(entry))
+    find_with(scene, &mut |entry| steps.count_pair(entry))
 }
 
 /// Finds an overlap like [`find`]. Calls `cut` for every pair of nodes in the order of the descent, with `None` if the
 /// pair was split, otherwise with the reason.
 pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
-    let [a, b] = Projected::roots(scene);
+    let [a, b] = Projected::root_bounds(scene);
     if never_overlap(scene, &a, &b) {
         cut(Some(Reason::Disjoint));
         return None;
     }
-    let facets = descend(scene, [0, 0], &a, &b, Judge::overlap(scene), cut);
-    facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
+    let facets = search_pairs(scene, [0, 0], &a, &b, PairTest::overlap_test(scene), cut);
+    facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested_shell(scene))
 }
 
 /// Checks whether boxes and slabs alone show that the interiors of two whole bodies are disjoint.
 pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
-    beyond(scene, (p, a), (q, b))
-        || beyond(scene, (q, b), (p, a))
+    is_beyond_side(scene, (p, a), (q, b))
+        || is_beyond_side(scene, (q, b), (p, a))
         || a.bounds.low.cmpge(b.bounds.high).any()
         || b.bounds.low.cmpge(a.bounds.high).any()
 }
 
 /// Checks whether the bounding boxes show that two bodies do not overlap and that nothing blocks the moving one before
 /// `limit`.
-pub(crate) fn pass(scene: &Scene, limit: f64) -> bool {
-    let [a, b] = Projected::roots(scene);
-    never_overlap(scene, &a, &b) && dismissed(&a, &b, limit, true).is_some()
+pub(crate) fn boxes_exclude_contact(scene: &Scene, limit: f64) -> bool {
+    let [a, b] = Projected::root_bounds(scene);
+    never_overlap(scene, &a, &b) && dismissal_reason(&a, &b, limit, true).is_some()
 }
 
 /// Finds a shell of one body that lies inside the other, for bodies whose surfaces do not cross; `None` if there is
 /// none.
-pub(crate) fn nested(scene: &Scene) -> Option<Overlap> {
+pub(crate) fn nested_shell(scene: &Scene) -> Option<Overlap> {
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
     moving.or_else(|| inside::shell_inside(scene, false).map(Overlap::FixedInside))
 }
@@ -93,7 +93,7 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
             f < count(&scene.moving) && g < count(&scene.fixed) && {
                 let f = Triangle::new(&scene.moving, f as usize);
                 let g = Triangle::new(&scene.fixed, g as usize);
-                (Judge::overlap(scene).holds)(scene, &f, &g)
+                (PairTest::overlap_test(scene).holds)(scene, &f, &g)
             }
         }
         Overlap::MovingInside(t) => t < count(&scene.moving) && inside::is_inside(scene, true, t),
@@ -105,7 +105,7 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
 /// from the moving body to the fixed one. Candidates are the normals of both facets and the cross products of two
 /// edges. The value is rounded, and negative if the facets overlap along all candidates. `None` for nested shells, or
 /// if all candidates vanish.
-pub(crate) fn widest(scene: &Scene, overlap: Overlap) -> Option<(f64, DVec3)> {
+pub(crate) fn widest_separation(scene: &Scene, overlap: Overlap) -> Option<(f64, DVec3)> {
     let Overlap::Facets(f, g) = overlap else { return None };
     let corners = |side: &Side, t: u32| side.corners(t as usize).map(|c| c.at);
     let (f, g) = (corners(&scene.moving, f), corners(&scene.fixed, g));
@@ -146,24 +146,24 @@ pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
 
 /// Checks whether no two facets of two leaves show an overlap.
 pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
-    leaves(scene, a, b, Judge::overlap(scene)).is_none()
+    search_leaves(scene, a, b, PairTest::overlap_test(scene)).is_none()
 }
 
 /// Finds a place where the solids, as closed sets, have a common point; `None` if there is no such place.
-pub(crate) fn touch(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
-    let [a, b] = Projected::roots(scene);
-    let mut count = |entry| steps.count(entry);
-    if apart(scene, &a, &b) {
+pub(crate) fn find_contact(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
+    let [a, b] = Projected::root_bounds(scene);
+    let mut count = |entry| steps.count_pair(entry);
+    if are_separated(scene, &a, &b) {
         count(Some(Reason::Disjoint));
         return None;
     }
-    let facets = descend(scene, [0, 0], &a, &b, Judge::touch(scene), &mut count);
-    facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
+    let facets = search_pairs(scene, [0, 0], &a, &b, PairTest::contact_test(scene), &mut count);
+    facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested_shell(scene))
 }
 
 impl SolidSteps {
     /// Counts a pair of nodes that was split (`None`) or cut for a reason.
-    pub(crate) fn count(&mut self, entry: Option<Reason>) {
+    pub(crate) fn count_pair(&mut self, entry: Option<Reason>) {
         self.nodes += 1;
         self.leaves += u32::from(entry == Some(Reason::Examined));
     }
@@ -171,64 +171,64 @@ impl SolidSteps {
 
 /// A test of two triangles, and whether nodes that lie face to face can satisfy it.
 #[derive(Clone, Copy)]
-struct Judge {
+struct PairTest {
     holds: fn(&Scene, &Triangle, &Triangle) -> bool,
     faces: bool,
 }
 
-impl Judge {
-    const OVERLAP: Self = Self { holds: meet, faces: false };
+impl PairTest {
+    const OVERLAP: Self = Self { holds: show_overlap, faces: false };
     const TOUCH: Self = Self { holds: share_a_point, faces: true };
     const NEARER: Self = Self { holds: are_nearer, faces: true };
     const AS_NEAR: Self = Self { holds: are_as_near, faces: true };
 
     /// Returns the test of an overlap, or of a distance below the minimum gap if there is one.
-    fn overlap(scene: &Scene) -> Self {
-        if scene.keeps() { Self::NEARER } else { Self::OVERLAP }
+    fn overlap_test(scene: &Scene) -> Self {
+        if scene.has_min_gap() { Self::NEARER } else { Self::OVERLAP }
     }
 
     /// Returns the test of contact, or of a distance up to the minimum gap if there is one.
-    fn touch(scene: &Scene) -> Self {
-        if scene.keeps() { Self::AS_NEAR } else { Self::TOUCH }
+    fn contact_test(scene: &Scene) -> Self {
+        if scene.has_min_gap() { Self::AS_NEAR } else { Self::TOUCH }
     }
 
     /// Returns the reason why a pair of nodes needs no further comparison; `None` if it does.
     ///
     /// Facets of one plane that face each other show no overlap. At their edges one half-space of material touches
     /// another. Otherwise the second facet of the wedge is in another node and shows the overlap.
-    fn dismisses(self, scene: &Scene, a: &Projected, b: &Projected) -> Option<Reason> {
-        if apart(scene, a, b) {
+    fn dismissal_reason(self, scene: &Scene, a: &Projected, b: &Projected) -> Option<Reason> {
+        if are_separated(scene, a, b) {
             return Some(Reason::Disjoint);
         }
         (!self.faces && a.is_face_to_face(b)).then_some(Reason::FaceToFace)
     }
 }
 
-/// Finds a pair of triangles that satisfies `judge`, among all pairs whose nodes are not certainly separated.
-fn descend(
+/// Finds a pair of triangles that satisfies `test`, among all pairs whose nodes are not certainly separated.
+fn search_pairs(
     scene: &Scene,
     nodes: [usize; 2],
     a: &Projected,
     b: &Projected,
-    judge: Judge,
+    test: PairTest,
     cut: &mut impl FnMut(Option<Reason>),
 ) -> Option<(u32, u32)> {
     let (m, n) = (&scene.moving.solid.nodes()[nodes[0]], &scene.fixed.solid.nodes()[nodes[1]]);
     let are_leaves = [m.is_leaf(), n.is_leaf()];
     let Some(which) = node_to_split(are_leaves, |k| [m, n][k].size()) else {
         cut(Some(Reason::Examined));
-        return leaves(scene, m, n, judge);
+        return search_leaves(scene, m, n, test);
     };
     cut(None);
     for part in [m, n][which].children(nodes[which] as u32) {
         let part = part as usize;
         let projected = Projected::new(scene, scene.side(which == 0), part);
         let [p, q] = replaced([a, b], which, &projected);
-        if let Some(reason) = judge.dismisses(scene, p, q) {
+        if let Some(reason) = test.dismissal_reason(scene, p, q) {
             cut(Some(reason));
             continue;
         }
-        let found = descend(scene, replaced(nodes, which, part), p, q, judge, cut);
+        let found = search_pairs(scene, replaced(nodes, which, part), p, q, test, cut);
         if found.is_some() {
             return found;
         }
@@ -236,13 +236,13 @@ fn descend(
     None
 }
 
-fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)> {
+fn search_leaves(scene: &Scene, a: &Node, b: &Node, test: PairTest) -> Option<(u32, u32)> {
     let mut facets = a.facets().map(|s| Triangle::new(&scene.moving, s));
     let of_moving: [Option<Triangle>; LEAF] = std::array::from_fn(|_| facets.next());
     for t in b.facets() {
         let g = Triangle::new(&scene.fixed, t);
         for f in of_moving.iter().flatten() {
-            if (judge.holds)(scene, f, &g) {
+            if (test.holds)(scene, f, &g) {
                 return Some((f.index as u32, t as u32));
             }
         }
@@ -251,19 +251,19 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
 }
 
 /// Checks whether two triangles show that the solids overlap: cases 1 to 3.
-fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
+fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let noise = 4.0 * scene.noise;
     if (0..3).any(|axis| f.bounds.is_apart(&g.bounds, axis, noise)) {
         return false;
     }
-    if let Some(found) = thin::overlaps(scene, f, g) {
+    if let Some(found) = thin::show_overlap(scene, f, g) {
         return found;
     }
-    let of_g = f.sides(scene, g);
+    let of_g = f.corner_sides(scene, g);
     if one_sided(of_g) {
         return false;
     }
-    let of_f = g.sides(scene, f);
+    let of_f = g.corner_sides(scene, f);
     if one_sided(of_f) {
         return false;
     }
@@ -281,7 +281,8 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
                 return true;
             }
         }
-    } else if straddles(of_g) && straddles(of_f) && cross(scene, f, of_f, g, of_g) {
+    } else if has_both_signs(of_g) && has_both_signs(of_f) && facets_cross(scene, f, of_f, g, of_g)
+    {
         return true;
     }
     (0..3).any(|k| edge_meets(scene, f, k, of_f, g, of_g))
@@ -290,18 +291,18 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
 
 /// Checks whether two triangles are certainly nearer than the minimum gap.
 fn are_nearer(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
-    Facets::new(scene, &f.corners, &g.corners).are_within(scene.keep, false)
+    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.keep, false)
 }
 
 /// Checks whether the distance of two triangles is certainly at most the minimum gap.
 fn are_as_near(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
-    Facets::new(scene, &f.corners, &g.corners).are_within(scene.keep, true)
+    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.keep, true)
 }
 
 /// Checks whether two triangles, as closed sets, have a common point. If they do, an edge of one meets the other.
 fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let pierces = |f: &Triangle, g: &Triangle| (0..3).any(|k| edge_reaches(scene, f, k, g));
-    match [f, g].map(thin::ends) {
+    match [f, g].map(thin::segment_ends) {
         [Some(p), Some(q)] => thin::share_a_point(scene, p, q),
         [Some(_), None] => pierces(f, g),
         [None, Some(_)] => pierces(g, f),
@@ -339,7 +340,7 @@ fn one_sided(signs: [Ordering; 3]) -> bool {
     signs[0] != Ordering::Equal && signs[1] == signs[0] && signs[2] == signs[0]
 }
 
-fn straddles(signs: [Ordering; 3]) -> bool {
+fn has_both_signs(signs: [Ordering; 3]) -> bool {
     signs.contains(&Ordering::Greater) && signs.contains(&Ordering::Less)
 }
 
@@ -348,7 +349,7 @@ fn straddles(signs: [Ordering; 3]) -> bool {
 /// The planes intersect in a line, which meets each triangle in a segment. If one corner of each triangle is alone on
 /// the upper side of the other plane, the order of two pairs of sides along this line shows whether the segments
 /// overlap.
-fn cross(
+fn facets_cross(
     scene: &Scene,
     f: &Triangle,
     of_f: [Ordering; 3],
@@ -412,8 +413,9 @@ fn edge_meets(
     }
     let (p, q) = (&f.corners[k], &f.corners[next]);
     // A boundary edge has no neighbour.
-    let beyond = f.across(k);
-    let own = Stuff::around(f.is_open(), beyond.is_some(), [Ray::to(0), Ray::to(1)]);
+    let beyond = f.corner_across_edge(k);
+    let own =
+        EdgeNeighbourhood::around_edge(f.is_open(), beyond.is_some(), [Ray::to(0), Ray::to(1)]);
     let Some(own) = own else { return false };
     let (apex, beyond) = (&f.corners[(k + 2) % 3], &beyond.unwrap_or(f.corners[(k + 2) % 3]));
     if runs_through(scene, [p, q], g) {
@@ -423,9 +425,9 @@ fn edge_meets(
         let outwards = scene.turn_about(axis, p, q, w) == facing;
         let back = Ray { point: 2, opposite: true };
         let (start, end) = if outwards { (back, Ray::to(2)) } else { (Ray::to(2), back) };
-        let around = Around { scene, p, q, points: [beyond, apex, w, w] };
-        let other = Stuff::around(g.is_open(), true, [start, end]);
-        return other.is_some_and(|other| own.overlaps(&other, &around));
+        let around = EdgeAxis { scene, p, q, points: [beyond, apex, w, w] };
+        let other = EdgeNeighbourhood::around_edge(g.is_open(), true, [start, end]);
+        return other.is_some_and(|other| own.overlaps_around(&other, &around));
     }
     (0..3).any(|j| {
         let on_plane = of_g[j] == Ordering::Equal && of_g[(j + 1) % 3] == Ordering::Equal;
@@ -433,18 +435,19 @@ fn edge_meets(
         let Some(along) = on_plane.then(|| runs_along(scene, [p, q], [r, s])).flatten() else {
             return false;
         };
-        let across = g.across(j);
-        let other = Stuff::around(g.is_open(), across.is_some(), [Ray::to(2), Ray::to(3)]);
-        let other = other.map(|other| if along { other } else { other.turned() });
+        let across = g.corner_across_edge(j);
+        let other =
+            EdgeNeighbourhood::around_edge(g.is_open(), across.is_some(), [Ray::to(2), Ray::to(3)]);
+        let other = other.map(|other| if along { other } else { other.reversed() });
         let apex_of_g = &g.corners[(j + 2) % 3];
         let points = [beyond, apex, &across.unwrap_or(*apex_of_g), apex_of_g];
-        let around = Around { scene, p, q, points };
-        other.is_some_and(|other| own.overlaps(&other, &around))
+        let around = EdgeAxis { scene, p, q, points };
+        other.is_some_and(|other| own.overlaps_around(&other, &around))
     })
 }
 
 /// The part of a body around an edge.
-pub(super) enum Stuff {
+pub(super) enum EdgeNeighbourhood {
     /// Of a closed shell: a wedge of material.
     Material(Wedge),
     /// Of an open shell: two half-planes.
@@ -453,10 +456,14 @@ pub(super) enum Stuff {
     Rim(Ray),
 }
 
-impl Stuff {
+impl EdgeNeighbourhood {
     /// Returns the part of a body around an edge with its own facet along the second ray, and its neighbour, if there
     /// is one, along the first. `None` for an edge of a closed shell without a neighbour.
-    pub(super) fn around(open: bool, has_across: bool, [across, own]: [Ray; 2]) -> Option<Self> {
+    pub(super) fn around_edge(
+        open: bool,
+        has_across: bool,
+        [across, own]: [Ray; 2],
+    ) -> Option<Self> {
         match (open, has_across) {
             (false, true) => Some(Self::Material(Wedge { start: across, end: own })),
             (false, false) => None,
@@ -466,7 +473,7 @@ impl Stuff {
     }
 
     /// Returns the same neighbourhood for the edge in the opposite direction.
-    fn turned(self) -> Self {
+    fn reversed(self) -> Self {
         match self {
             Self::Material(Wedge { start, end }) => {
                 Self::Material(Wedge { start: end, end: start })
@@ -475,11 +482,11 @@ impl Stuff {
         }
     }
 
-    pub(super) fn overlaps(&self, other: &Self, axis: &impl Axis) -> bool {
+    pub(super) fn overlaps_around(&self, other: &Self, axis: &impl Axis) -> bool {
         match (self, other) {
             (Self::Material(a), Self::Material(b)) => a.meets(b, axis),
             (Self::Material(a), rays) | (rays, Self::Material(a)) => {
-                rays.rays().any(|ray| a.holds(ray, axis))
+                rays.half_planes().any(|ray| a.holds(ray, axis))
             }
             (&Self::Bend([a, b]), &Self::Bend([c, e])) => {
                 let (one, rest) = (Wedge { start: a, end: b }, Wedge { start: b, end: a });
@@ -490,7 +497,7 @@ impl Stuff {
         }
     }
 
-    fn rays(&self) -> impl Iterator<Item = Ray> {
+    fn half_planes(&self) -> impl Iterator<Item = Ray> {
         let rays = match *self {
             Self::Material(_) => [None, None],
             Self::Bend([a, b]) => [Some(a), Some(b)],
@@ -504,7 +511,7 @@ impl Stuff {
 fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Triangle) -> bool {
     let (axis, facing) = g.open_axis(scene);
     let of_corners = g.corners.map(|c| scene.turn_about(axis, p, q, &c));
-    if !straddles(of_corners) {
+    if !has_both_signs(of_corners) {
         return false;
     }
     !(0..3).any(|k| {
@@ -521,23 +528,23 @@ fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Opti
     if !on_line(r) || !on_line(s) {
         return None;
     }
-    let axis = (0..3).find(|&axis| scene.order(axis, p, q) != Ordering::Equal)?;
-    let way = scene.order(axis, p, q);
-    let along = scene.order(axis, r, s) == way;
+    let axis = (0..3).find(|&axis| scene.axis_order(axis, p, q) != Ordering::Equal)?;
+    let way = scene.axis_order(axis, p, q);
+    let along = scene.axis_order(axis, r, s) == way;
     let (first, last) = if along { (r, s) } else { (s, r) };
-    let shared = scene.order(axis, first, q) == way && scene.order(axis, p, last) == way;
+    let shared = scene.axis_order(axis, first, q) == way && scene.axis_order(axis, p, last) == way;
     shared.then_some(along)
 }
 
 /// An edge and the points around it that define rays.
-pub(super) struct Around<'c, 's, 'a> {
+pub(super) struct EdgeAxis<'c, 's, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) p: &'c Corner,
     pub(super) q: &'c Corner,
     pub(super) points: [&'c Corner; 4],
 }
 
-impl Axis for Around<'_, '_, '_> {
+impl Axis for EdgeAxis<'_, '_, '_> {
     fn det(&self, x: usize, y: usize) -> Ordering {
         self.scene.outside(self.p, self.q, self.points[x], self.points[y])
     }

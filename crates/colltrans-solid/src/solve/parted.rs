@@ -13,18 +13,18 @@ use colltrans_convex::solve::nearest::simplex::{Corner, Simplex};
 use colltrans_kernel::real::Vector;
 
 /// Maximum number of rounds. Each round ends the search or comes closer; only rounding errors could prolong it.
-const MOST_ROUNDS: usize = 64;
+const MAX_ROUNDS: usize = 64;
 
 /// Finds the normal in the world, from the moving body to the fixed one, of a plane that certainly separates the
 /// bodies. `near` is an initial guess. `None` if the search ends without such a plane.
-pub(crate) fn plane(scene: &Scene, near: Option<DVec3>) -> Option<DVec3> {
+pub(crate) fn separating_normal(scene: &Scene, near: Option<DVec3>) -> Option<DVec3> {
     let middle = |side: &Side| side.matrix * side.solid.bounds().center() + side.offset[0];
     let apart = || (middle(&scene.fixed) - middle(&scene.moving)).try_normalize();
     let mut normal = near.or_else(apart)?;
     let mut simplex: Option<Simplex<f64>> = None;
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let [(p, from), (q, to)] =
-            [farthest(&scene.moving, normal), farthest(&scene.fixed, -normal)];
+            [farthest_vertex(&scene.moving, normal), farthest_vertex(&scene.fixed, -normal)];
         let lowest = to - from;
         if normal.dot(lowest) > HEIGHTS * scene.noise {
             return Some(normal);
@@ -47,14 +47,14 @@ pub(crate) fn plane(scene: &Scene, near: Option<DVec3>) -> Option<DVec3> {
 }
 
 /// Returns the vertex of a body that is farthest along a normal, and its position in the setting frame.
-fn farthest(side: &Side, normal: DVec3) -> (u32, DVec3) {
+fn farthest_vertex(side: &Side, normal: DVec3) -> (u32, DVec3) {
     let local = side.matrix.transpose() * normal;
     let mut best = (0, f64::NEG_INFINITY);
     for v in 0..side.solid.vertices().len() as u32 {
-        let height = local.dot(side.vertex(v));
+        let height = local.dot(side.offset_vertex(v));
         if height > best.1 {
             best = (v, height);
         }
     }
-    (best.0, side.matrix * side.vertex(best.0) + side.offset[0])
+    (best.0, side.matrix * side.offset_vertex(best.0) + side.offset[0])
 }

@@ -40,7 +40,7 @@ pub struct Projected {
 
 impl Projected {
     /// Returns the bounds of both bodies as a whole.
-    pub(crate) fn roots(scene: &Scene) -> [Self; 2] {
+    pub(crate) fn root_bounds(scene: &Scene) -> [Self; 2] {
         [&scene.moving, &scene.fixed].map(|side| Self::new(scene, side, 0))
     }
 
@@ -48,7 +48,7 @@ impl Projected {
         let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;
         let shift = axis.dot(side.view_offset);
-        let noise = scene.noise + side.skew();
+        let noise = scene.noise + side.skew_bound();
         let mut projected = Self {
             node: at as u32,
             bounds: node.bounds,
@@ -57,16 +57,16 @@ impl Projected {
             slab: [node.slab[0] + shift - noise, node.slab[1] + shift + noise],
             along: node.axis.dot(side.along),
             spread: f64::from(node.spread),
-            inward: scene.keeps() || side.inward & node.inward != 0,
+            inward: scene.has_min_gap() || side.inward & node.inward != 0,
         };
         if let Some(shrinking) = side.shrinking {
-            projected.shrink(shrinking, side.amount, at);
+            projected.move_inwards(shrinking, side.amount, at);
         }
         let terms = (node.axis * side.along).abs().element_sum();
         projected.spread += side.defect
             + if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
-        projected.bounds = boxed(scene, side, projected.local);
-        if scene.keeps() {
+        projected.bounds = box_in_query_frame(scene, side, projected.local);
+        if scene.has_min_gap() {
             // An edge-on facet faces neither way.
             projected.spread += f64::MIN_POSITIVE;
         }
@@ -82,7 +82,7 @@ impl Projected {
     }
 
     /// Moves the sides inwards by the offset.
-    fn shrink(&mut self, shrinking: &Shrinking, amount: f64, at: usize) {
+    fn move_inwards(&mut self, shrinking: &Shrinking, amount: f64, at: usize) {
         let motion = &shrinking.nodes[at];
         let swell = shrinking.farthest * amount.abs();
         self.spread += f64::from(motion.turn) * amount + f64::from(motion.rough);
@@ -111,27 +111,27 @@ impl Projected {
     /// Returns the range of the box along axis `k` of the body, in the query frame.
     pub(crate) fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
         let shift = side.view.col(k).dot(side.view_offset);
-        let skew = side.skew() + side.swell;
+        let skew = side.skew_bound() + side.swell;
         [self.local.low[k] + shift - skew, self.local.high[k] + shift + skew]
     }
 
     /// Returns the range of `m.x` over the node for a unit vector `m`.
-    pub(crate) fn range(&self, side: &Side, m: DVec3, noise: f64) -> [f64; 2] {
+    pub(crate) fn range_along(&self, side: &Side, m: DVec3, noise: f64) -> [f64; 2] {
         [self.least_along(side, m, noise), -self.least_along(side, -m, noise)]
     }
 
-    /// Returns a lower bound of `m.x` over the node for a unit vector `m`. If `m` is nearly parallel to the slab's
-    /// axis, the slab bounds that component, and the box with its cut corners the remainder.
+    /// Returns a lower bound of `m.x` over the node for a unit vector `m`. If the cosine of `m` and the slab's axis
+    /// exceeds [`PARALLEL`], the slab bounds that component, and the box with its cut corners the remainder.
     pub(crate) fn least_along(&self, side: &Side, m: DVec3, noise: f64) -> f64 {
         let (least, local) = self.least_uncut(side, m, noise);
-        least + self.gain(side, local)
+        least + self.cut_gain(side, local)
     }
 
     /// Checks whether the node lies beyond the coordinate `place` along a unit vector. The cuts of its box are
     /// evaluated only if the uncut box does not decide.
     pub(crate) fn is_beyond(&self, side: &Side, m: DVec3, noise: f64, place: f64) -> bool {
         let (least, local) = self.least_uncut(side, m, noise);
-        least > place || least + self.gain(side, local) > place
+        least > place || least + self.cut_gain(side, local) > place
     }
 
     /// Returns a lower bound of `m.x` from the uncut box, and the vector in the body frame along which the box was
@@ -151,10 +151,10 @@ impl Projected {
         (slab + middle - spread - side.swell, local)
     }
 
-    /// Returns by how much the cuts of its box shorten its extent against a vector of the body frame.
-    fn gain(&self, side: &Side, local: DVec3) -> f64 {
+    /// Returns the length by which the cuts of its box shorten its extent against a vector of the body frame.
+    fn cut_gain(&self, side: &Side, local: DVec3) -> f64 {
         let node = &side.solid.nodes()[self.node as usize];
-        Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.moved())
+        Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.max_displacement())
     }
 
     /// Checks whether the slab bounds heights.
@@ -169,18 +169,18 @@ impl Projected {
     }
 
     /// Checks whether no facet of the node faces along the direction.
-    pub(crate) fn looks_back(&self) -> bool {
+    pub(crate) fn faces_backward(&self) -> bool {
         self.spread < 1.0 && self.along <= -self.spread
     }
 
     /// Checks whether no facet of the node faces against the direction.
-    pub(crate) fn looks_ahead(&self) -> bool {
+    pub(crate) fn faces_forward(&self) -> bool {
         self.spread < 1.0 && self.along >= self.spread
     }
 }
 
 /// Computes the node's box in the query frame: exact along aligned axes, rounded outwards along others.
-fn boxed(scene: &Scene, side: &Side, local: Aabb) -> Aabb {
+fn box_in_query_frame(scene: &Scene, side: &Side, local: Aabb) -> Aabb {
     let (center, half) = (local.center(), local.size() * 0.5);
     let middle = side.view * center + side.view_offset;
     let DMat3 { x_axis, y_axis, z_axis } = side.view;

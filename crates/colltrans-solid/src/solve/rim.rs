@@ -16,7 +16,7 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 
 use super::fan::Fan;
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
-use super::line::{self, Line, Way};
+use super::line::{self, Line, LineDirection};
 use super::scene::{Corner, Scene, Side};
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
@@ -36,9 +36,9 @@ pub(crate) struct Upright {
 }
 
 /// Checks whether two nodes may have edge-on facets to compare: one of them has facets of an open shell.
-pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
+pub(crate) fn may_have_edge_on(scene: &Scene, nodes: [u32; 2]) -> bool {
     // With a minimum gap, edge-on facets are treated like all others.
-    !scene.keeps()
+    !scene.has_min_gap()
         && [true, false]
             .into_iter()
             .zip(nodes)
@@ -63,7 +63,7 @@ pub(crate) fn least_gap_of(
 
 /// Calls `take` with the gaps of two triangles of which one is an edge-on facet.
 pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
-    if scene.keeps() {
+    if scene.has_min_gap() {
         return;
     }
     let upright = |moving, t: u32| {
@@ -131,44 +131,44 @@ impl Upright {
         upright.leads = if scene.side(moving).solid.is_without_area(triangle) {
             upright.leads_of_segment(scene)
         } else {
-            [0, 1, 2].map(|k| upright.lead(scene, k))
+            [0, 1, 2].map(|k| upright.side_lead(scene, k))
         };
         // The two corners that are farthest apart along the shadow.
-        let axis = upright.axis(scene);
+        let axis = upright.ordering_axis(scene);
         let order =
-            |i: usize, j: usize| scene.drift(axis, &upright.corners[i], &upright.corners[j]);
+            |i: usize, j: usize| scene.drift_sign(axis, &upright.corners[i], &upright.corners[j]);
         let extreme = |way| (0..3).find(|&i| (0..3).all(|j| order(i, j) != way)).unwrap_or(0);
         upright.ends = [extreme(Less), extreme(Greater)];
         Some(upright)
     }
 
-    fn side(&self, k: usize) -> [&Corner; 2] {
+    fn side_ends(&self, k: usize) -> [&Corner; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }
 
-    fn end(&self, k: usize) -> &Corner {
+    fn shadow_end(&self, k: usize) -> &Corner {
         &self.corners[self.ends[k]]
     }
 
-    /// Returns an axis of the world such that [`Scene::drift`] along it orders positions along the shadow.
-    fn axis(&self, scene: &Scene) -> usize {
+    /// Returns an axis of the world such that [`Scene::drift_sign`] along it orders positions along the shadow.
+    fn ordering_axis(&self, scene: &Scene) -> usize {
         let apart = |axis: usize| {
             (0..3).any(|k| {
-                let [a, b] = self.side(k);
-                scene.drift(axis, a, b) != Equal
+                let [a, b] = self.side_ends(k);
+                scene.drift_sign(axis, a, b) != Equal
             })
         };
         (0..3).find(|&axis| apart(axis)).unwrap_or(0)
     }
 
-    fn lead(&self, scene: &Scene, k: usize) -> Ordering {
-        let ([p, q], r) = (self.side(k), &self.corners[(k + 2) % 3]);
+    fn side_lead(&self, scene: &Scene, k: usize) -> Ordering {
+        let ([p, q], r) = (self.side_ends(k), &self.corners[(k + 2) % 3]);
         // An axis along which the facet has an area. It decides on which side `r` is, and to which side the direction
         // leads.
         let rest = |axis: &usize| scene.turn_about(*axis, p, q, r) != Equal;
         let Some(axis) = (0..3).find(rest) else { return Equal };
         let rest = scene.turn_about(axis, p, q, r);
-        let ahead = scene.drift(axis, p, q).reverse();
+        let ahead = scene.drift_sign(axis, p, q).reverse();
         match (ahead == Equal, (ahead == rest) == self.moving) {
             (true, _) => Equal,
             (_, true) => Less,
@@ -180,23 +180,23 @@ impl Upright {
     /// point.
     fn leads_of_segment(&self, scene: &Scene) -> [Ordering; 3] {
         let [a, b, _] = &self.corners;
-        let is_point = (0..3).all(|axis| scene.drift(axis, a, b) == Equal);
+        let is_point = (0..3).all(|axis| scene.drift_sign(axis, a, b) == Equal);
         if is_point { [Equal; 3] } else { [Greater, Equal, Less] }
     }
 
     /// Returns the number of the leading corner of a point or segment whose shadow is a point; `None` for other facets.
-    fn tip(&self, scene: &Scene) -> Option<u8> {
+    fn tip_corner(&self, scene: &Scene) -> Option<u8> {
         if self.leads != [Equal; 3] {
             return None;
         }
         let [a, b, _] = &self.corners;
         let direction = scene.setting.direction;
         let axis = direction.abs().max_position();
-        let second_is_higher = match scene.order(axis, a, b) {
+        let second_is_higher = match scene.axis_order(axis, a, b) {
             Equal => false,
             order => (order == Less) == (direction[axis] > 0.0),
         };
-        Some(u8::from(second_is_higher == self.moving && scene.order(axis, a, b) != Equal))
+        Some(u8::from(second_is_higher == self.moving && scene.axis_order(axis, a, b) != Equal))
     }
 
     /// Computes the gap of a tip and a facet of the other body; `None` if the tip does not meet the facet or is not
@@ -204,32 +204,32 @@ impl Upright {
     fn tip_and_facet(&self, scene: &Scene, tip: u8, facet: &Facet) -> Option<Gap> {
         let corner = &self.corners[usize::from(tip)];
         let turns = [0, 1, 2].map(|j| {
-            let [a, b] = facet.side(j);
+            let [a, b] = facet.side_ends(j);
             scene.turn(a, b, corner)
         });
         if turns.contains(&Less) {
             return None;
         }
-        if !self.passes(scene, corner, facet, turns) {
+        if !self.blocks_tip(scene, corner, facet, turns) {
             return None;
         }
         let mut gap = NO_GAP;
         let at = if self.moving { Meeting::Corner(tip) } else { Meeting::Under(tip) };
-        gap.add(scene, self.ahead(over_facet(scene, facet, corner)), at);
+        gap.add_corner(scene, self.gap_from_height(over_facet(scene, facet, corner)), at);
         Some(gap)
     }
 
     /// Checks whether the facet blocks the tip, according to the sides of the facet that the tip meets.
-    fn passes(&self, scene: &Scene, tip: &Corner, facet: &Facet, turns: [Ordering; 3]) -> bool {
-        let line = Line { from: tip, way: Way::Query { forward: self.moving } };
+    fn blocks_tip(&self, scene: &Scene, tip: &Corner, facet: &Facet, turns: [Ordering; 3]) -> bool {
+        let line = Line { from: tip, way: LineDirection::Query { forward: self.moving } };
         let side = scene.side(!self.moving);
         if !side.solid.is_open(facet.triangle as usize) {
-            return line::enters(scene, &line, side, facet.triangle, true);
+            return line::enters_body(scene, &line, side, facet.triangle, true);
         }
         let on: Vec<usize> = (0..3).filter(|&j| turns[j] == Equal).collect();
         match on[..] {
             [] => true,
-            [j] => enters(scene, self.moving, facet, j),
+            [j] => enters_at_side(scene, self.moving, facet, j),
             [j, k, ..] => {
                 let shared = if k == j + 1 { k } else { j };
                 let fan = Fan::new(scene, side, facet.triangle, &facet.corners[shared]);
@@ -238,7 +238,7 @@ impl Upright {
         }
     }
 
-    fn leading(&self) -> impl Iterator<Item = usize> + '_ {
+    fn leading_sides(&self) -> impl Iterator<Item = usize> + '_ {
         (0..3).filter(|&k| self.leads[k] == Greater)
     }
 
@@ -252,10 +252,10 @@ impl Upright {
         if self.is_beside(scene, &facet.bounds) {
             return;
         }
-        if let Some(tip) = self.tip(scene) {
+        if let Some(tip) = self.tip_corner(scene) {
             self.tip_and_facet(scene, tip, facet).into_iter().for_each(&mut *take);
         }
-        for k in self.leading() {
+        for k in self.leading_sides() {
             if let Some(gap) = self.side_and_facet(scene, k, facet) {
                 take(gap);
             }
@@ -263,18 +263,18 @@ impl Upright {
     }
 
     fn side_and_facet(&self, scene: &Scene, k: usize, facet: &Facet) -> Option<Gap> {
-        let [p, q] = self.side(k);
+        let [p, q] = self.side_ends(k);
         let of_side = facet.corners.each_ref().map(|c| scene.turn(p, q, c));
         let turns: [[Ordering; 2]; 3] = std::array::from_fn(|j| {
-            let [a, b] = facet.side(j);
+            let [a, b] = facet.side_ends(j);
             [scene.turn(a, b, p), scene.turn(a, b, q)]
         });
         let along = |j: usize| of_side[j] == Equal && of_side[(j + 1) % 3] == Equal;
         if let Some(j) = (0..3).find(|&j| along(j)) {
-            let side = Named { corners: facet.side(j), number: j };
+            let side = Named { corners: facet.side_ends(j), number: j };
             let own = Named { corners: [p, q], number: k };
-            return enters(scene, self.moving, facet, j)
-                .then(|| self.oriented(scene, own, side))
+            return enters_at_side(scene, self.moving, facet, j)
+                .then(|| self.shared_side_gap(scene, own, side))
                 .flatten();
         }
         let divided = of_side.contains(&Greater) && of_side.contains(&Less);
@@ -286,7 +286,7 @@ impl Upright {
             if turns.iter().all(|t| t[end] != Less) {
                 let at = ((k + end) % 3) as u8;
                 let at = if self.moving { Meeting::Corner(at) } else { Meeting::Under(at) };
-                gap.add(scene, self.ahead(over_facet(scene, facet, corner)), at);
+                gap.add_corner(scene, self.gap_from_height(over_facet(scene, facet, corner)), at);
             }
         }
         for j in 0..3 {
@@ -294,19 +294,19 @@ impl Upright {
             if are_opposite(turns[j]) && are_opposite([of_side[j], of_side[next]]) {
                 let (at, other) = (k as u8, j as u8);
                 let at = if self.moving { [at, other] } else { [other, at] };
-                let above = over_side(scene, facet.side(j), [p, q]);
-                gap.add(scene, self.ahead(above), Meeting::Sides(at[0], at[1]));
+                let above = over_side(scene, facet.side_ends(j), [p, q]);
+                gap.add_corner(scene, self.gap_from_height(above), Meeting::Sides(at[0], at[1]));
             }
             if of_side[j] == Equal && is_between(scene, &facet.corners[j], [p, q]) {
                 let above = over_line(scene, &facet.corners[j], [p, q]);
-                gap.add(scene, self.ahead(above), self.at_corner(k, j));
+                gap.add_corner(scene, self.gap_from_height(above), self.at_corner(k, j));
             }
         }
         Some(gap)
     }
 
     /// Converts the height of this facet above the other body's to a gap between the moving and the fixed body.
-    fn ahead(&self, above: Above) -> Above {
+    fn gap_from_height(&self, above: Above) -> Above {
         if self.moving { above.reversed() } else { above }
     }
 
@@ -320,30 +320,31 @@ impl Upright {
     }
 
     /// Computes the gap over the common shadow of a side of this facet and a side of the other body.
-    fn oriented(&self, scene: &Scene, own: Named, other: Named) -> Option<Gap> {
+    fn shared_side_gap(&self, scene: &Scene, own: Named, other: Named) -> Option<Gap> {
         let [moving, fixed] = if self.moving { [own, other] } else { [other, own] };
-        along(scene, moving, fixed)
+        collinear_gap(scene, moving, fixed)
     }
 
     /// Returns the two arms of the facet at a point of its shadow. In the interior of the shadow they are its ends. At
     /// an end with a vertical side they are the facet's other end, and the apex of the neighbour across that side.
     /// `None` if the facet merely ends there.
-    fn arms(&self, scene: &Scene, end: Option<usize>) -> Option<[Corner; 2]> {
-        let Some(end) = end else { return Some([*self.end(0), *self.end(1)]) };
+    fn arms_at(&self, scene: &Scene, end: Option<usize>) -> Option<[Corner; 2]> {
+        let Some(end) = end else { return Some([*self.shadow_end(0), *self.shadow_end(1)]) };
         let upright = (0..3).find(|&k| self.leads[k] == Equal)?;
-        let [a, b] = self.side(upright);
-        let here = |c: &Corner| c.local == self.end(end).local;
+        let [a, b] = self.side_ends(upright);
+        let here = |c: &Corner| c.local == self.shadow_end(end).local;
         if !here(a) && !here(b) {
             return None;
         }
-        let apex = across(scene.side(self.moving), self.triangle as usize, upright)?;
-        Some([*self.end(1 - end), apex])
+        let apex = neighbour_corner(scene.side(self.moving), self.triangle as usize, upright)?;
+        Some([*self.shadow_end(1 - end), apex])
     }
 
     /// Finds a leading side whose shadow reaches or crosses the line of another edge-on facet's shadow.
     fn leading_at(&self, scene: &Scene, other: &Self) -> Option<usize> {
-        self.leading().find(|&k| {
-            let [p, q] = self.side(k).map(|c| scene.turn(other.end(0), other.end(1), c));
+        self.leading_sides().find(|&k| {
+            let [p, q] =
+                self.side_ends(k).map(|c| scene.turn(other.shadow_end(0), other.shadow_end(1), c));
             p != q
         })
     }
@@ -357,7 +358,7 @@ struct Named<'c> {
 }
 
 /// Returns the corner across side `k` of a triangle, in its original order; `None` at a boundary.
-fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
+fn neighbour_corner(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
     let n = side.solid.neighbours()[triangle][k];
     let own = side.solid.triangles()[triangle];
     let ends = [own[k], own[(k + 1) % 3]];
@@ -367,18 +368,18 @@ fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
 
 /// Checks whether an edge-on facet of the body given by `moving` enters the other body at side `j` of a facet, along
 /// which it runs. For an open facet, checks whether a facet or a point passes this side.
-fn enters(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool {
+fn enters_at_side(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool {
     let side = scene.side(!moving);
     let t = facet.triangle as usize;
-    let (solid, listed) = (side.solid, facet.side(j).map(|c| c.local));
+    let (solid, listed) = (side.solid, facet.side_ends(j).map(|c| c.local));
     let own = side.corners(t);
     let is_side = |k: &usize| {
         let ends = [own[*k].local, own[(k + 1) % 3].local];
         ends == listed || [ends[1], ends[0]] == listed
     };
     let Some(k) = (0..3).find(is_side) else { return false };
-    let Some(apex) = across(side, t, k) else { return false };
-    let [a, b] = facet.side(j);
+    let Some(apex) = neighbour_corner(side, t, k) else { return false };
+    let [a, b] = facet.side_ends(j);
     if solid.is_open(t) {
         return scene.turn(a, b, &apex) == Less;
     }
@@ -392,14 +393,14 @@ fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
     if f.is_beside(scene, &g.bounds) {
         return None;
     }
-    let of_f = [0, 1].map(|k| scene.turn(f.end(0), f.end(1), g.end(k)));
-    if of_f == [Equal; 2] { in_one_plane(scene, f, g) } else { crossing(scene, f, g, of_f) }
+    let of_f = [0, 1].map(|k| scene.turn(f.shadow_end(0), f.shadow_end(1), g.shadow_end(k)));
+    if of_f == [Equal; 2] { in_one_plane(scene, f, g) } else { crossing_gap(scene, f, g, of_f) }
 }
 
 /// Computes the gap of case 3: the least gap of the leading sides, and the sign of the largest gap of the trailing
 /// ones.
 fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
-    let sides = |upright: &Upright, k: usize| -> [Corner; 2] { upright.side(k).map(|c| *c) };
+    let sides = |upright: &Upright, k: usize| -> [Corner; 2] { upright.side_ends(k).map(|c| *c) };
     let mut gap: Option<Gap> = None;
     let (mut least, mut largest) = (Greater, Less);
     for wanted in [Greater, Less] {
@@ -409,7 +410,8 @@ fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
             }
             let ([a, b], [c, e]) = (sides(f, k), sides(g, j));
             let own = Named { corners: [&a, &b], number: k };
-            let Some(found) = along(scene, own, Named { corners: [&c, &e], number: j }) else {
+            let Some(found) = collinear_gap(scene, own, Named { corners: [&c, &e], number: j })
+            else {
                 continue;
             };
             if wanted == Less {
@@ -426,37 +428,41 @@ fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
 }
 
 /// Computes the gap of case 4.
-fn crossing(scene: &Scene, f: &Upright, g: &Upright, of_f: [Ordering; 2]) -> Option<Gap> {
-    let of_g = [0, 1].map(|k| scene.turn(g.end(0), g.end(1), f.end(k)));
+fn crossing_gap(scene: &Scene, f: &Upright, g: &Upright, of_f: [Ordering; 2]) -> Option<Gap> {
+    let of_g = [0, 1].map(|k| scene.turn(g.shadow_end(0), g.shadow_end(1), f.shadow_end(k)));
     let apart = |t: [Ordering; 2]| t[0] == t[1];
     if apart(of_f) || apart(of_g) {
         return None;
     }
     let [end_of_g, end_of_f] = [of_f, of_g].map(|t| (0..2).find(|&k| t[k] == Equal));
-    let (arms_of_f, arms_of_g) = (f.arms(scene, end_of_f)?, g.arms(scene, end_of_g)?);
+    let (arms_of_f, arms_of_g) = (f.arms_at(scene, end_of_f)?, g.arms_at(scene, end_of_g)?);
     let crosses = match (end_of_f, end_of_g) {
         (None, None) => true,
-        (_, None) => are_opposite(arms_of_f.map(|c| scene.turn(g.end(0), g.end(1), &c))),
-        (None, _) => are_opposite(arms_of_g.map(|c| scene.turn(f.end(0), f.end(1), &c))),
-        (Some(k), Some(_)) => alternate(scene, f.end(k), &arms_of_f, &arms_of_g),
+        (_, None) => {
+            are_opposite(arms_of_f.map(|c| scene.turn(g.shadow_end(0), g.shadow_end(1), &c)))
+        }
+        (None, _) => {
+            are_opposite(arms_of_g.map(|c| scene.turn(f.shadow_end(0), f.shadow_end(1), &c)))
+        }
+        (Some(k), Some(_)) => arms_cross(scene, f.shadow_end(k), &arms_of_f, &arms_of_g),
     };
     if !crosses {
         return None;
     }
     let (k, j) = (f.leading_at(scene, g)?, g.leading_at(scene, f)?);
     let mut gap = NO_GAP;
-    let above = over_side(scene, g.side(j), f.side(k)).reversed();
-    gap.add(scene, above, Meeting::Sides(k as u8, j as u8));
+    let above = over_side(scene, g.side_ends(j), f.side_ends(k)).reversed();
+    gap.add_corner(scene, above, Meeting::Sides(k as u8, j as u8));
     Some(gap)
 }
 
 /// Checks whether the shadows of two pairs of arms cross at the shadow of a corner.
-fn alternate(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bool {
+fn arms_cross(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bool {
     // Sector of a corner, counter-clockwise from the first arm of `f`: 0 along it, 1 below a half turn, 2 opposite to
     // it, 3 above a half turn.
     let same = |a: &Corner, b: &Corner| {
-        let axis = (0..3).find(|&axis| scene.drift(axis, at, a) != Equal).unwrap_or(0);
-        scene.drift(axis, at, a) == scene.drift(axis, at, b)
+        let axis = (0..3).find(|&axis| scene.drift_sign(axis, at, a) != Equal).unwrap_or(0);
+        scene.drift_sign(axis, at, a) == scene.drift_sign(axis, at, b)
     };
     let sector = |c: &Corner| match scene.turn(at, &f[0], c) {
         Greater => 1,
@@ -477,15 +483,15 @@ fn alternate(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bo
 
 /// Computes the gap of two sides whose shadows lie on one line, over their common part; `None` if this part is a point
 /// at most.
-fn along(scene: &Scene, f: Named, g: Named) -> Option<Gap> {
+fn collinear_gap(scene: &Scene, f: Named, g: Named) -> Option<Gap> {
     let [p, q] = f.corners;
-    let axis = (0..3).find(|&axis| scene.drift(axis, p, q) != Equal)?;
-    let way = scene.drift(axis, p, q);
+    let axis = (0..3).find(|&axis| scene.drift_sign(axis, p, q) != Equal)?;
+    let way = scene.drift_sign(axis, p, q);
     let ordered = |[a, b]: [&Corner; 2]| {
-        if scene.drift(axis, a, b) == way { [0, 1] } else { [1, 0] }
+        if scene.drift_sign(axis, a, b) == way { [0, 1] } else { [1, 0] }
     };
     let ([first, last], [start, end]) = (ordered(f.corners), ordered(g.corners));
-    let before = |a: &Corner, b: &Corner| scene.drift(axis, a, b) == way;
+    let before = |a: &Corner, b: &Corner| scene.drift_sign(axis, a, b) == way;
     let (f_at, g_at) = (|k: usize| f.corners[k], |k: usize| g.corners[k]);
     if !before(f_at(first), g_at(end)) || !before(g_at(start), f_at(last)) {
         return None;
@@ -498,10 +504,10 @@ fn along(scene: &Scene, f: Named, g: Named) -> Option<Gap> {
     ] {
         if inner {
             let above = over_line(scene, g_at(j), f.corners).reversed();
-            gap.add(scene, above, Meeting::UnderSide(f.number as u8, number(g, j)));
+            gap.add_corner(scene, above, Meeting::UnderSide(f.number as u8, number(g, j)));
         } else {
             let above = over_line(scene, f_at(k), g.corners);
-            gap.add(scene, above, Meeting::OnSide(number(f, k), g.number as u8));
+            gap.add_corner(scene, above, Meeting::OnSide(number(f, k), g.number as u8));
         }
     }
     Some(gap)
@@ -513,15 +519,15 @@ fn are_opposite([a, b]: [Ordering; 2]) -> bool {
 
 /// Checks whether the shadow of a corner, on the line of a side's shadow, lies strictly within that shadow.
 fn is_between(scene: &Scene, corner: &Corner, [p, q]: [&Corner; 2]) -> bool {
-    let apart = |axis: &usize| scene.drift(*axis, p, q) != Equal;
+    let apart = |axis: &usize| scene.drift_sign(*axis, p, q) != Equal;
     let Some(axis) = (0..3).find(apart) else { return false };
-    let way = scene.drift(axis, p, q);
-    scene.drift(axis, p, corner) == way && scene.drift(axis, corner, q) == way
+    let way = scene.drift_sign(axis, p, q);
+    scene.drift_sign(axis, p, corner) == way && scene.drift_sign(axis, corner, q) == way
 }
 
 /// Computes the height of side `a b` above a corner whose shadow lies on the line of the side's shadow.
 fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
-    fn of<const N: usize>(
+    fn height_over_line<const N: usize>(
         scene: &Scene,
         [a, b, c]: [&Corner; 3],
         [axis, height]: [usize; 2],
@@ -538,9 +544,9 @@ fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
         let rise = side[height].multiply(&part).subtract(&from[height].multiply(&whole));
         Above::new(&rise, &whole.multiply(&direction[height]))
     }
-    let apart = |axis: &usize| scene.drift(*axis, a, b) != Equal;
+    let apart = |axis: &usize| scene.drift_sign(*axis, a, b) != Equal;
     let axis = (0..3).find(apart).unwrap_or(0);
     let (height, all) = (scene.setting.direction.abs().max_position(), [a, b, corner]);
-    let small = of::<SMALL>(scene, all, [axis, height]);
-    small.or_else(|| of::<LARGE>(scene, all, [axis, height])).unwrap_or(Above::LEVEL)
+    let small = height_over_line::<SMALL>(scene, all, [axis, height]);
+    small.or_else(|| height_over_line::<LARGE>(scene, all, [axis, height])).unwrap_or(Above::LEVEL)
 }

@@ -7,8 +7,9 @@
 //!   translations, without rounding.
 //! - A coordinate of the query frame has an error of at most [`Scene::noise`], `32 u S`. Coordinates are *exact* if the
 //!   matrix only permutes axes and changes signs, and adding the offset does not round.
-//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`Side::skew`] bounds the effect on coordinates along
-//!   an axis `R n`, and [`Side::defect`] the rotation of a facet's normal. Derivation: `docs/theory/solid-rounding.md`.
+//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`Side::skew_bound`] bounds the effect on coordinates
+//!   along an axis `R n`, and [`Side::defect`] the rotation of a facet's normal. Derivation:
+//!   `docs/theory/solid-rounding.md`.
 
 use std::cell::OnceCell;
 
@@ -24,7 +25,7 @@ use colltrans_kernel::noise::Noise;
 use colltrans_kernel::pose::rotation_defect;
 
 /// Upper bound on the deviation of a rounded rotation matrix from a rotation.
-const ROTATION: f64 = 16.0 * f64::EPSILON;
+const ROTATION_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// One of the two bodies, placed and offset.
 #[derive(Clone, Copy)]
@@ -81,15 +82,15 @@ impl<'a> Scene<'a> {
         let offset = setting.exact_offset();
         let fixed = Side::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
         let mut scene = Self { setting: *setting, moving, fixed, frame, keep, noise: 0.0 };
-        scene.measure(keep);
+        scene.set_noise_and_gap(keep);
         scene
     }
 
     /// Sets what depends on the sizes of the bodies and the minimum gap.
-    fn measure(&mut self, keep: f64) {
+    fn set_noise_and_gap(&mut self, keep: f64) {
         let Self { setting, moving, fixed, .. } = self;
-        let size = moving.reach() + fixed.reach() + setting.offset.length();
-        let (noise, keep) = noise_of(size, keep);
+        let size = moving.max_radius() + fixed.max_radius() + setting.offset.length();
+        let (noise, keep) = noise_and_gap(size, keep);
         // A pose may stretch axes by its defect. The last term covers rounding.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
         moving.swell = keep * stretch;
@@ -99,13 +100,13 @@ impl<'a> Scene<'a> {
 
     /// Checks whether a minimum gap is required.
     #[inline]
-    pub(crate) fn keeps(&self) -> bool {
+    pub(crate) fn has_min_gap(&self) -> bool {
         // Without the feature the compiler removes code that only a minimum gap reaches.
         cfg!(feature = "keep") && self.keep > 0.0
     }
 
     /// Returns the position of a corner in the setting frame.
-    pub(crate) fn place(&self, corner: &Corner) -> DVec3 {
+    pub(crate) fn corner_position(&self, corner: &Corner) -> DVec3 {
         let side = self.side(corner.moving);
         side.matrix * corner.local + side.offset[0]
     }
@@ -115,7 +116,7 @@ impl<'a> Scene<'a> {
         let resized = |side: &Side<'a>, amount| {
             let amount = if side.solid.can_shrink() { amount } else { 0.0 };
             let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
-            let inward = inward(side.along, side.aligned, side.moving, amount);
+            let inward = inward_side(side.along, side.aligned, side.moving, amount);
             Side { amount, shrinking, inward, ..*side }
         };
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
@@ -133,7 +134,7 @@ impl<'a> Scene<'a> {
 
     /// Returns the size `S` of the configuration, including the minimum gap.
     pub(crate) fn size(&self) -> f64 {
-        size(self.noise)
+        size_from_noise(self.noise)
     }
 }
 
@@ -146,7 +147,7 @@ impl<'a> Side<'a> {
     ) -> Self {
         let view = frame * matrix;
         let rows = view.transpose();
-        let permuting = permutes(matrix);
+        let permuting = permutes_axes(matrix);
         // A body of sheets alone is not offset and remains exact.
         let amount = if solid.can_shrink() { amount } else { 0.0 };
         let unit = |row: DVec3| permuting && is_axis(row);
@@ -162,35 +163,35 @@ impl<'a> Side<'a> {
             view,
             view_offset: frame * offset[0],
             permutes: permuting,
-            defect: defect(matrix),
+            defect: defect_beyond_rounding(matrix),
             aligned,
             along: rows.z_axis,
-            inward: inward(rows.z_axis, aligned, moving, amount),
+            inward: inward_side(rows.z_axis, aligned, moving, amount),
         }
     }
 
     /// Bounds the change of a coordinate along an axis of the body frame when both are mapped to the setting frame,
     /// because `R v . R n` differs from `v . n`.
-    pub(crate) fn skew(&self) -> f64 {
-        self.defect * self.reach()
+    pub(crate) fn skew_bound(&self) -> f64 {
+        self.defect * self.max_radius()
     }
 
     /// Returns the maximum distance of a point of the body from the origin of its frame.
-    fn reach(&self) -> f64 {
-        self.solid.reach() + self.moved()
+    fn max_radius(&self) -> f64 {
+        self.solid.reach() + self.max_displacement()
     }
 
     /// Returns the maximum displacement of a vertex by the offset.
-    pub(crate) fn moved(&self) -> f64 {
+    pub(crate) fn max_displacement(&self) -> f64 {
         self.solid.max_offset_displacement(self.amount)
     }
 
     /// Returns the bounding box of the offset body in its frame.
-    pub(crate) fn boxed(&self) -> Aabb {
+    pub(crate) fn offset_bounds(&self) -> Aabb {
         self.solid.offset_bounds(self.amount)
     }
 
-    pub(crate) fn vertex(&self, v: u32) -> DVec3 {
+    pub(crate) fn offset_vertex(&self, v: u32) -> DVec3 {
         let at = self.solid.vertices()[v as usize];
         match self.shrinking {
             None => at,
@@ -200,7 +201,7 @@ impl<'a> Side<'a> {
 
     #[inline]
     pub fn corner(&self, v: u32) -> Corner {
-        let local = self.vertex(v);
+        let local = self.offset_vertex(v);
         let turned = self.view * local;
         let at = turned + self.view_offset;
         let mut exact = self.aligned == [true; 3];
@@ -277,18 +278,18 @@ impl ExactPoint for Corner {
 }
 
 /// A corner that takes part in several signs: its double-double position is computed once.
-pub(crate) struct Remembered<'c> {
+pub(crate) struct CachedCorner<'c> {
     corner: &'c Corner,
     fine: OnceCell<Fine>,
 }
 
-impl<'c> Remembered<'c> {
+impl<'c> CachedCorner<'c> {
     pub(crate) fn new(corner: &'c Corner) -> Self {
         Self { corner, fine: OnceCell::new() }
     }
 }
 
-impl ExactPoint for Remembered<'_> {
+impl ExactPoint for CachedCorner<'_> {
     fn at(&self) -> DVec3 {
         self.corner.at
     }
@@ -331,13 +332,13 @@ pub(crate) fn place_exactly<const N: usize>(
 
 /// Returns the noise of a configuration of this size, and its minimum gap: 0 if `keep` is too small to be distinguished
 /// from rounding errors.
-pub(crate) fn noise_of(size: f64, keep: f64) -> (f64, f64) {
+pub(crate) fn noise_and_gap(size: f64, keep: f64) -> (f64, f64) {
     let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
     (Noise::of(size + keep).point(), keep)
 }
 
 /// Returns the size `S` of a configuration with this noise.
-pub(crate) fn size(noise: f64) -> f64 {
+pub(crate) fn size_from_noise(noise: f64) -> f64 {
     noise / (16.0 * f64::EPSILON)
 }
 
@@ -353,8 +354,8 @@ fn frame_along(unit: DVec3) -> DMat3 {
     DMat3::from_cols(x, unit.cross(x), unit).transpose()
 }
 
-/// Returns [`Self::inward`](Side::inward) of a body that is offset by `amount`.
-fn inward(along: DVec3, aligned: [bool; 3], moving: bool, amount: f64) -> u8 {
+/// Returns [`Side::inward`] of a body that is offset by `amount`.
+fn inward_side(along: DVec3, aligned: [bool; 3], moving: bool, amount: f64) -> u8 {
     if !aligned[2] || amount != 0.0 {
         return u8::MAX;
     }
@@ -369,12 +370,12 @@ fn is_axis(v: DVec3) -> bool {
 }
 
 /// Returns how far a matrix deviates from a rotation; 0 if the noise of coordinates covers the deviation.
-fn defect(m: DMat3) -> f64 {
+fn defect_beyond_rounding(m: DMat3) -> f64 {
     let defect = rotation_defect(m);
-    if defect > ROTATION { 1.01 * defect } else { 0.0 }
+    if defect > ROTATION_ROUNDING { 1.01 * defect } else { 0.0 }
 }
 
 /// Checks whether a pose's matrix, a rotation up to small errors, permutes axes and changes signs.
-pub(crate) fn permutes(m: DMat3) -> bool {
+pub(crate) fn permutes_axes(m: DMat3) -> bool {
     m.to_cols_array().iter().all(|&entry| entry == 0.0 || entry.abs() == 1.0)
 }

@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use super::bound::{Profile, Reason, dismissed, least_gap};
+use super::bound::{Profile, Reason, dismissal_reason, least_gap};
 use super::leaf::{self, Facet, Gap, Meeting, Opposed, Wanted};
 use super::projected::Projected;
 use super::rim::{self, Upright};
@@ -37,11 +37,11 @@ pub enum Aim {
 }
 
 impl Aim {
-    pub(crate) fn clamp(self, gap: f64) -> f64 {
+    pub(crate) fn clamp_gap(self, gap: f64) -> f64 {
         if self == Self::Least { gap } else { gap.max(0.0) }
     }
 
-    pub(crate) fn wanted(self) -> Wanted {
+    pub(crate) fn gap_filter(self) -> Wanted {
         match self {
             Self::Least => Wanted::All,
             Self::Stop => Wanted::NotParting,
@@ -50,13 +50,13 @@ impl Aim {
     }
 
     /// Returns the value that a gap contributes; `None` if it does not count.
-    pub(crate) fn value(self, gap: &Gap) -> Option<f64> {
+    pub(crate) fn contribution(self, gap: &Gap) -> Option<f64> {
         let counts = match self {
             Self::Least => true,
             Self::Stop => gap.counts(),
             Self::LaterStop => gap.counts() && gap.signs[0] != Ordering::Less,
         };
-        counts.then(|| self.clamp(gap.least))
+        counts.then(|| self.clamp_gap(gap.least))
     }
 }
 
@@ -81,7 +81,7 @@ impl Found {
     }
 
     /// Returns this pair with its gap recomputed exactly if its error exceeds [`FINE`](leaf::FINE) noises.
-    pub(crate) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
+    pub(crate) fn with_exact_gap(self, scene: &Scene, aim: Aim) -> Self {
         if self.at == Meeting::Near || self.error <= leaf::FINE * scene.noise {
             return self;
         }
@@ -89,7 +89,7 @@ impl Found {
         let g = Facet::facing(scene, false, self.fixed as usize, Ordering::Less);
         let (Some(f), Some(g)) = (f, g) else { return self };
         let (least, at) = leaf::least_exactly(scene, &f, &g);
-        Self { gap: aim.clamp(least), at, error: 0.0, ..self }
+        Self { gap: aim.clamp_gap(least), at, error: 0.0, ..self }
     }
 }
 
@@ -99,7 +99,7 @@ impl Found {
 pub struct Workspace {
     queue: BinaryHeap<Entry>,
     /// Visited nodes of the moving and the fixed body.
-    seen: [Seen; 2],
+    seen: [NodeCache; 2],
 }
 
 /// The constant part of a search.
@@ -111,8 +111,8 @@ struct Query<'s, 'a> {
 
 /// The nodes of a body that a search has visited, and the facets of its leaves. Each is part of many pairs.
 #[derive(Debug, Clone, Default)]
-struct Seen {
-    views: Vec<View>,
+struct NodeCache {
+    views: Vec<NodeView>,
     /// Extents of all views; empty if the query has no separating axes.
     reaches: Vec<Reach>,
     facets: Vec<Facet>,
@@ -120,7 +120,7 @@ struct Seen {
 
 /// A node in the query frame.
 #[derive(Debug, Clone, Copy)]
-struct View {
+struct NodeView {
     projected: Projected,
     leaf: bool,
     size: f64,
@@ -129,48 +129,48 @@ struct View {
     parts: Option<[u32; 2]>,
 }
 
-impl Seen {
-    fn start(&mut self, query: &Query, moving: bool) {
+impl NodeCache {
+    fn reset_to_root(&mut self, query: &Query, moving: bool) {
         self.views.clear();
         self.reaches.clear();
         self.facets.clear();
-        self.look(query, moving, 0);
+        self.add_view(query, moving, 0);
     }
 
-    fn look(&mut self, query: &Query, moving: bool, at: u32) {
+    fn add_view(&mut self, query: &Query, moving: bool, at: u32) {
         let side = query.scene.side(moving);
         let node = &side.solid.nodes()[at as usize];
         let (leaf, size) = (node.is_leaf(), node.size());
         let projected = Projected::new(query.scene, side, at as usize);
         if let Some(axes) = &query.axes {
-            self.reaches.push(axes.reach(side, &projected));
+            self.reaches.push(axes.node_extents(side, &projected));
         }
-        self.views.push(View { projected, leaf, size, parts: None });
+        self.views.push(NodeView { projected, leaf, size, parts: None });
     }
 
-    fn profile(&self, view: u32) -> Profile<'_> {
+    fn view_profile(&self, view: u32) -> Profile<'_> {
         let at = view as usize;
         Profile { projected: &self.views[at].projected, reach: self.reaches.get(at) }
     }
 
     /// Returns the position of the first of the two children of a view.
-    fn children(&mut self, query: &Query, moving: bool, view: u32) -> u32 {
-        let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
+    fn child_views(&mut self, query: &Query, moving: bool, view: u32) -> u32 {
+        let &NodeView { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         if let Some([first, _]) = parts {
             return first;
         }
         let first = self.views.len() as u32;
         let nodes = query.scene.side(moving).solid.nodes();
         for part in nodes[node as usize].children(node) {
-            self.look(query, moving, part);
+            self.add_view(query, moving, part);
         }
         self.views[view as usize].parts = Some([first, 2]);
         first
     }
 
     /// Returns the facets of a leaf that face the other body.
-    fn leaf(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
-        let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
+    fn leaf_facets(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
+        let &NodeView { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         let [first, count] = parts.unwrap_or_else(|| {
             let wanted = if side.moving { Ordering::Greater } else { Ordering::Less };
             let facing = |t| Facet::facing(scene, side.moving, t, wanted);
@@ -217,19 +217,19 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
         let g = Facet::facing(scene, false, t as usize, Ordering::Less);
         if let (Some(f), Some(g)) = (&f, &g) {
-            self.facets(f, g);
+            self.compare_facets(f, g);
         } else {
-            rim::each_gap_of(scene, [s, t], &mut |pair, gap| self.take(pair, &gap));
+            rim::each_gap_of(scene, [s, t], &mut |pair, gap| self.record_gap(pair, &gap));
         }
-        self.found.map(|found| found.sharpened(scene, self.aim))
+        self.found.map(|found| found.with_exact_gap(scene, self.aim))
     }
 
     pub(crate) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
         let scene = self.scene;
-        let [p, q] = Projected::roots(scene);
-        if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
+        let [p, q] = Projected::root_bounds(scene);
+        if let Some(reason) = dismissal_reason(&p, &q, self.limit, self.aim != Aim::Least) {
             // Decides most pairs of parts before the separating axes are computed.
             self.steps.nodes += 1;
             (self.cut)([0, 0], reason);
@@ -242,30 +242,30 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         }
         let query =
             Query { scene, axes: (!scene.is_aligned()).then(|| SeparatingAxes::new(scene)) };
-        seen[0].start(&query, true);
-        seen[1].start(&query, false);
-        let mut next = self.judge(seen, [0, 0], 0);
+        seen[0].reset_to_root(&query, true);
+        seen[1].reset_to_root(&query, false);
+        let mut next = self.bound_or_cut(seen, [0, 0], 0);
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
-                (self.cut)(nodes(seen, entry.views), Reason::NotBefore);
+                (self.cut)(view_nodes(seen, entry.views), Reason::NotBefore);
                 // All remaining entries have no smaller bound: this one is the least, or the limit is not positive.
                 for rest in queue.drain() {
-                    (self.cut)(nodes(seen, rest.views), Reason::NotBefore);
+                    (self.cut)(view_nodes(seen, rest.views), Reason::NotBefore);
                 }
                 break;
             }
             let (a, b) =
                 (&seen[0].views[entry.views[0] as usize], &seen[1].views[entry.views[1] as usize]);
             if a.leaf && b.leaf {
-                self.leaves(seen, entry.views);
-                (self.cut)(nodes(seen, entry.views), Reason::Examined);
+                self.compare_leaves(seen, entry.views);
+                (self.cut)(view_nodes(seen, entry.views), Reason::Examined);
                 continue;
             }
             let split_moving = !a.leaf && (b.leaf || a.size >= b.size);
-            for views in split(&query, seen, entry.views, split_moving) {
+            for views in split_pair(&query, seen, entry.views, split_moving) {
                 number += 1;
-                let Some(child) = self.judge(seen, views, number) else { continue };
+                let Some(child) = self.bound_or_cut(seen, views, number) else { continue };
                 // The better child continues without a detour through the queue.
                 match next {
                     Some(best) if best.bound < child.bound => queue.push(child),
@@ -287,59 +287,68 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         // The factor covers the rounding of a bound when it is stored in a proof.
         let bounds = self.limit - 1.0625 * node_rounding(scene);
         let others = self.others.min(bounds);
-        self.found.map(|found| Found { others, ..found.sharpened(scene, self.aim) })
+        self.found.map(|found| Found { others, ..found.with_exact_gap(scene, self.aim) })
     }
 
     /// Bounds a pair of views; returns `None` and reports the reason if the pair is cut.
-    fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
+    fn bound_or_cut(
+        &mut self,
+        seen: &[NodeCache; 2],
+        views: [u32; 2],
+        number: u32,
+    ) -> Option<Entry> {
         self.steps.nodes += 1;
-        match self.bound(seen, views) {
-            Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, reason: (), views }),
+        match self.pair_bound(seen, views) {
+            Ok(bound) => {
+                Some(Entry { bound: self.aim.clamp_gap(bound), number, reason: (), views })
+            }
             Err(reason) => {
-                (self.cut)(nodes(seen, views), reason);
+                (self.cut)(view_nodes(seen, views), reason);
                 None
             }
         }
     }
 
-    fn bound(&self, seen: &[Seen; 2], [a, b]: [u32; 2]) -> Result<f64, Reason> {
+    fn pair_bound(&self, seen: &[NodeCache; 2], [a, b]: [u32; 2]) -> Result<f64, Reason> {
         let parting = self.aim != Aim::Least;
-        let (a, b) = (seen[0].profile(a), seen[1].profile(b));
+        let (a, b) = (seen[0].view_profile(a), seen[1].view_profile(b));
         least_gap(self.scene, a, b, self.limit, parting)
     }
 
     /// Examines all pairs of facets of two leaves.
-    fn leaves(&mut self, seen: &mut [Seen; 2], views: [u32; 2]) {
+    fn compare_leaves(&mut self, seen: &mut [NodeCache; 2], views: [u32; 2]) {
         self.steps.leaves += 1;
         let scene = self.scene;
-        let front = seen[0].leaf(scene, &scene.moving, views[0]);
-        let back = seen[1].leaf(scene, &scene.fixed, views[1]);
+        let front = seen[0].leaf_facets(scene, &scene.moving, views[0]);
+        let back = seen[1].leaf_facets(scene, &scene.fixed, views[1]);
         for f in &seen[0].facets[front.clone()] {
             for g in &seen[1].facets[back.clone()] {
-                self.facets(f, g);
+                self.compare_facets(f, g);
             }
         }
-        let nodes = nodes(seen, views);
-        if rim::matters(scene, nodes) {
+        let nodes = view_nodes(seen, views);
+        if rim::may_have_edge_on(scene, nodes) {
             let [f, g] = [(front, true), (back, false)].map(|(facets, moving)| {
                 let k = usize::from(!moving);
                 (Upright::of_leaf(scene, moving, nodes[k]), facets, k)
             });
             let [f, g] = [f, g].map(|(uprights, facets, k)| (uprights, &seen[k].facets[facets]));
-            rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| self.take(pair, &gap));
+            rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| {
+                self.record_gap(pair, &gap)
+            });
         }
     }
 
     #[inline]
-    fn facets(&mut self, f: &Facet, g: &Facet) {
-        if let Some(gap) = leaf::gap(self.scene, f, g, self.limit, self.aim.wanted()) {
-            self.take([f.triangle, g.triangle], &gap);
+    fn compare_facets(&mut self, f: &Facet, g: &Facet) {
+        if let Some(gap) = leaf::facet_gap(self.scene, f, g, self.limit, self.aim.gap_filter()) {
+            self.record_gap([f.triangle, g.triangle], &gap);
         }
     }
 
     /// Stores a gap if it is the least one found until now.
-    fn take(&mut self, [moving, fixed]: [u32; 2], gap: &Gap) {
-        let Some(value) = self.aim.value(gap) else { return };
+    fn record_gap(&mut self, [moving, fixed]: [u32; 2], gap: &Gap) {
+        let Some(value) = self.aim.contribution(gap) else { return };
         let (at, error, others) = (gap.at, gap.error, f64::INFINITY);
         let pair = Found { gap: value, moving, fixed, at, error, others };
         if value >= self.limit {
@@ -358,7 +367,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         // If the limit is not positive, such a pair matters only if all gaps are wanted.
         let matters =
             pair.gap - pair.error < self.limit && (self.limit > 0.0 || self.aim == Aim::Least);
-        let pair = if matters { pair.sharpened(self.scene, self.aim) } else { pair };
+        let pair = if matters { pair.with_exact_gap(self.scene, self.aim) } else { pair };
         self.others = self.others.min(pair.gap - pair.error);
     }
 }
@@ -372,7 +381,7 @@ pub(crate) fn node_rounding(scene: &Scene) -> f64 {
 /// except for its last roundings. `None` if the pair does not block; edge-on facets of open shells are included.
 pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
     let Some(facets) = Opposed::new(scene, pair) else {
-        return rim::least_gap_of(scene, &|gap| aim.value(gap).is_some(), pair);
+        return rim::least_gap_of(scene, &|gap| aim.contribution(gap).is_some(), pair);
     };
     exact_gap_of(scene, aim, &facets)
 }
@@ -380,23 +389,28 @@ pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64,
 /// Computes the gap of two facets that face each other, exact except for its last roundings, and its error; `None` if
 /// the pair does not count.
 pub(crate) fn exact_gap_of(scene: &Scene, aim: Aim, facets: &Opposed) -> Option<(f64, f64)> {
-    let gap = facets.exact_gap(scene, aim.wanted())?;
-    aim.value(&gap)?;
+    let gap = facets.exact_gap(scene, aim.gap_filter())?;
+    aim.contribution(&gap)?;
     Some((gap.least, gap.error))
 }
 
 /// Returns the nodes of a pair of views.
-fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
+fn view_nodes(seen: &[NodeCache; 2], views: [u32; 2]) -> [u32; 2] {
     [0, 1].map(|k| seen[k].views[views[k] as usize].projected.node)
 }
 
 /// Splits one node of a pair and returns the two new pairs.
-fn split(query: &Query, seen: &mut [Seen; 2], [a, b]: [u32; 2], moving: bool) -> [[u32; 2]; 2] {
+fn split_pair(
+    query: &Query,
+    seen: &mut [NodeCache; 2],
+    [a, b]: [u32; 2],
+    moving: bool,
+) -> [[u32; 2]; 2] {
     if moving {
-        let first = seen[0].children(query, true, a);
+        let first = seen[0].child_views(query, true, a);
         [[first, b], [first + 1, b]]
     } else {
-        let first = seen[1].children(query, false, b);
+        let first = seen[1].child_views(query, false, b);
         [[a, first], [a, first + 1]]
     }
 }

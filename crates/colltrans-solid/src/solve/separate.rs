@@ -13,7 +13,7 @@
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 use super::projected::Projected;
-use super::scene::{Scene, Side, size};
+use super::scene::{Scene, Side, size_from_noise};
 use crate::body::Solid;
 use colltrans_convex::answer::{CertificateError, Separation};
 use colltrans_convex::body::Aabb;
@@ -21,7 +21,7 @@ use colltrans_convex::setting::Setting;
 use colltrans_kernel::noise::UNIT_VECTOR;
 
 /// Maximum number of rounds. Each round ends the search or comes closer; only rounding errors could prolong it.
-const MOST_ROUNDS: usize = 32;
+const MAX_ROUNDS: usize = 32;
 /// Rounding error of a gap, in noises. It covers ties ([`TIES`]) and the computation of the two farthest points.
 pub(crate) const ROUNDING: f64 = 4.0;
 /// Part of [`ROUNDING`], in noises, that covers ties among farthest points.
@@ -35,23 +35,23 @@ const BOXES: f64 = 2.0;
 
 /// Finds a plane, parallel to the direction, that separates the offset bodies. `None` if rounding errors leave every
 /// plane in doubt, and sometimes for large faces whose distance is at most the offset.
-pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
-    let boxes = [&scene.moving, &scene.fixed].map(Side::boxed);
+pub(crate) fn find_separation(scene: &Scene) -> Option<Separation> {
+    let boxes = [&scene.moving, &scene.fixed].map(Side::offset_bounds);
     between_boxes(scene, &boxes).or_else(|| between_hulls(scene))
 }
 
-/// Checks whether the boxes of two bodies are separated by so much that the separating axes of the query confirm it.
+/// Checks whether the boxes of two bodies are far enough apart that the separating axes of the query confirm it.
 /// The verification of a proof uses those axes, which enlarge a node by 2 noises along each coordinate.
 pub(crate) fn shadows_apart(scene: &Scene, p: &Projected, q: &Projected) -> bool {
     let clear = |found: Separation| found.margin > ROUNDING * scene.noise;
-    !scene.keeps() && between_boxes(scene, &[p.local, q.local]).is_some_and(clear)
+    !scene.has_min_gap() && between_boxes(scene, &[p.local, q.local]).is_some_and(clear)
 }
 
 /// Finds the plane between the boxes of both bodies with the largest margin, parallel to the direction and to an edge
 /// of one of them.
 fn between_boxes(scene: &Scene, boxes: &[Aabb; 2]) -> Option<Separation> {
     let boxes = Boxes::new(&scene.setting, boxes);
-    let normal = boxes.across(0.0)?;
+    let normal = boxes.widest_normal(0.0)?;
     let margin = boxes.margin(normal, scene.noise);
     (margin > scene.keep).then_some(Separation { normal, margin })
 }
@@ -78,7 +78,7 @@ impl<'s, 'a> Boxes<'s, 'a> {
     ///
     /// `None` if the boxes overlap by more than `slack` along all these normals, or if the line along the direction
     /// through the centre of the moving box meets the fixed one.
-    pub(crate) fn across(&self, slack: f64) -> Option<DVec3> {
+    pub(crate) fn widest_normal(&self, slack: f64) -> Option<DVec3> {
         let Self { matrices, halves, apart, .. } = self;
         let unit = self.setting.unit;
         if self.is_middle_ahead() {
@@ -120,14 +120,16 @@ impl<'s, 'a> Boxes<'s, 'a> {
     }
 
     /// Checks whether the boxes of two bodies with the axes of the world, up to signs, touch within the rounding error.
-    pub(crate) fn touch(&self, rounding: f64) -> bool {
+    pub(crate) fn are_touching(&self, rounding: f64) -> bool {
         let [p, q] = [0, 1].map(|k| (self.matrices[k] * self.halves[k]).abs());
         (self.apart.abs() - p - q).max_element().abs() <= rounding
     }
 
     /// Returns the margin that is proven along a normal of the world, from the moving body to the fixed one.
     pub(crate) fn margin(&self, normal: DVec3, noise: f64) -> f64 {
-        self.room(normal) - (ROUNDING + BOXES) * noise - closing(self.setting, normal, noise)
+        self.distance_along(normal)
+            - (ROUNDING + BOXES) * noise
+            - closing_bound(self.setting, normal, noise)
     }
 
     /// Checks whether a plane parallel to a side of one box certainly separates the boxes, and the moving box does not
@@ -136,13 +138,14 @@ impl<'s, 'a> Boxes<'s, 'a> {
         self.matrices.iter().any(|matrix| {
             [matrix.x_axis, matrix.y_axis, matrix.z_axis].into_iter().any(|axis| {
                 let axis = axis * self.apart.dot(axis).signum();
-                axis.dot(self.setting.unit) <= 0.0 && self.room(axis) > (ROUNDING + BOXES) * noise
+                axis.dot(self.setting.unit) <= 0.0
+                    && self.distance_along(axis) > (ROUNDING + BOXES) * noise
             })
         })
     }
 
     /// Returns the distance of the boxes along a normal of the world.
-    fn room(&self, normal: DVec3) -> f64 {
+    fn distance_along(&self, normal: DVec3) -> f64 {
         let half = |k: usize| (self.matrices[k].transpose() * normal).abs().dot(self.halves[k]);
         normal.dot(self.apart) - half(0) - half(1)
     }
@@ -153,23 +156,23 @@ fn between_hulls(scene: &Scene) -> Option<Separation> {
         |side: &Side| (side.view * side.solid.bounds().center() + side.view_offset).truncate();
     let mut v = middle(&scene.fixed) - middle(&scene.moving);
     let mut simplex: Simplex = (0, [DVec2::ZERO; 3]);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let axis = v.try_normalize()?;
         let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
         let sides = facing_sides(scene, normal);
-        let margin = margin(scene, normal, sides.each_ref().map(Farthest::reach));
+        let margin = margin_along(scene, normal, sides.each_ref().map(Farthest::height_bound));
         if margin > scene.keep {
             return Some(Separation { normal, margin });
         }
         let [p, q] = &sides;
-        let lowest = q.at() - p.at();
+        let lowest = q.shadow() - p.shadow();
         let closer = simplex.0 == 0 || axis.dot(lowest) < v.dot(axis) - ROUNDING * scene.noise;
         if !closer {
             return None;
         }
         simplex.1[simplex.0] = lowest;
         simplex.0 += 1;
-        (simplex, v) = nearest(simplex)?;
+        (simplex, v) = nearest_part(simplex)?;
     }
     None
 }
@@ -179,7 +182,10 @@ fn between_hulls(scene: &Scene) -> Option<Separation> {
 /// # Errors
 /// Returns an error if the normal is not a unit vector orthogonal to the direction, or the claimed margin is not
 /// proven.
-pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, CertificateError> {
+pub(crate) fn verify_separation(
+    scene: &Scene,
+    separation: &Separation,
+) -> Result<f64, CertificateError> {
     let normal = separation.normal;
     let unit = (normal.length() - 1.0).abs() <= UNIT_VECTOR;
     if !unit || (normal.dot(scene.setting.direction) / scene.setting.length).abs() > UNIT_VECTOR {
@@ -187,12 +193,13 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     }
     let highest = |side: &Side| {
         let local = side.matrix.transpose() * if side.moving { normal } else { -normal };
-        let heights = (0..side.solid.vertices().len() as u32).map(|v| local.dot(side.vertex(v)));
+        let heights =
+            (0..side.solid.vertices().len() as u32).map(|v| local.dot(side.offset_vertex(v)));
         heights.fold(f64::NEG_INFINITY, f64::max)
     };
     let reaches = [&scene.moving, &scene.fixed].map(highest);
     // Nothing counts as a tie here.
-    let proven = margin(scene, normal, reaches) + TIES * scene.noise;
+    let proven = margin_along(scene, normal, reaches) + TIES * scene.noise;
     let claimed = separation.margin;
     if claimed > scene.keep && claimed <= proven {
         Ok(proven)
@@ -202,15 +209,15 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
 }
 
 /// Checks whether a plane with this normal certainly separates the bodies, with the moving body below.
-pub(crate) fn parts(scene: &Scene, normal: DVec3) -> bool {
-    let [p, q] = facing_sides(scene, normal).map(|side| side.reach());
+pub(crate) fn is_separating(scene: &Scene, normal: DVec3) -> bool {
+    let [p, q] = facing_sides(scene, normal).map(|side| side.height_bound());
     normal.dot(scene.fixed.offset[0]) - q - p > HEIGHTS * scene.noise
 }
 
 /// Returns an upper bound of the coordinates of a body's vertices along a normal of the world, from the origin of its
 /// frame, up to the rounding error of [`HEIGHTS`].
-pub(crate) fn farthest(side: &Side, normal: DVec3) -> f64 {
-    Farthest::new(side, normal).reach()
+pub(crate) fn max_height_along(side: &Side, normal: DVec3) -> f64 {
+    Farthest::new(side, normal).height_bound()
 }
 
 /// Points of `D`: their number, and the points.
@@ -222,20 +229,20 @@ fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a
 }
 
 /// Returns the margin along a normal, given the extents of the moving body along it, and of the fixed body against it.
-fn margin(scene: &Scene, normal: DVec3, [moving, fixed]: [f64; 2]) -> f64 {
+fn margin_along(scene: &Scene, normal: DVec3, [moving, fixed]: [f64; 2]) -> f64 {
     let fixed = normal.dot(scene.fixed.offset[0]) - fixed;
-    fixed - moving - ROUNDING * scene.noise - closing(&scene.setting, normal, scene.noise)
+    fixed - moving - ROUNDING * scene.noise - closing_bound(&scene.setting, normal, scene.noise)
 }
 
 /// Bounds how much the gap closes over the size of the configuration because the normal is not exactly orthogonal to
 /// the direction.
-pub(crate) fn closing<B>(setting: &Setting<B>, normal: DVec3, noise: f64) -> f64 {
-    (normal.dot(setting.direction) / setting.length).abs() * size(noise)
+pub(crate) fn closing_bound<B>(setting: &Setting<B>, normal: DVec3, noise: f64) -> f64 {
+    (normal.dot(setting.direction) / setting.length).abs() * size_from_noise(noise)
 }
 
 /// Maximum number of leaves that are visited for one farthest vertex. More are needed if the vertices of a large flat
 /// face are tied and the offset has made their heights differ.
-const MOST_LEAVES: u32 = 64;
+const MAX_LEAVES: u32 = 64;
 
 /// The vertex of a body that is farthest along a normal of the world, from the tree.
 struct Farthest<'s, 'a> {
@@ -261,27 +268,27 @@ impl<'s, 'a> Farthest<'s, 'a> {
             beyond: f64::NEG_INFINITY,
             leaves: 0,
         };
-        search.visit(0);
+        search.visit_node(0);
         search
     }
 
     /// Returns an upper bound of the heights of all vertices along the normal, up to rounding.
-    fn reach(&self) -> f64 {
+    fn height_bound(&self) -> f64 {
         self.height.max(self.beyond)
     }
 
     /// Returns the shadow of the vertex.
-    fn at(&self) -> DVec2 {
+    fn shadow(&self) -> DVec2 {
         self.side.corner(self.vertex).at.truncate()
     }
 
-    fn visit(&mut self, at: u32) {
+    fn visit_node(&mut self, at: u32) {
         let nodes = self.side.solid.nodes();
         let node = &nodes[at as usize];
         if node.is_leaf() {
             self.leaves += 1;
             for v in node.facets().flat_map(|t| self.side.solid.triangles()[t]) {
-                let height = self.local.dot(self.side.vertex(v));
+                let height = self.local.dot(self.side.offset_vertex(v));
                 if height > self.height {
                     (self.height, self.vertex) = (height, v);
                 }
@@ -306,8 +313,8 @@ impl<'s, 'a> Farthest<'s, 'a> {
             if bound <= self.height + tie {
                 continue;
             }
-            if self.leaves < MOST_LEAVES {
-                self.visit(k);
+            if self.leaves < MAX_LEAVES {
+                self.visit_node(k);
             } else {
                 self.beyond = self.beyond.max(bound);
             }
@@ -317,7 +324,7 @@ impl<'s, 'a> Farthest<'s, 'a> {
 
 /// Returns the part of a simplex that contains its point nearest to the origin, and this point; `None` if the simplex
 /// contains the origin.
-fn nearest((count, points): Simplex) -> Option<(Simplex, DVec2)> {
+fn nearest_part((count, points): Simplex) -> Option<(Simplex, DVec2)> {
     let [a, b, c] = points;
     match count {
         1 => Some(((1, points), a)),

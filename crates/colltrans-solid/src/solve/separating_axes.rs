@@ -37,10 +37,10 @@ const STEEP: f64 = 1.0 / 1024.0;
 const PARALLEL: f64 = 1e-6;
 
 /// The directions of a query, in the frames of the moving and the fixed body.
-pub(crate) struct SeparatingAxes([View; 2]);
+pub(crate) struct SeparatingAxes([BodyAxes; 2]);
 
 /// Directions in a body's frame, stored by coordinate.
-struct View {
+struct BodyAxes {
     /// Coordinates of the directions. They multiply the centres of boxes, and their absolute values half the extents.
     local: [[f64; SHARED]; 3],
     /// Translation of the body along each direction.
@@ -55,7 +55,7 @@ struct View {
     lines: [usize; 2],
 }
 
-impl View {
+impl BodyAxes {
     fn new(side: &Side, all: &[DVec3; SHARED], noise: f64) -> Self {
         let turn = if side.moving { 1.0 } else { -1.0 };
         let local = all.map(|n| side.view.transpose() * (n * turn));
@@ -93,7 +93,7 @@ impl View {
     /// Subtracts the space that the cuts leave free. A body's own axes have no cut along them, and directions
     /// orthogonal to one of them only cuts of edges.
     #[inline]
-    fn cut(&self, depths: &Depths, reach: &mut [f64; ALL]) {
+    fn subtract_cuts(&self, depths: &Depths, reach: &mut [f64; ALL]) {
         let [own, other] = self.lines;
         for first in [0, 3, 6, own, own + 6] {
             for (r, p) in reach[first..first + 3].iter_mut().zip(&self.parts[first..first + 3]) {
@@ -125,18 +125,21 @@ impl SeparatingAxes {
         for (axis, place) in p.into_iter().chain(q).zip(&mut all[NORMALS..]) {
             *place = axis.xy().perp().try_normalize().unwrap_or(DVec2::X).extend(0.0);
         }
-        Self([&scene.moving, &scene.fixed].map(|side| View::new(side, &all, scene.noise)))
+        Self([&scene.moving, &scene.fixed].map(|side| BodyAxes::new(side, &all, scene.noise)))
     }
 
     /// Computes the extents of a node along all directions.
     #[inline]
-    pub(crate) fn reach(&self, side: &Side, projected: &Projected) -> Reach {
+    pub(crate) fn node_extents(&self, side: &Side, projected: &Projected) -> Reach {
         let Aabb { low, high } = projected.local;
         let view = &self.0[usize::from(!side.moving)];
         let mut reach = [0.0; ALL];
         view.box_reach((low + high) * 0.5, (high - low) * 0.5, &mut reach);
         let node = &side.solid.nodes()[projected.node as usize];
-        view.cut(&depths(&node.cuts, node.bounds.size(), side.moved()), &mut reach);
+        view.subtract_cuts(
+            &depths(&node.cuts, node.bounds.size(), side.max_displacement()),
+            &mut reach,
+        );
         Reach(reach)
     }
 }

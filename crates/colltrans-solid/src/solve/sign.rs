@@ -20,7 +20,7 @@ use colltrans_kernel::predicates::{orient2d, orient3d, sign};
 const U: f64 = f64::EPSILON / 2.0;
 
 /// Returns the sign of a number whose size suffices for all inputs.
-fn decided(number: &Integer<LARGE>) -> Ordering {
+fn sign_of_large(number: &Integer<LARGE>) -> Ordering {
     number.sign().unwrap_or(Ordering::Equal)
 }
 
@@ -50,7 +50,7 @@ impl Scene<'_> {
         }
         self.turn_fine(a, b, c)
             .or_else(|| self.turn_wide::<SMALL>(a, b, c).sign())
-            .unwrap_or_else(|| decided(&self.turn_wide::<LARGE>(a, b, c)))
+            .unwrap_or_else(|| sign_of_large(&self.turn_wide::<LARGE>(a, b, c)))
     }
 
     /// Returns the sign of `det[b - a, c - a, e - a]`: `Greater` if `e` is on the outer side of the facet `a b c`.
@@ -81,7 +81,7 @@ impl Scene<'_> {
         }
         self.outside_fine(a, b, c, e)
             .or_else(|| self.outside_wide::<SMALL>(a, b, c, e).sign())
-            .unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
+            .unwrap_or_else(|| sign_of_large(&self.outside_wide::<LARGE>(a, b, c, e)))
     }
 
     /// Returns points relative to another point, exactly.
@@ -174,7 +174,7 @@ impl Scene<'_> {
         }
         self.turn_about_fine(axis, a, b, c)
             .or_else(|| self.turn_about_wide::<SMALL>(axis, a, b, c).sign())
-            .unwrap_or_else(|| decided(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
+            .unwrap_or_else(|| sign_of_large(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
     }
 
     /// Computes the determinant of [`Self::turn_about`] from the query frame, and a bound on its error. The axes of
@@ -203,16 +203,26 @@ impl Scene<'_> {
 
     /// Returns the sign of `(b - a).(e x d)` for the unit vector `e` of an axis of the world. It shows how `det[b - a,
     /// c - a, d]` changes when `c` moves along that axis.
-    pub(crate) fn drift(&self, axis: usize, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
+    pub(crate) fn drift_sign(
+        &self,
+        axis: usize,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+    ) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let x = difference::<LARGE>(&b.wide(self), &a.wide(self));
         let d = self.setting.direction.to_array().map(Integer::number);
         // det[x, e, d] with e along `axis`: x_j d_i - x_i d_j, up to the order of axes.
-        decided(&x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])))
+        sign_of_large(&x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])))
     }
 
     /// Returns the order of `a` and `b` along an axis of the world.
-    pub(crate) fn order(&self, axis: usize, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
+    pub(crate) fn axis_order(
+        &self,
+        axis: usize,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+    ) -> Ordering {
         if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
             return sign(a[axis] - b[axis]);
         }
@@ -221,6 +231,8 @@ impl Scene<'_> {
             return sign(rough);
         }
         let fine = b.fine(self).to(&a.fine(self)).sign_along(axis);
-        fine.unwrap_or_else(|| decided(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis])))
+        fine.unwrap_or_else(|| {
+            sign_of_large(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis]))
+        })
     }
 }

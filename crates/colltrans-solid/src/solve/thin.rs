@@ -5,7 +5,7 @@
 //! with the surface:
 //!
 //! 1. It meets a facet of a closed shell, and one of its ends lies on the inner side of the facet's plane. It runs
-//!    inside if it [enters](super::line::enters) the body there.
+//!    inside if it [enters](super::line::enters_body) the body there.
 //! 2. It passes through the interior of an open facet.
 //! 3. It passes an edge of an open shell whose facets lie on both sides of the segment.
 //! 4. It passes a vertex of an open shell, according to the [`fan`](super::fan) around the vertex.
@@ -14,21 +14,21 @@ use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
 
 use super::fan::Fan;
-use super::line::{self, Line, Way};
-use super::overlap::{Around, Stuff};
+use super::line::{self, Line, LineDirection};
+use super::overlap::{EdgeAxis, EdgeNeighbourhood};
 use super::scene::{Corner, Scene};
 use super::triangle::Triangle;
 use crate::body::wedge::Ray;
 
 /// Returns the ends of a facet without area, equal for a point; `None` for any other facet.
-pub(super) fn ends(triangle: &Triangle) -> Option<[Corner; 2]> {
+pub(super) fn segment_ends(triangle: &Triangle) -> Option<[Corner; 2]> {
     let thin = triangle.side.solid.is_without_area(triangle.index);
     thin.then_some([triangle.corners[0], triangle.corners[1]])
 }
 
 /// Checks whether two facets show an overlap; `None` if both have an area.
-pub(super) fn overlaps(scene: &Scene, f: &Triangle, g: &Triangle) -> Option<bool> {
-    match (ends(f), ends(g)) {
+pub(super) fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> Option<bool> {
+    match (segment_ends(f), segment_ends(g)) {
         (None, None) => None,
         (Some(segment), None) => Some(runs_into(scene, segment, g)),
         (None, Some(segment)) => Some(runs_into(scene, segment, f)),
@@ -59,8 +59,8 @@ fn runs_inside(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
     };
     let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.outside(p, q, u, v));
     let is_met = !(around.contains(&Greater) && around.contains(&Less));
-    let line = Line { from, way: Way::To(to) };
-    is_met && line::enters(scene, &line, facet.side, facet.index as u32, outer == Greater)
+    let line = Line { from, way: LineDirection::To(to) };
+    is_met && line::enters_body(scene, &line, facet.side, facet.index as u32, outer == Greater)
 }
 
 /// Checks case 2.
@@ -76,7 +76,7 @@ fn passes_facet(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
 /// Checks case 3 for edge `k` of a facet.
 fn passes_edge(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
     let (a, b) = (&facet.corners[k], &facet.corners[(k + 1) % 3]);
-    let Some(across) = facet.across(k) else { return false };
+    let Some(across) = facet.corner_across_edge(k) else { return false };
     if scene.outside(a, b, p, q) != Equal {
         return false;
     }
@@ -90,27 +90,30 @@ fn passes_edge(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) 
     if x == Equal || x != y.reverse() {
         return false;
     }
-    let own = Stuff::Bend([Ray::to(0), Ray::to(1)]);
+    let own = EdgeNeighbourhood::Bend([Ray::to(0), Ray::to(1)]);
     let points = [&across, &facet.corners[(k + 2) % 3], p, q];
-    own.overlaps(&Stuff::Bend([Ray::to(2), Ray::to(3)]), &Around { scene, p: a, q: b, points })
+    own.overlaps_around(
+        &EdgeNeighbourhood::Bend([Ray::to(2), Ray::to(3)]),
+        &EdgeAxis { scene, p: a, q: b, points },
+    )
 }
 
 /// Checks case 4 for corner `k` of a facet.
 fn passes_vertex(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
     let v = &facet.corners[k];
-    let is_end = |end: &Corner| (0..3).all(|axis| scene.order(axis, v, end) == Equal);
+    let is_end = |end: &Corner| (0..3).all(|axis| scene.axis_order(axis, v, end) == Equal);
     if !is_on(scene, v, [p, q]) || is_end(p) || is_end(q) {
         return false;
     }
     let fan = Fan::new(scene, facet.side, facet.index as u32, v);
-    fan.is_some_and(|fan| fan.is_passed(&Line { from: p, way: Way::To(q) }))
+    fan.is_some_and(|fan| fan.is_passed(&Line { from: p, way: LineDirection::To(q) }))
 }
 
 /// Checks whether a point lies on a segment, ends included.
 fn is_on(scene: &Scene, point: &Corner, [p, q]: [&Corner; 2]) -> bool {
     (0..3).all(|axis| {
         scene.turn_about(axis, p, q, point) == Equal
-            && !are_strictly_one(scene.order(axis, p, point), scene.order(axis, q, point))
+            && !are_strictly_one(scene.axis_order(axis, p, point), scene.axis_order(axis, q, point))
     })
 }
 
@@ -121,7 +124,8 @@ fn are_strictly_one(x: Ordering, y: Ordering) -> bool {
 /// Checks whether two segments or points have a common point.
 pub(super) fn share_a_point(scene: &Scene, [p, q]: [Corner; 2], [r, s]: [Corner; 2]) -> bool {
     let boxed = (0..3).all(|axis| {
-        let orders = [(&p, &r), (&p, &s), (&q, &r), (&q, &s)].map(|(a, b)| scene.order(axis, a, b));
+        let orders =
+            [(&p, &r), (&p, &s), (&q, &r), (&q, &s)].map(|(a, b)| scene.axis_order(axis, a, b));
         !orders.iter().all(|&o| o == Less) && !orders.iter().all(|&o| o == Greater)
     });
     let straddle = |a: &Corner, b: &Corner, c: &Corner, e: &Corner| {

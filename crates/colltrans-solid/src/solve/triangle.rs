@@ -22,7 +22,7 @@ impl<'s, 'a> Triangle<'s, 'a> {
     }
 
     /// Returns on which side of the triangle's plane the corners of another triangle are.
-    pub(crate) fn sides(&self, scene: &Scene, other: &Self) -> [Ordering; 3] {
+    pub(crate) fn corner_sides(&self, scene: &Scene, other: &Self) -> [Ordering; 3] {
         let [a, b, c] = &self.corners;
         std::array::from_fn(|k| scene.outside(a, b, c, &other.corners[k]))
     }
@@ -43,7 +43,7 @@ impl<'s, 'a> Triangle<'s, 'a> {
     }
 
     /// Returns the corner of the neighbour across edge `k` that is not on the edge; `None` at a boundary.
-    pub(crate) fn across(&self, k: usize) -> Option<Corner> {
+    pub(crate) fn corner_across_edge(&self, k: usize) -> Option<Corner> {
         let solid = self.side.solid;
         let n = solid.neighbours()[self.index][k];
         if n == NONE {

@@ -18,7 +18,7 @@ use crate::cast::SolidFree;
 use crate::cast::boxes::moves_away;
 use crate::cast::{check_thickness, default_tolerance};
 use crate::solve::contact::{SolidContact, feature};
-use crate::solve::scene::{Scene, permutes};
+use crate::solve::scene::{Scene, permutes_axes};
 use crate::solve::search::{Found, SLACK};
 use crate::solve::separate;
 use crate::solve::steps::SolidSteps;
@@ -136,7 +136,7 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
     fn new(solids: &'h Cast<'a, Solid>, hulls: &'h Hulls<'a>) -> Option<Self> {
         let setting = &solids.setting;
         let noise = setting.noise().point();
-        let is_axis_aligned = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
+        let is_axis_aligned = permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
         let tolerance =
             solids.options.tolerance.unwrap_or(default_tolerance(is_axis_aligned, noise));
         let is_dented = |surface: &Surface| surface.body.dent > LATERAL_NOISES * noise;

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use super::facet::{Facet, Turns, cross};
+use super::facet::{Facet, Turns, sides_cross};
 use super::{Gap, Meeting};
 use crate::solve::scene::{Corner, ExactPoint, Scene};
 use colltrans_kernel::fine::{self, Fine, Way};
@@ -16,7 +16,7 @@ use colltrans_kernel::integer::{Integer, LARGE, SMALL, determinant, difference};
 const UNSEEN: f64 = f64::EPSILON / 4.0;
 
 /// Computes the gap from exact signs at those corners of the common shadow for which `keep` returns true.
-pub(super) fn exact(
+pub(super) fn exact_range(
     scene: &Scene,
     f: &Facet,
     g: &Facet,
@@ -25,31 +25,31 @@ pub(super) fn exact(
     keep: impl Fn(Meeting) -> bool,
 ) -> Gap {
     let mut gap = NO_GAP;
-    let corners = corners(of_f, of_g).filter(|&at| keep(at));
+    let corners = shadow_corners(of_f, of_g).filter(|&at| keep(at));
     if f.is_level_with(g) {
-        corners.for_each(|at| gap.add(scene, Above::LEVEL, at));
+        corners.for_each(|at| gap.add_corner(scene, Above::LEVEL, at));
         return gap;
     }
     let fine = FinePair::new(scene, f, g);
     for at in corners {
         let above = fine
-            .above(at)
+            .height_at(at)
             .or_else(|| above_at::<SMALL>(scene, f, g, at))
             .or_else(|| above_at::<LARGE>(scene, f, g, at));
         // Large integers never overflow, so the alternative is not used.
-        gap.add(scene, above.unwrap_or(Above::LEVEL), at);
+        gap.add_corner(scene, above.unwrap_or(Above::LEVEL), at);
     }
     gap
 }
 
 /// Returns the corners of the common shadow.
-fn corners<'t>(of_f: &'t Turns, of_g: &'t Turns) -> impl Iterator<Item = Meeting> + 't {
+fn shadow_corners<'t>(of_f: &'t Turns, of_g: &'t Turns) -> impl Iterator<Item = Meeting> + 't {
     let ends = (0..3_u8).flat_map(|k| [Meeting::Corner(k), Meeting::Under(k)]);
     let sides = (0..3_u8).flat_map(|k| (0..3_u8).map(move |j| Meeting::Sides(k, j)));
     ends.chain(sides).filter(|at| match *at {
-        Meeting::Corner(k) => of_g.contain(k.into()),
-        Meeting::Under(k) => of_f.contain(k.into()),
-        Meeting::Sides(k, j) => cross(of_f, of_g, [k.into(), j.into()]),
+        Meeting::Corner(k) => of_g.contains_corner(k.into()),
+        Meeting::Under(k) => of_f.contains_corner(k.into()),
+        Meeting::Sides(k, j) => sides_cross(of_f, of_g, [k.into(), j.into()]),
         _ => false,
     })
 }
@@ -72,7 +72,9 @@ fn above_at<const N: usize>(scene: &Scene, f: &Facet, g: &Facet, at: Meeting) ->
             Some(above_facet(scene, &direction, g, &f.corners[usize::from(k)])?.reversed())
         }
         Meeting::Under(k) => above_facet(scene, &direction, f, &g.corners[usize::from(k)]),
-        Meeting::Sides(k, j) => above_side(scene, &direction, f.side(k.into()), g.side(j.into())),
+        Meeting::Sides(k, j) => {
+            above_side(scene, &direction, f.side_ends(k.into()), g.side_ends(j.into()))
+        }
         _ => None,
     }
 }
@@ -93,7 +95,7 @@ impl<'s, 'a> FinePair<'s, 'a> {
     }
 
     /// Computes the height of [`above_at`]; `None` if the precision does not suffice.
-    fn above(&self, at: Meeting) -> Option<Above> {
+    fn height_at(&self, at: Meeting) -> Option<Above> {
         match at {
             Meeting::Corner(k) => Some(self.above_facet(1, k.into())?.reversed()),
             Meeting::Under(k) => self.above_facet(0, k.into()),
@@ -107,7 +109,7 @@ impl<'s, 'a> FinePair<'s, 'a> {
     fn above_facet(&self, facet: usize, corner: usize) -> Option<Above> {
         let [a, b, c] = &self.points[facet];
         let [x, y, z] = [b, c, &self.points[1 - facet][corner]].map(|q| a.to(q));
-        self.quotient([x, y, z], [x, y])
+        self.volume_over_area([x, y, z], [x, y])
     }
 
     /// Computes the height of side `j` of the second facet above side `k` of the first where their shadows cross;
@@ -116,11 +118,11 @@ impl<'s, 'a> FinePair<'s, 'a> {
         let [p, q] = &self.points;
         let (c, e) = (&q[j], &q[(j + 1) % 3]);
         let [x, y, z] = [&p[(k + 1) % 3], c, e].map(|r| p[k].to(r));
-        Some(self.quotient([x, y, z], [x, c.to(e)])?.reversed())
+        Some(self.volume_over_area([x, y, z], [x, c.to(e)])?.reversed())
     }
 
     /// Returns a volume over an area; `None` if the precision does not suffice.
-    fn quotient(&self, volume: [Way; 3], [x, y]: [Way; 2]) -> Option<Above> {
+    fn volume_over_area(&self, volume: [Way; 3], [x, y]: [Way; 2]) -> Option<Above> {
         let over = fine::determinant(volume);
         let Some(sign) = over.sign() else {
             return fine::tracked_sign(volume)?.is_eq().then_some(Above::LEVEL);
@@ -201,7 +203,7 @@ impl Above {
 
 impl Gap {
     /// Adds a corner of the common shadow. `above` is a multiple of the direction.
-    pub(crate) fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
+    pub(crate) fn add_corner(&mut self, scene: &Scene, above: Above, at: Meeting) {
         let Above { sign, value } = above;
         let value = if sign == Ordering::Equal { 0.0 } else { value * scene.setting.length };
         if value < self.least {

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::super::scene::{Corner, Remembered, Scene, Side};
+use super::super::scene::{CachedCorner, Corner, Scene, Side};
 use super::super::sign::rough_turn;
 use crate::body::Solid;
 use crate::body::edges::NONE;
@@ -39,7 +39,7 @@ impl Facet {
         let (corners, turn) = listed(scene, side, triangle);
         let counts = match turn {
             // An edge-on facet has no gap, but it can be near. An example is the boundary of a body without thickness.
-            Ordering::Equal => scene.keeps() && is_thin(side.solid, triangle),
+            Ordering::Equal => scene.has_min_gap() && is_thin(side.solid, triangle),
             turn => turn == wanted || side.solid.is_open(triangle),
         };
         if !counts {
@@ -74,7 +74,7 @@ impl Facet {
         corners.all(|corner| corner.exact && corner.at.z == height)
     }
 
-    pub(crate) fn side(&self, k: usize) -> [&Corner; 2] {
+    pub(crate) fn side_ends(&self, k: usize) -> [&Corner; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }
 }
@@ -162,9 +162,9 @@ pub(super) struct Turns(pub(super) [[Turn; 3]; 3]);
 
 impl Turns {
     /// Computes all orientations with exact signs.
-    pub(super) fn exact(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
-        let mut turns = Self([0, 1, 2].map(|k| Self::about(scene, sides, k, corners)));
-        turns.resolve(scene, sides, corners);
+    pub(super) fn with_exact_signs(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
+        let mut turns = Self([0, 1, 2].map(|k| Self::turns_of_side(scene, sides, k, corners)));
+        turns.resolve_signs(scene, sides, corners);
         turns
     }
 
@@ -172,7 +172,7 @@ impl Turns {
     pub(super) fn unless_apart(scene: &Scene, sides: &Facet, corners: &Facet) -> Option<Self> {
         let mut turns = [[Turn { value: 0.0, error: 0.0, sign: Ordering::Equal }; 3]; 3];
         for (k, row) in turns.iter_mut().enumerate() {
-            *row = Self::about(scene, sides, k, corners);
+            *row = Self::turns_of_side(scene, sides, k, corners);
             if row.iter().all(|t| t.value < -t.error) {
                 return None;
             }
@@ -181,7 +181,7 @@ impl Turns {
     }
 
     /// Computes the rounded orientations of side `k`.
-    fn about(scene: &Scene, sides: &Facet, k: usize, corners: &Facet) -> [Turn; 3] {
+    fn turns_of_side(scene: &Scene, sides: &Facet, k: usize, corners: &Facet) -> [Turn; 3] {
         let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
         corners.corners.each_ref().map(|corner| {
             let (value, error) = rough_turn(scene, a, b, corner.at);
@@ -191,12 +191,12 @@ impl Turns {
     }
 
     /// Makes all signs exact.
-    pub(super) fn resolve(&mut self, scene: &Scene, sides: &Facet, corners: &Facet) {
+    pub(super) fn resolve_signs(&mut self, scene: &Scene, sides: &Facet, corners: &Facet) {
         if self.are_certain() {
             return;
         }
-        let of_sides = sides.corners.each_ref().map(Remembered::new);
-        let of_corners = corners.corners.each_ref().map(Remembered::new);
+        let of_sides = sides.corners.each_ref().map(CachedCorner::new);
+        let of_corners = corners.corners.each_ref().map(CachedCorner::new);
         for k in 0..3 {
             let [a, b] = [&of_sides[k], &of_sides[(k + 1) % 3]];
             for (turn, corner) in self.0[k].iter_mut().zip(&of_corners) {
@@ -207,23 +207,23 @@ impl Turns {
         }
     }
 
-    /// Checks whether rounding leaves no sign in doubt.
+    /// Checks whether all signs are certain in spite of rounding.
     pub(super) fn are_certain(&self) -> bool {
         self.0.iter().flatten().all(|turn| turn.value.abs() > turn.error)
     }
 
     /// Checks whether a corner is certainly on the inner side of side `k`.
-    pub(super) fn admits(&self, k: usize) -> bool {
+    pub(super) fn has_inner_corner(&self, k: usize) -> bool {
         self.0[k].iter().any(|t| t.value > t.error)
     }
 
     /// Checks whether rounding leaves open that corner `j` lies in the shadow of the facet with the sides.
-    pub(super) fn may_contain(&self, j: usize) -> bool {
+    pub(super) fn may_contain_corner(&self, j: usize) -> bool {
         self.0.iter().all(|side| side[j].value >= -side[j].error)
     }
 
     /// Checks whether corner `j` lies in the shadow of the facet with the sides, boundary included.
-    pub(super) fn contain(&self, j: usize) -> bool {
+    pub(super) fn contains_corner(&self, j: usize) -> bool {
         self.0.iter().all(|side| side[j].sign != Ordering::Less)
     }
 }
@@ -238,14 +238,14 @@ pub(super) fn may_cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool 
 }
 
 /// Checks whether side `k` of `f` and side `j` of `g` cross in points other than their ends.
-pub(super) fn cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool {
+pub(super) fn sides_cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool {
     let next = |k: usize| (k + 1) % 3;
     let strictly = |x: Turn, y: Turn| x.sign != Ordering::Equal && x.sign == y.sign.reverse();
     strictly(of_f.0[k][j], of_f.0[k][next(j)]) && strictly(of_g.0[j][k], of_g.0[j][next(k)])
 }
 
 /// Checks exactly whether no corner of the other facet is on the inner side of side `k`.
-pub(super) fn separates(scene: &Scene, facet: &Facet, k: usize, other: &Facet) -> bool {
-    let [a, b] = facet.side(k);
+pub(super) fn side_separates(scene: &Scene, facet: &Facet, k: usize, other: &Facet) -> bool {
+    let [a, b] = facet.side_ends(k);
     other.corners.iter().all(|c| scene.turn(a, b, c) != Ordering::Greater)
 }

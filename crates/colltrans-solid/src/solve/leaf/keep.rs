@@ -23,29 +23,29 @@ use colltrans_kernel::noise::UNIT_VECTOR;
 const GRAZE: f64 = 8.0;
 
 /// Maximum number of distance samples for a point that is near enough, if the search found none on its way.
-const MOST_DEEPER: usize = 8;
+const MAX_SAMPLES: usize = 8;
 
 /// The difference of two triangles in the setting frame.
-pub(crate) struct Facets {
+pub(crate) struct FacetDifference {
     moving: Corners,
     fixed: Corners,
     noise: f64,
 }
 
-impl Facets {
+impl FacetDifference {
     pub(crate) fn new(scene: &Scene, f: &[Corner; 3], g: &[Corner; 3]) -> Self {
-        let placed = |corners: &[Corner; 3]| corners.each_ref().map(|c| scene.place(c));
+        let placed = |corners: &[Corner; 3]| corners.each_ref().map(|c| scene.corner_position(c));
         Self { moving: placed(f), fixed: placed(g), noise: scene.noise }
     }
 
     /// Returns the line of the search along the direction of a scene (`sign` 1) or against it (-1).
-    fn line(scene: &Scene, sign: f64) -> Line {
+    fn search_line(scene: &Scene, sign: f64) -> Line {
         let unit = scene.setting.direction / scene.setting.length * sign;
         Line::new(unit, scene.keep, scene.size() - scene.keep)
     }
 
-    fn plane(&self, normal: DVec3) -> Plane<()> {
-        let height = triangle::gap(&self.moving, &self.fixed, normal) - self.noise;
+    fn plane_along(&self, normal: DVec3) -> Plane<()> {
+        let height = triangle::gap_along(&self.moving, &self.fixed, normal) - self.noise;
         Plane { normal, height, beyond: 0.0, support: () }
     }
 
@@ -57,16 +57,16 @@ impl Facets {
     }
 
     /// Checks whether the distance of the facets remains at least the gap from the start on, except for grazing.
-    fn part(&mut self, line: &Line) -> bool {
+    fn remain_apart(&mut self, line: &Line) -> bool {
         let Some(plane) = self.look(DVec3::ZERO).plane else { return false };
         line.slope(plane.normal) <= UNIT_VECTOR && plane.height >= line.keep - GRAZE * self.noise
     }
 
     /// Returns a point of the difference near the line, from distance samples that begin at `lower`. It ends at the
-    /// first point nearer to the line than the gap, or after [`MOST_DEEPER`] samples.
-    fn deeper(&mut self, line: &Line, lower: f64) -> DVec3 {
+    /// first point nearer to the line than the gap, or after [`MAX_SAMPLES`] samples.
+    fn sample_near_line(&mut self, line: &Line, lower: f64) -> DVec3 {
         let mut point = self.look(line.unit * lower).point;
-        for _ in 0..MOST_DEEPER {
+        for _ in 0..MAX_SAMPLES {
             if line.upper(point).is_some() {
                 break;
             }
@@ -76,14 +76,14 @@ impl Facets {
     }
 
     /// Checks whether a plane parallel to the line separates the facets, except for grazing.
-    fn pass(&mut self, line: &Line) -> bool {
+    fn pass_laterally(&mut self, line: &Line) -> bool {
         let toward = self.fixed[0] - self.moving[0];
         let found = shadow(self, line, toward);
         found.is_some_and(|found| found.plane.height >= line.keep - GRAZE * self.noise)
     }
 }
 
-impl Target for Facets {
+impl Target for FacetDifference {
     type Support = ();
     type Spot = [DVec3; 2];
 
@@ -94,14 +94,14 @@ impl Target for Facets {
             if n.dot(c) < n.dot(nearer) { c } else { nearer }
         };
         let point = least(&self.fixed, normal) - least(&self.moving, -normal);
-        (self.plane(normal), point)
+        (self.plane_along(normal), point)
     }
 
     fn look(&mut self, from: DVec3) -> Look<(), [DVec3; 2]> {
         let there = self.moving.map(|p| p + from);
         let nearest = triangle::nearest(&there, &self.fixed, self.noise);
         let weights = nearest.weights;
-        let plane = (nearest.gap > self.noise).then(|| self.plane(nearest.normal));
+        let plane = (nearest.gap > self.noise).then(|| self.plane_along(nearest.normal));
         let mean =
             triangle::mean(&self.fixed, weights[1]) - triangle::mean(&self.moving, weights[0]);
         let of = |k: usize| (0..3).filter(move |&i| weights[k][i] > 0.0);
@@ -118,7 +118,13 @@ impl Target for Facets {
 
 /// Computes the travel at which the distance of two facets falls to the minimum gap. `None` if it does not fall below
 /// the gap by more than rounding errors, if its lower bound is not below `limit`, or if the pair is not wanted.
-pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
+pub(crate) fn min_gap_crossing(
+    scene: &Scene,
+    f: &Facet,
+    g: &Facet,
+    limit: f64,
+    wanted: Wanted,
+) -> Option<Gap> {
     let reach = scene.keep + 4.0 * scene.noise;
     let apart = |axis: usize| f.bounds.is_apart(&g.bounds, axis, reach);
     if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - reach >= limit {
@@ -127,34 +133,38 @@ pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     if wanted != Wanted::All && g.bounds.high.z - f.bounds.low.z < -reach {
         return None;
     }
-    let facets = &mut Facets::new(scene, &f.corners, &g.corners);
-    let line = &Facets::line(scene, 1.0);
+    let facets = &mut FacetDifference::new(scene, &f.corners, &g.corners);
+    let line = &FacetDifference::search_line(scene, 1.0);
     if wanted == Wanted::NotCrossing && facets.are_within(scene.keep, false) {
         return None;
     }
-    let start = facets.plane(line.unit);
+    let start = facets.plane_along(line.unit);
     let found = travel(facets, line, start, limit);
     if found.lower >= limit
-        || wanted != Wanted::All && found.lower <= 4.0 * scene.noise && facets.part(line)
-        || is_shallow(&found, line) && facets.pass(line)
+        || wanted != Wanted::All && found.lower <= 4.0 * scene.noise && facets.remain_apart(line)
+        || is_shallow(&found, line) && facets.pass_laterally(line)
     {
         return None;
     }
-    Some(measured(facets, &found, line))
+    Some(crossing_as_gap(facets, &found, line))
 }
 
 /// Checks whether the line may merely graze.
-fn is_shallow(found: &Travel<Facets>, line: &Line) -> bool {
+fn is_shallow(found: &Travel<FacetDifference>, line: &Line) -> bool {
     let Some(near) = found.near else { return true };
     let aside = near.point.reject_from_normalized(line.unit).length();
     line.keep - aside <= 2.0 * GRAZE * line.noise.point()
 }
 
 /// Converts the bounds of a search to a gap with its error, for facets that come nearer than the minimum gap.
-fn measured(facets: &mut Facets, found: &Travel<Facets>, line: &Line) -> Gap {
+fn crossing_as_gap(
+    facets: &mut FacetDifference,
+    found: &Travel<FacetDifference>,
+    line: &Line,
+) -> Gap {
     use std::cmp::Ordering::Greater;
     let near = found.near.map(|near| near.point);
-    let point = near.unwrap_or_else(|| facets.deeper(line, found.lower));
+    let point = near.unwrap_or_else(|| facets.sample_near_line(line, found.lower));
     let upper = line.upper(point).unwrap_or_else(|| point.dot(line.unit)).max(found.lower);
     let least = line.estimate(point).unwrap_or(upper).clamp(found.lower, upper);
     let error = (least - found.lower).max(upper - least);
@@ -170,7 +180,7 @@ pub(crate) fn nearest_after(
     g: &[Corner; 3],
     way: f64,
 ) -> ([DVec3; 2], DVec3) {
-    let Facets { moving, fixed, noise } = Facets::new(scene, f, g);
+    let FacetDifference { moving, fixed, noise } = FacetDifference::new(scene, f, g);
     let by = scene.setting.direction / scene.setting.length * way;
     let nearest = triangle::nearest(&moving.map(|p| p + by), &fixed, noise);
     (nearest.weights, nearest.normal)

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use super::facet::{Facet, Turn, Turns, cross};
+use super::facet::{Facet, Turn, Turns, sides_cross};
 use super::{Gap, Meeting};
 use crate::solve::scene::Scene;
 
@@ -40,7 +40,7 @@ impl Range {
         self.positive |= value > error;
     }
 
-    pub(super) fn judge(self, sharp: f64, needed: bool) -> Rounded {
+    pub(super) fn conclude(self, sharp: f64, needed: bool) -> Rounded {
         let [low, high] = self.bound;
         let least = if low > 0.0 {
             Some(Ordering::Greater)
@@ -62,7 +62,13 @@ impl Range {
     }
 }
 
-pub(super) fn rounded(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Range {
+pub(super) fn rounded_range(
+    scene: &Scene,
+    f: &Facet,
+    g: &Facet,
+    of_f: &Turns,
+    of_g: &Turns,
+) -> Range {
     let mut range = Range {
         least: f64::INFINITY,
         largest: f64::NEG_INFINITY,
@@ -87,18 +93,18 @@ pub(super) fn each_gap(
     mut add: impl FnMut((f64, f64), Meeting),
 ) {
     for k in 0..3 {
-        if of_g.contain(k) {
+        if of_g.contains_corner(k) {
             add(g.height_above(f.corners[k].at), Meeting::Corner(k as u8));
         }
-        if of_f.contain(k) {
+        if of_f.contains_corner(k) {
             let (height, error) = f.height_above(g.corners[k].at);
             add((-height, error), Meeting::Under(k as u8));
         }
     }
     for k in 0..3 {
         for j in 0..3 {
-            if cross(of_f, of_g, [k, j]) {
-                let gap = crossing(scene, [f, g], [k, j], of_f, of_g);
+            if sides_cross(of_f, of_g, [k, j]) {
+                let gap = crossing_gap(scene, [f, g], [k, j], of_f, of_g);
                 add(gap, Meeting::Sides(k as u8, j as u8));
             }
         }
@@ -106,7 +112,7 @@ pub(super) fn each_gap(
 }
 
 /// Computes the gap where side `k` of `f` crosses side `j` of `g`, and a bound on its error.
-pub(super) fn crossing(
+pub(super) fn crossing_gap(
     scene: &Scene,
     [f, g]: [&Facet; 2],
     [k, j]: [usize; 2],
@@ -116,7 +122,7 @@ pub(super) fn crossing(
     let next = |k: usize| (k + 1) % 3;
     let (r, s) = (of_f.0[k][j], of_f.0[k][next(j)]);
     let (p, q) = (of_g.0[j][k], of_g.0[j][next(k)]);
-    let ([a, b], [c, e]) = (f.side(k).map(|c| c.at), g.side(j).map(|c| c.at));
+    let ([a, b], [c, e]) = (f.side_ends(k).map(|c| c.at), g.side_ends(j).map(|c| c.at));
     let (across, back) = (p.value - q.value, r.value - s.value);
     let gap = c.z + (e.z - c.z) * (r.value / back) - a.z - (b.z - a.z) * (p.value / across);
     // Error of a height caused by the uncertain position of the crossing along a side.

@@ -17,7 +17,7 @@ use crate::body::tree::Node;
 use crate::solve::scene::{Scene, Side};
 use colltrans_kernel::pose::rotation_defect;
 
-use super::triangle::unit;
+use super::triangle::unit_vector;
 
 /// Noises by which bounds are lowered to cover rounding errors of both bodies.
 const ROUNDING: f64 = 2.0;
@@ -80,7 +80,7 @@ impl Axis {
 
     /// Returns the least and the largest coordinate of a node along the axis.
     #[inline]
-    fn range(&self, middle: DVec3, half: DVec3, depths: &Depths) -> [f64; 2] {
+    fn range_along(&self, middle: DVec3, half: DVec3, depths: &Depths) -> [f64; 2] {
         let (at, width) = (self.local.dot(middle) + self.offset, self.local.abs().dot(half));
         let [high, low] = [self.parts[0].gain(depths), self.parts[1].gain(depths)];
         [at - width + low, at + width - high]
@@ -103,7 +103,7 @@ impl Axes {
 
 /// A node in the setting frame.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View {
+pub(super) struct NodeExtents {
     /// Least coordinates along the axes of the fixed and of the moving body.
     low: [DVec3; 2],
     high: [DVec3; 2],
@@ -118,18 +118,18 @@ pub(super) struct View {
     pub(super) size: f64,
 }
 
-impl View {
+impl NodeExtents {
     pub(super) fn new(axes: &Axes, side: &Side, at: u32) -> Self {
         let node = &side.solid.nodes()[at as usize];
         let (middle, size) = (node.bounds.center(), node.bounds.size());
         let half = size * 0.5;
         let k = usize::from(!side.moving);
         let depths = depths(&node.cuts, size, 0.0);
-        let ranges = axes.seen[k].map(|axis| axis.range(middle, half, &depths));
+        let ranges = axes.seen[k].map(|axis| axis.range_along(middle, half, &depths));
         let ends = |frame: usize, end: usize| {
             DVec3::from_array([0, 1, 2].map(|i| ranges[3 * frame + i][end]))
         };
-        let (axis, slab) = slab(axes.duals[k], side, node);
+        let (axis, slab) = slab_in_setting_frame(axes.duals[k], side, node);
         Self {
             low: [ends(0, 0), ends(1, 0)],
             high: [ends(0, 1), ends(1, 1)],
@@ -160,7 +160,7 @@ impl View {
 }
 
 /// Returns the slab of a node in the setting frame: its axis and range. The axis is 0 if there is no slab.
-fn slab(dual: DMat3, side: &Side, node: &Node) -> (DVec3, [f64; 2]) {
+fn slab_in_setting_frame(dual: DMat3, side: &Side, node: &Node) -> (DVec3, [f64; 2]) {
     let axis = dual * node.axis;
     let length = axis.length();
     if node.slab[1] == f64::INFINITY || length == 0.0 {
@@ -173,19 +173,19 @@ fn slab(dual: DMat3, side: &Side, node: &Node) -> (DVec3, [f64; 2]) {
 
 /// A node of the moving body and one of the fixed body.
 #[derive(Clone, Copy)]
-pub(super) struct Couple<'s, 'a> {
+pub(super) struct NodePair<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) axes: &'s Axes,
-    pub(super) moving: &'s View,
-    pub(super) fixed: &'s View,
+    pub(super) moving: &'s NodeExtents,
+    pub(super) fixed: &'s NodeExtents,
 }
 
-impl Couple<'_, '_> {
+impl NodePair<'_, '_> {
     /// Returns a lower bound of the distance of the nodes, from one reason.
-    pub(super) fn bound(&self, reason: Apart) -> f64 {
+    pub(super) fn distance_bound(&self, reason: Apart) -> f64 {
         let gap = match reason {
-            Apart::AxesOfFixed => self.gaps(0).length() * self.axes.shares[0],
-            Apart::AxesOfMoving => self.gaps(1).length() * self.axes.shares[1],
+            Apart::AxesOfFixed => self.box_gaps(0).length() * self.axes.shares[0],
+            Apart::AxesOfMoving => self.box_gaps(1).length() * self.axes.shares[1],
             Apart::SlabOfMoving => self.past_moving(),
             Apart::SlabOfFixed => self.past_fixed(),
             Apart::Way => self.along_way(),
@@ -195,14 +195,14 @@ impl Couple<'_, '_> {
     }
 
     /// Returns the largest bound and its reason. Stops at the first bound that is not below `limit`.
-    pub(super) fn best(&self, limit: f64) -> (f64, Apart) {
-        let mut best = (self.bound(Apart::AxesOfFixed), Apart::AxesOfFixed);
+    pub(super) fn best_bound(&self, limit: f64) -> (f64, Apart) {
+        let mut best = (self.distance_bound(Apart::AxesOfFixed), Apart::AxesOfFixed);
         let rest = [Apart::AxesOfMoving, Apart::SlabOfMoving, Apart::SlabOfFixed, Apart::Way];
         for reason in rest.into_iter().skip(usize::from(self.axes.shared)) {
             if best.0 >= limit {
                 break;
             }
-            let bound = self.bound(reason);
+            let bound = self.distance_bound(reason);
             if bound > best.0 {
                 best = (bound, reason);
             }
@@ -212,7 +212,7 @@ impl Couple<'_, '_> {
 
     /// Returns the gaps of the boxes along the axes of a frame, signed from the moving to the fixed body.
     #[inline]
-    fn gaps(&self, frame: usize) -> DVec3 {
+    fn box_gaps(&self, frame: usize) -> DVec3 {
         let ahead = self.fixed.low[frame] - self.moving.high[frame];
         let behind = self.moving.low[frame] - self.fixed.high[frame];
         ahead.max(DVec3::ZERO) - behind.max(DVec3::ZERO)
@@ -225,7 +225,7 @@ impl Couple<'_, '_> {
         if n == DVec3::ZERO {
             return f64::NEG_INFINITY;
         }
-        let ahead = self.toward(n);
+        let ahead = self.is_fixed_ahead(n);
         if ahead {
             fixed.least_along(&scene.fixed, n) - moving.slab[1]
         } else {
@@ -239,7 +239,7 @@ impl Couple<'_, '_> {
         if n == DVec3::ZERO {
             return f64::NEG_INFINITY;
         }
-        if self.toward(n) {
+        if self.is_fixed_ahead(n) {
             fixed.slab[0] + moving.least_along(&scene.moving, -n)
         } else {
             moving.least_along(&scene.moving, n) - fixed.slab[1]
@@ -247,17 +247,17 @@ impl Couple<'_, '_> {
     }
 
     /// Checks whether the fixed node is farther along a vector than the moving one.
-    fn toward(&self, n: DVec3) -> bool {
+    fn is_fixed_ahead(&self, n: DVec3) -> bool {
         let [p, q] = [(&self.scene.moving, self.moving), (&self.scene.fixed, self.fixed)]
             .map(|(side, view)| side.matrix * view.middle + side.offset[0]);
         n.dot(q - p) > 0.0
     }
 
     fn along_way(&self) -> f64 {
-        let gaps = [0, 1].map(|frame| self.gaps(frame));
+        let gaps = [0, 1].map(|frame| self.box_gaps(frame));
         let frame = usize::from(gaps[1].length_squared() > gaps[0].length_squared());
         // The shortest vector between the boxes, from the gaps along the axes.
-        let Some(n) = unit(self.axes.frames[frame] * gaps[frame]) else {
+        let Some(n) = unit_vector(self.axes.frames[frame] * gaps[frame]) else {
             return f64::NEG_INFINITY;
         };
         self.fixed.least_along(&self.scene.fixed, n)

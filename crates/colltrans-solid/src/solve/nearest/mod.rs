@@ -19,7 +19,7 @@ use crate::solve::steps::SolidSteps;
 pub use bound::Apart;
 pub(crate) use bound::Axes;
 use colltrans_convex::body::Feature;
-use search::{Found, corners};
+use search::{Found, facet_corners};
 use triangle::Nearest;
 
 /// Proof of an upper bound of the distance of two solids.
@@ -72,7 +72,7 @@ pub struct Spot {
 impl Spot {
     /// Computes the nearest points of two triangles.
     pub(crate) fn of(scene: &Scene, triangles: [u32; 2]) -> Self {
-        let [f, g] = of_both(scene, triangles);
+        let [f, g] = both_corners(scene, triangles);
         Self { triangles, nearest: triangle::nearest(&f, &g, scene.noise) }
     }
 
@@ -111,26 +111,30 @@ impl From<Found> for Spot {
     }
 }
 
-fn of_both(scene: &Scene, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
-    [corners(&scene.moving, s as usize), corners(&scene.fixed, t as usize)]
+fn both_corners(scene: &Scene, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
+    [facet_corners(&scene.moving, s as usize), facet_corners(&scene.fixed, t as usize)]
 }
 
 /// Returns the points of two triangles with the given weights, in the setting frame.
 #[inline]
 pub fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
-    let corners = of_both(scene, triangles);
+    let corners = both_corners(scene, triangles);
     [0, 1].map(|k| triangle::mean(&corners[k], weights[k]))
 }
 
 /// Finds a place where the bodies have a common point, given a lower bound of the distance of their surfaces; `None` if
 /// there is no such place.
-pub(crate) fn meeting(scene: &Scene, surfaces: f64, steps: &mut SolidSteps) -> Option<Overlap> {
-    if surfaces > 0.0 { overlap::nested(scene) } else { overlap::touch(scene, steps) }
+pub(crate) fn find_common_point(
+    scene: &Scene,
+    surfaces: f64,
+    steps: &mut SolidSteps,
+) -> Option<Overlap> {
+    if surfaces > 0.0 { overlap::nested_shell(scene) } else { overlap::find_contact(scene, steps) }
 }
 
 /// Returns a common point of both bodies in the setting frame, once for each body, equal within rounding.
 pub(crate) fn shared_points(scene: &Scene, place: Overlap) -> [DVec3; 2] {
-    let corner = |side: &Side, t: u32| [corners(side, t as usize)[0]; 2];
+    let corner = |side: &Side, t: u32| [facet_corners(side, t as usize)[0]; 2];
     match place {
         Overlap::Facets(s, t) => Spot::of(scene, [s, t]).points(scene),
         Overlap::MovingInside(t) => corner(&scene.moving, t),
@@ -149,7 +153,7 @@ pub(crate) fn distance_of(
     if !known(&scene.moving, triangles[0]) || !known(&scene.fixed, triangles[1]) {
         return None;
     }
-    let [f, g] = of_both(scene, triangles);
+    let [f, g] = both_corners(scene, triangles);
     let length = triangle::length(&f, &g, weights.map(DVec3::from_array));
     Some(length + triangle::LENGTH * scene.noise)
 }

@@ -7,7 +7,7 @@
 
 use std::collections::BinaryHeap;
 
-use super::bound::{Apart, Axes, Couple, View};
+use super::bound::{Apart, Axes, NodeExtents, NodePair};
 use super::triangle::{self, Corners, GAP, Nearest};
 use crate::solve::scene::{Scene, Side};
 use crate::solve::steps::SolidSteps;
@@ -39,12 +39,12 @@ impl Until {
 }
 
 /// Returns the facets of a leaf.
-fn facets(side: &Side, node: u32) -> impl Iterator<Item = Corners> {
-    side.solid.nodes()[node as usize].facets().map(|t| corners(side, t))
+fn leaf_facets(side: &Side, node: u32) -> impl Iterator<Item = Corners> {
+    side.solid.nodes()[node as usize].facets().map(|t| facet_corners(side, t))
 }
 
 /// Returns the corners of a facet in the setting frame.
-pub(crate) fn corners(side: &Side, triangle: usize) -> Corners {
+pub(crate) fn facet_corners(side: &Side, triangle: usize) -> Corners {
     let vertices = side.solid.vertices();
     side.solid.triangles()[triangle].map(|v| side.matrix * vertices[v as usize] + side.offset[0])
 }
@@ -54,7 +54,7 @@ pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Apart)> {
     scene: &'s Scene<'a>,
     axes: Axes,
     /// The visited nodes of each body, and the facets of their leaves.
-    seen: [Seen<View, Corners>; 2],
+    seen: [Seen<NodeExtents, Corners>; 2],
     until: Until,
     /// Distance from which on pairs are of no interest now.
     limit: f64,
@@ -84,41 +84,41 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
     /// Returns the nearest pair below the limit, if there is one, and a lower bound of the distance of all pairs. The
     /// bound is 0 if a sufficient pair ended the search.
     pub(crate) fn run(&mut self) -> (Option<Found>, f64) {
-        self.seen[0].start(View::new(&self.axes, &self.scene.moving, 0));
-        self.seen[1].start(View::new(&self.axes, &self.scene.fixed, 0));
+        self.seen[0].start(NodeExtents::new(&self.axes, &self.scene.moving, 0));
+        self.seen[1].start(NodeExtents::new(&self.axes, &self.scene.fixed, 0));
         best_first(self, &mut BinaryHeap::new());
         let lower = if self.is_enough() { 0.0 } else { self.examined.min(self.limit).max(0.0) };
         (self.found, lower)
     }
 
-    fn nodes(&self, views: [u32; 2]) -> [u32; 2] {
+    fn view_nodes(&self, views: [u32; 2]) -> [u32; 2] {
         [0, 1].map(|k| self.seen[k].view(views[k]).node)
     }
 
     /// Examines all pairs of facets of two leaves.
-    fn leaves(&mut self, views: [u32; 2], nodes: [u32; 2]) {
+    fn compare_leaves(&mut self, views: [u32; 2], nodes: [u32; 2]) {
         self.steps.leaves += 1;
         let sides = [&self.scene.moving, &self.scene.fixed];
         let triangles = [0, 1].map(|k| sides[k].solid.nodes()[nodes[k] as usize].facets());
-        let held = [0, 1].map(|k| self.seen[k].leaf(views[k], |_| facets(sides[k], nodes[k])));
+        let held = [0, 1].map(|k| self.seen[k].leaf(views[k], |_| leaf_facets(sides[k], nodes[k])));
         for (s, i) in triangles[0].clone().zip(held[0].clone()) {
             for (t, j) in triangles[1].clone().zip(held[1].clone()) {
                 let (f, g) = (*self.seen[0].item(i), *self.seen[1].item(j));
-                self.facets([s as u32, t as u32], &f, &g);
+                self.compare_facets([s as u32, t as u32], &f, &g);
             }
         }
     }
 
     #[inline]
-    fn facets(&mut self, triangles: [u32; 2], f: &Corners, g: &Corners) {
+    fn compare_facets(&mut self, triangles: [u32; 2], f: &Corners, g: &Corners) {
         let noise = self.scene.noise;
         // A plane with the normal of the best pair excludes most pairs near it.
         if let Some(best) = &self.found
-            && triangle::gap(f, g, best.nearest.normal) - GAP * noise >= self.limit
+            && triangle::gap_along(f, g, best.nearest.normal) - GAP * noise >= self.limit
         {
             return;
         }
-        let Some(nearest) = triangle::examine(f, g, self.limit, noise) else { return };
+        let Some(nearest) = triangle::nearest_below(f, g, self.limit, noise) else { return };
         self.examined = self.examined.min(nearest.gap - GAP * noise);
         if self.found.is_none_or(|found| nearest.length < found.nearest.length) {
             self.found = Some(Found { triangles, nearest });
@@ -151,8 +151,8 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
         work::count(1);
         self.steps.nodes += 1;
         let (moving, fixed) = (self.seen[0].view(i), self.seen[1].view(j));
-        let couple = Couple { scene: self.scene, axes: &self.axes, moving, fixed };
-        let (bound, reason) = couple.best(self.limit);
+        let pair = NodePair { scene: self.scene, axes: &self.axes, moving, fixed };
+        let (bound, reason) = pair.best_bound(self.limit);
         if bound >= self.limit {
             (self.cut)([moving.node, fixed.node], reason);
             return None;
@@ -165,33 +165,33 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
         let [a, b] = [0, 1].map(|k| self.seen[k].view(views[k]));
         let nodes = [a.node, b.node];
         let Some(which) = node_to_split([a.leaf, b.leaf], |k| [a.size, b.size][k]) else {
-            self.leaves(views, nodes);
+            self.compare_leaves(views, nodes);
             (self.cut)(nodes, Apart::Examined);
             return None;
         };
         let (axes, side) = (&self.axes, self.scene.side(which == 0));
         let parts = side.solid.nodes()[nodes[which] as usize].children(nodes[which]);
         let views_of =
-            self.seen[which].children(views[which], |_, k| View::new(axes, side, parts[k]));
+            self.seen[which].children(views[which], |_, k| NodeExtents::new(axes, side, parts[k]));
         Some(views_of.map(|part| replaced(views, which, part)))
     }
 
     fn dismiss(&mut self, entry: &Entry<Apart>) {
-        let nodes = self.nodes(entry.views);
+        let nodes = self.view_nodes(entry.views);
         (self.cut)(nodes, entry.reason);
     }
 }
 
 /// Returns the lower bound, proven by `reason`, of the distance of all facets of two nodes.
-pub(crate) fn proven(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
+pub(crate) fn proven_bound(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
     if reason != Apart::Examined {
-        let moving = View::new(axes, &scene.moving, nodes[0]);
-        let fixed = View::new(axes, &scene.fixed, nodes[1]);
-        return Couple { scene, axes, moving: &moving, fixed: &fixed }.bound(reason);
+        let moving = NodeExtents::new(axes, &scene.moving, nodes[0]);
+        let fixed = NodeExtents::new(axes, &scene.fixed, nodes[1]);
+        return NodePair { scene, axes, moving: &moving, fixed: &fixed }.distance_bound(reason);
     }
     let mut least = f64::INFINITY;
-    for f in facets(&scene.moving, nodes[0]) {
-        for g in facets(&scene.fixed, nodes[1]) {
+    for f in leaf_facets(&scene.moving, nodes[0]) {
+        for g in leaf_facets(&scene.fixed, nodes[1]) {
             least = least.min(triangle::nearest(&f, &g, scene.noise).gap - GAP * scene.noise);
         }
     }

@@ -4,11 +4,12 @@
 //!   unit vector `n`, the *gap*, the least `n.q` of `g`'s corners minus the largest `n.p` of `f`'s.
 //! - The nearest points are a corner and a point within the other triangle, or points of two edges (then the gap is
 //!   `n.(q - p)`), or the triangles cross.
-//! - [`examine`] tries the edges first (Larsen, Gottschalk, Lin and Manocha, "Fast distance queries with rectangular
-//!   swept sphere volumes", ICRA 2000). It ends when a plane proves that no points are nearer than those found.
-//! - The result does not depend on that path. If the gap is not within [`TIGHT`] noises of the length, [`carefully`]
-//!   takes the best of *all* pairs of features and of all planes that the features span. Choice of normals, and
-//!   rounding: `docs/theory/solid-distance.md`.
+//! - [`nearest_below`] tries the edges first (Larsen, Gottschalk, Lin and Manocha, "Fast distance queries with
+//!   rectangular swept sphere volumes", ICRA 2000). It ends when a plane proves that no points are nearer than those
+//!   found.
+//! - The result does not depend on that path. If the gap is not within [`TIGHT`] noises of the length,
+//!   [`compare_all_features`] takes the best of *all* pairs of features and of all planes that the features span.
+//!   Choice of normals, and rounding: `docs/theory/solid-distance.md`.
 
 use glam::DVec3;
 
@@ -38,15 +39,15 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    fn between(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> Candidate {
+    fn candidate_from_weights(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> Candidate {
         let way = mean(g, weights[1]) - mean(f, weights[0]);
         Candidate { weights, way, square: way.length_squared() }
     }
 
     /// Returns this result with the better of two planes: its own, and the one with the normal `along`.
     fn with_plane(self, f: &Corners, g: &Corners, along: DVec3) -> Self {
-        let Some(normal) = unit(along) else { return self };
-        let gap = gap(f, g, normal);
+        let Some(normal) = unit_vector(along) else { return self };
+        let gap = gap_along(f, g, normal);
         if gap > self.gap { Self { normal, gap, ..self } } else { self }
     }
 }
@@ -73,33 +74,33 @@ pub fn length(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> f64 {
 
 /// Returns the gap from `f` to `g` along a vector, in multiples of its length; negative if they overlap along it.
 #[inline]
-pub(crate) fn gap(f: &Corners, g: &Corners, n: DVec3) -> f64 {
-    least(g, n) - largest(f, n)
+pub(crate) fn gap_along(f: &Corners, g: &Corners, n: DVec3) -> f64 {
+    least_coordinate(g, n) - largest_coordinate(f, n)
 }
 
 #[inline]
-pub(crate) fn largest([a, b, c]: &Corners, n: DVec3) -> f64 {
+pub(crate) fn largest_coordinate([a, b, c]: &Corners, n: DVec3) -> f64 {
     n.dot(*a).max(n.dot(*b)).max(n.dot(*c))
 }
 
 #[inline]
-pub(crate) fn least([a, b, c]: &Corners, n: DVec3) -> f64 {
+pub(crate) fn least_coordinate([a, b, c]: &Corners, n: DVec3) -> f64 {
     n.dot(*a).min(n.dot(*b)).min(n.dot(*c))
 }
 
 /// Normalises a vector, within `4 u`. `None` if its squared length is outside the range from `1e-280` to `1e280`.
-pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
+pub(crate) fn unit_vector(v: DVec3) -> Option<DVec3> {
     let square = v.length_squared();
     (square > 1e-280 && square < 1e280).then(|| v / square.sqrt())
 }
 
 /// Finds nearest points of two triangles, and a plane between; `None` if a plane shows that their distance is at least
 /// `limit`.
-pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Option<Nearest> {
+pub(crate) fn nearest_below(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Option<Nearest> {
     let end = limit + GAP * noise;
     match by_features(f, g, end) {
-        Quick::Beyond => None,
-        Quick::Found(found, along) => {
+        FeatureResult::Beyond => None,
+        FeatureResult::Found(found, along) => {
             let length = found.square.sqrt();
             let Candidate { weights, way, .. } = found;
             let none = Nearest { weights, length, normal: DVec3::X, gap: f64::NEG_INFINITY };
@@ -108,14 +109,14 @@ pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Optio
                 nearest = nearest.with_plane(f, g, way);
             }
             let tight = nearest.gap >= length - TIGHT * noise;
-            let nearest = if tight { nearest } else { carefully(f, g, nearest) };
+            let nearest = if tight { nearest } else { compare_all_features(f, g, nearest) };
             (nearest.gap < end).then_some(nearest)
         }
-        Quick::Crossing(found) => {
+        FeatureResult::Crossing(found) => {
             let Candidate { weights, square, .. } = found;
             let (normal, gap) = (DVec3::X, f64::NEG_INFINITY);
             let found = Nearest { weights, length: square.sqrt(), normal, gap };
-            let nearest = carefully(f, g, found);
+            let nearest = compare_all_features(f, g, found);
             (nearest.gap < end).then_some(nearest)
         }
     }
@@ -124,7 +125,7 @@ pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Optio
 /// Finds nearest points of two triangles, and a plane between.
 #[inline]
 pub fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
-    examine(f, g, f64::INFINITY, noise).unwrap_or_else(|| {
+    nearest_below(f, g, f64::INFINITY, noise).unwrap_or_else(|| {
         // No plane proves an infinite distance, so any points are valid here.
         let weights = [DVec3::X; 2];
         let length = length(f, g, weights);
@@ -133,7 +134,7 @@ pub fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
 }
 
 /// The result of [`by_features`].
-enum Quick {
+enum FeatureResult {
     /// A plane shows that no two points are nearer than the limit.
     Beyond,
     /// The nearest points, and a candidate for the normal of a plane between.
@@ -143,8 +144,8 @@ enum Quick {
 }
 
 /// Finds the nearest points, up to rounding errors.
-fn by_features(f: &Corners, g: &Corners, end: f64) -> Quick {
-    let (e, h) = (edges(f), edges(g));
+fn by_features(f: &Corners, g: &Corners, end: f64) -> FeatureResult {
+    let (e, h) = (edge_vectors(f), edge_vectors(g));
     let mut best = (f64::INFINITY, [0, 0], [0.0; 2]);
     let mut apart = false;
     for i in 0..3 {
@@ -167,34 +168,34 @@ fn by_features(f: &Corners, g: &Corners, end: f64) -> Quick {
             let rest = square - into + back;
             apart |= rest > 0.0;
             if rest > 0.0 && rest * rest >= end * end * square && is_beyond(f, g, way, end) {
-                return Quick::Beyond;
+                return FeatureResult::Beyond;
             }
         }
     }
     for turned in [false, true] {
         let (face, other) = if turned { (g, f) } else { (f, g) };
         match on_face(face, other) {
-            Side::Through => {}
-            Side::Off(normal) => {
+            PlaneSide::Through => {}
+            PlaneSide::Off(normal) => {
                 apart = true;
                 if is_beyond(f, g, if turned { -normal } else { normal }, end) {
-                    return Quick::Beyond;
+                    return FeatureResult::Beyond;
                 }
             }
-            Side::Foot(weights, corner, normal) => {
+            PlaneSide::Foot(weights, corner, normal) => {
                 let corner = DVec3::AXES[corner];
                 let weights = if turned { [corner, weights] } else { [weights, corner] };
                 let along = if turned { -normal } else { normal };
-                return Quick::Found(Nearest::between(f, g, weights), along);
+                return FeatureResult::Found(Nearest::candidate_from_weights(f, g, weights), along);
             }
         }
     }
-    if apart { edge_pair(f, g, best) } else { Quick::Crossing(edge_points(f, g, best)) }
+    if apart { edge_pair(f, g, best) } else { FeatureResult::Crossing(edge_points(f, g, best)) }
 }
 
 /// Checks whether a plane with this normal shows a distance of at least `end`.
 fn is_beyond(f: &Corners, g: &Corners, along: DVec3, end: f64) -> bool {
-    unit(along).is_some_and(|n| gap(f, g, n) >= end)
+    unit_vector(along).is_some_and(|n| gap_along(f, g, n) >= end)
 }
 
 /// Returns the points on two edges.
@@ -203,24 +204,24 @@ fn edge_points(
     g: &Corners,
     (_, [i, j], [s, t]): (f64, [usize; 2], [f64; 2]),
 ) -> Candidate {
-    Nearest::between(f, g, [along_edge(i, s), along_edge(j, t)])
+    Nearest::candidate_from_weights(f, g, [along_edge(i, s), along_edge(j, t)])
 }
 
-fn edge_pair(f: &Corners, g: &Corners, best: (f64, [usize; 2], [f64; 2])) -> Quick {
+fn edge_pair(f: &Corners, g: &Corners, best: (f64, [usize; 2], [f64; 2])) -> FeatureResult {
     let found = edge_points(f, g, best);
     let (_, [i, j], [s, t]) = best;
     let (e, h) = (f[(i + 1) % 3] - f[i], g[(j + 1) % 3] - g[j]);
     let inner = |x: f64| x > 0.0 && x < 1.0;
     let along = match (inner(s), inner(t)) {
-        (true, true) => across(e, h),
-        (true, false) => without(found.way, e),
-        (false, true) => without(found.way, h),
+        (true, true) => edge_normal(e, h),
+        (true, false) => without_component(found.way, e),
+        (false, true) => without_component(found.way, h),
         (false, false) => found.way,
     };
-    Quick::Found(found, if along.dot(found.way) < 0.0 { -along } else { along })
+    FeatureResult::Found(found, if along.dot(found.way) < 0.0 { -along } else { along })
 }
 
-fn edges([a, b, c]: &Corners) -> [DVec3; 3] {
+fn edge_vectors([a, b, c]: &Corners) -> [DVec3; 3] {
     [*b - *a, *c - *b, *a - *c]
 }
 
@@ -236,26 +237,26 @@ fn on_edges((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
     let way = b - a;
     let (ee, hh, eh) = (e.length_squared(), h.length_squared(), e.dot(h));
     let (we, wh) = (way.dot(e), way.dot(h));
-    let s = share(we * hh - wh * eh, ee * hh - eh * eh);
+    let s = clamped_ratio(we * hh - wh * eh, ee * hh - eh * eh);
     let t = (s * eh - wh) / hh;
     // An edge without length is represented by its first end.
     if t <= 0.0 || hh == 0.0 {
-        [share(we, ee), 0.0]
+        [clamped_ratio(we, ee), 0.0]
     } else if t >= 1.0 {
-        [share(we + eh, ee), 1.0]
+        [clamped_ratio(we + eh, ee), 1.0]
     } else {
         [s, t]
     }
 }
 
 /// Returns a quotient clamped to the range from 0 to 1; 0 if it is NaN.
-fn share(a: f64, b: f64) -> f64 {
+fn clamped_ratio(a: f64, b: f64) -> f64 {
     let x = a / b;
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
 /// The position of a triangle's corners relative to the plane of another one.
-enum Side {
+enum PlaneSide {
     /// The corners are on both sides, or on the plane.
     Through,
     /// All corners are on the side to which the normal points. The nearest one is not over the face.
@@ -264,24 +265,24 @@ enum Side {
     Foot(DVec3, usize, DVec3),
 }
 
-fn on_face(face: &Corners, other: &Corners) -> Side {
-    let normal = plane(face);
+fn on_face(face: &Corners, other: &Corners) -> PlaneSide {
+    let normal = face_normal(face);
     let heights = other.map(|c| normal.dot(c - face[0]));
     let up = heights[0] > 0.0;
     if heights.iter().any(|h| (*h > 0.0) != up || *h == 0.0) {
-        return Side::Through;
+        return PlaneSide::Through;
     }
     let towards = if up { normal } else { -normal };
     let nearest = (0..3).fold(0, |k, i| if heights[i].abs() < heights[k].abs() { i } else { k });
-    match foot(face, normal, other[nearest]) {
-        Some(weights) => Side::Foot(weights, nearest, towards),
-        None => Side::Off(towards),
+    match foot_weights(face, normal, other[nearest]) {
+        Some(weights) => PlaneSide::Foot(weights, nearest, towards),
+        None => PlaneSide::Off(towards),
     }
 }
 
 /// Returns a normal of a triangle, as long as the square of its edges. It is orthogonal to the longest edge.
-fn plane(corners: &Corners) -> DVec3 {
-    let [e, h, k] = edges(corners);
+fn face_normal(corners: &Corners) -> DVec3 {
+    let [e, h, k] = edge_vectors(corners);
     let (x, y, z) = (e.length_squared(), h.length_squared(), k.length_squared());
     let (n, longest) = if x >= y && x >= z {
         (e.cross(h), e)
@@ -290,12 +291,12 @@ fn plane(corners: &Corners) -> DVec3 {
     } else {
         (k.cross(e), k)
     };
-    without(n, longest)
+    without_component(n, longest)
 }
 
 /// Returns the weights of the point of a triangle below or above another point; `None` if that point is outside the
 /// triangle.
-fn foot([a, b, c]: &Corners, normal: DVec3, point: DVec3) -> Option<DVec3> {
+fn foot_weights([a, b, c]: &Corners, normal: DVec3, point: DVec3) -> Option<DVec3> {
     let (u, v, square) = (*b - *a, *c - *a, normal.length_squared());
     let solve = |x: DVec3| [x.cross(v).dot(normal) / square, u.cross(x).dot(normal) / square];
     let x = point - *a;
@@ -307,20 +308,20 @@ fn foot([a, b, c]: &Corners, normal: DVec3, point: DVec3) -> Option<DVec3> {
 }
 
 /// Returns a vector minus its component along another one.
-fn without(v: DVec3, edge: DVec3) -> DVec3 {
+fn without_component(v: DVec3, edge: DVec3) -> DVec3 {
     let square = edge.length_squared();
     if square > 0.0 { v - edge * (v.dot(edge) / square) } else { v }
 }
 
 /// Returns a vector orthogonal to two others, within `u` for the longer one.
-fn across(e: DVec3, h: DVec3) -> DVec3 {
+fn edge_normal(e: DVec3, h: DVec3) -> DVec3 {
     let longer = if e.length_squared() >= h.length_squared() { e } else { h };
-    without(e.cross(h), longer)
+    without_component(e.cross(h), longer)
 }
 
 /// Returns the best of all pairs of features and of all planes.
 #[cold]
-fn carefully(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
+fn compare_all_features(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
     let mut best = known;
     let mut take = |weights: [DVec3; 2]| {
         let length = length(f, g, weights);
@@ -339,7 +340,7 @@ fn carefully(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
         let on_f = [g[i], g[(i + 1) % 3]];
         points_over(f, on_f, |on, s| take([on, along_edge(i, s)]));
     }
-    for n in planes(f, g, best) {
+    for n in candidate_normals(f, g, best) {
         best = best.with_plane(f, g, n).with_plane(f, g, -n);
     }
     best
@@ -348,39 +349,39 @@ fn carefully(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
 /// Calls `tell` with points of a face and positions along an edge that may be nearest: below its first end, and where
 /// the edge passes through the face.
 fn points_over(face: &Corners, [a, b]: [DVec3; 2], mut tell: impl FnMut(DVec3, f64)) {
-    let normal = plane(face);
-    if let Some(on) = foot(face, normal, a) {
+    let normal = face_normal(face);
+    if let Some(on) = foot_weights(face, normal, a) {
         tell(on, 0.0);
     }
     let (x, y) = (normal.dot(a - face[0]), normal.dot(b - face[0]));
     if x * y < 0.0 {
-        let s = share(x, x - y);
-        if let Some(on) = foot(face, normal, a + (b - a) * s) {
+        let s = clamped_ratio(x, x - y);
+        if let Some(on) = foot_weights(face, normal, a + (b - a) * s) {
             tell(on, s);
         }
     }
 }
 
 /// Returns the positions of [`on_edges`] for edges that may be nearly parallel. The cross product of the edges depends
-/// on the angle itself and not on its square. Then each position is computed once more from the other.
+/// on the angle itself and not on its square. Then each position is computed again from the other.
 fn on_edges_carefully((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
     let (way, normal) = (b - a, e.cross(h));
-    let mut s = share(way.cross(h).dot(normal), normal.length_squared());
+    let mut s = clamped_ratio(way.cross(h).dot(normal), normal.length_squared());
     let mut t = 0.0;
     for _ in 0..2 {
-        t = share((e * s - way).dot(h), h.length_squared());
-        s = share((way + h * t).dot(e), e.length_squared());
+        t = clamped_ratio((e * s - way).dot(h), h.length_squared());
+        s = clamped_ratio((way + h * t).dot(e), e.length_squared());
     }
     [s, t]
 }
 
 /// Returns the normals of all planes that the features span, with either sign.
-fn planes(f: &Corners, g: &Corners, best: Nearest) -> impl Iterator<Item = DVec3> {
-    let (e, h) = (edges(f), edges(g));
+fn candidate_normals(f: &Corners, g: &Corners, best: Nearest) -> impl Iterator<Item = DVec3> {
+    let (e, h) = (edge_vectors(f), edge_vectors(g));
     let way = mean(g, best.weights[1]) - mean(f, best.weights[0]);
-    let faces = [plane(f), plane(g), way];
-    let products = e.into_iter().flat_map(move |a| h.map(|b| across(a, b)));
-    let beside = e.into_iter().chain(h).map(move |a| without(way, a));
+    let faces = [face_normal(f), face_normal(g), way];
+    let products = e.into_iter().flat_map(move |a| h.map(|b| edge_normal(a, b)));
+    let beside = e.into_iter().chain(h).map(move |a| without_component(way, a));
     faces.into_iter().chain(products).chain(beside)
 }
 
@@ -397,7 +398,7 @@ mod tests {
     use colltrans_kernel::noise::Noise;
 
     /// Returns triangles with ties, slivers and coplanar places. The second triangle need not be near the first one.
-    fn draw(random: &mut Random) -> [Corners; 2] {
+    fn random_triangles(random: &mut Random) -> [Corners; 2] {
         let kind = random.int(0, 7);
         let any = |r: &mut Random| DVec3::from_array([0; 3].map(|_| r.range(-1.0, 1.0)));
         let corners = |r: &mut Random| -> Corners {
@@ -434,12 +435,12 @@ mod tests {
 
     /// Moves the second triangle so that the gap along its plane is about `gap`.
     fn put_near(f: &Corners, g: Corners, gap: f64) -> Corners {
-        let Some(nearest) = examine(f, &g, f64::INFINITY, 1e-15) else { return g };
+        let Some(nearest) = nearest_below(f, &g, f64::INFINITY, 1e-15) else { return g };
         let by = nearest.normal * (gap - nearest.gap);
         g.map(|v| v + by)
     }
 
-    fn size(f: &Corners, g: &Corners) -> f64 {
+    fn configuration_size(f: &Corners, g: &Corners) -> f64 {
         let reach = |t: &Corners| t.iter().map(|v| v.length()).fold(0.0, f64::max);
         reach(f) + reach(g)
     }
@@ -449,13 +450,13 @@ mod tests {
         let mut random = Random::new(27);
         let (mut widest, mut apart, mut met) = (0.0_f64, 0, 0);
         for _ in 0..6_000 {
-            let [f, mut g] = draw(&mut random);
+            let [f, mut g] = random_triangles(&mut random);
             if random.one_in(2) {
                 let gap = [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3][random.int(0, 5) as usize];
                 g = put_near(&f, g, gap);
             }
-            let noise = Noise::of(size(&f, &g)).point();
-            let found = examine(&f, &g, f64::INFINITY, noise).expect("no limit");
+            let noise = Noise::of(configuration_size(&f, &g)).point();
+            let found = nearest_below(&f, &g, f64::INFINITY, noise).expect("no limit");
             let right = distance(&f.map(Vector::new), &g.map(Vector::new)).to_f64();
             let [lower, upper] = [found.gap - GAP * noise, found.length + LENGTH * noise];
             assert!(lower <= right && right <= upper, "{lower:e} {right:e} {upper:e}: {f:?} {g:?}");
@@ -473,15 +474,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dismissed_is_beyond() {
+    fn excluded_triangles_are_at_least_the_limit_apart() {
         let mut random = Random::new(28);
         let mut dismissed = 0;
         for _ in 0..4_000 {
-            let [f, g] = draw(&mut random);
-            let noise = Noise::of(size(&f, &g)).point();
+            let [f, g] = random_triangles(&mut random);
+            let noise = Noise::of(configuration_size(&f, &g)).point();
             let right = distance(&f.map(Vector::new), &g.map(Vector::new)).to_f64();
             let limit = right * random.range(0.5, 1.1);
-            if examine(&f, &g, limit, noise).is_none() {
+            if nearest_below(&f, &g, limit, noise).is_none() {
                 dismissed += 1;
                 assert!(right >= limit, "{right} {limit}: {f:?} {g:?}");
             } else {

@@ -332,9 +332,9 @@ fn segment_height_bound(a: DVec3, b: DVec3, off: f64) -> f64 {
 }
 
 /// Returns the least and the largest height.
-fn height_range(of: &[DVec3]) -> [f64; 2] {
+fn height_range(points: &[DVec3]) -> [f64; 2] {
     let ends = |[low, high]: [f64; 2], v: &DVec3| [low.min(v.z), high.max(v.z)];
-    of.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends)
+    points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends)
 }
 
 /// Returns a normal of the plane through three points.

@@ -85,8 +85,8 @@ impl Line<'_> {
 /// included.
 ///
 /// It does if the point past the place is inside. With `through`, the line passes from one side of the facet's plane to
-/// the other. Then it also enters within a face that no other facet touches there, because faces block however thin the
-/// wall behind them is.
+/// the other. Then it also enters within a face that no facet of another plane touches there, because faces block
+/// however thin the wall behind them is.
 pub(super) fn enters_body(
     scene: &Scene,
     line: &Line,

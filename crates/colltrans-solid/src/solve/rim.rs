@@ -332,8 +332,8 @@ impl Upright {
         let Some(end) = end else { return Some([*self.shadow_end(0), *self.shadow_end(1)]) };
         let upright = (0..3).find(|&k| self.leads[k] == Equal)?;
         let [a, b] = self.side_ends(upright);
-        let here = |c: &Corner| c.local == self.shadow_end(end).local;
-        if !here(a) && !here(b) {
+        let is_at_end = |c: &Corner| c.local == self.shadow_end(end).local;
+        if !is_at_end(a) && !is_at_end(b) {
             return None;
         }
         let apex = neighbour_corner(scene.side(self.moving), self.triangle as usize, upright)?;

@@ -1,7 +1,7 @@
 //! Pairs of facets with a minimum gap.
 //!
 //! - Each pair is the cast of a point at the difference of two triangles that is grown by a ball
-//!   ([`keep`](colltrans_convex::solve::keep)). The bounds of nodes are enlarged by the gap ([`Side::swell`]).
+//!   ([`keep`](colltrans_convex::solve::keep)). The bounds of nodes are enlarged by the gap (`Side::swell`).
 //! - The distance first falls below the gap between a facet that faces along the direction and one that faces against
 //!   it. Let `p`, `q` be the nearest points, and `n`, with `n.d > 0`, the normal from one to the other. If no facet at
 //!   `p` faced along `d`, `d` would lead into the body, but no part of the body is beyond the plane across `n`.
@@ -172,16 +172,16 @@ fn crossing_as_gap(
     Gap { least, largest: f64::INFINITY, signs: [Greater; 2], at: Meeting::Near, error }
 }
 
-/// Returns the weights of the nearest points of two facets after a travel `way` along the direction, and the normal
-/// from one to the other.
+/// Returns the weights of the nearest points of two facets after a travel `distance` along the direction, and the
+/// normal from one to the other.
 pub(crate) fn nearest_after(
     scene: &Scene,
     f: &[Corner; 3],
     g: &[Corner; 3],
-    way: f64,
+    distance: f64,
 ) -> ([DVec3; 2], DVec3) {
     let FacetDifference { moving, fixed, noise } = FacetDifference::new(scene, f, g);
-    let by = scene.setting.direction / scene.setting.length * way;
+    let by = scene.setting.direction / scene.setting.length * distance;
     let nearest = triangle::nearest(&moving.map(|p| p + by), &fixed, noise);
     (nearest.weights, nearest.normal)
 }

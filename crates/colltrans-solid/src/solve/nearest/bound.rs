@@ -3,7 +3,7 @@
 //! - Any unit vector `n` gives a bound for two convex sets: the least coordinate of one along `n` minus the largest of
 //!   the other. For boxes, three gaps along orthogonal vectors give a better one: the length of their vector.
 //! - Tried are the axes of the fixed body, those of the moving one, the axes of the nodes' slabs, and the direction of
-//!   the longer of the first two vectors. Cuts and slabs make a node smaller than its box.
+//!   the longer of the two gap vectors along the axes of a body. Cuts and slabs make a node smaller than its box.
 //! - A pose's matrix `R` is a rotation only up to rounding. A coordinate along the axis `n` of a slab in the body frame
 //!   is one along `R^-T n` in the setting frame, exactly. The three gaps along the columns of `R` are those of `R^T v`,
 //!   which is at most the norm of `R` times as long as `v`.

@@ -40,8 +40,8 @@ pub struct Nearest {
 
 impl Nearest {
     fn candidate_from_weights(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> Candidate {
-        let way = mean(g, weights[1]) - mean(f, weights[0]);
-        Candidate { weights, way, square: way.length_squared() }
+        let displacement = mean(g, weights[1]) - mean(f, weights[0]);
+        Candidate { weights, displacement, square: displacement.length_squared() }
     }
 
     /// Returns this result with the better of two planes: its own, and the one with the normal `along`.
@@ -56,7 +56,7 @@ impl Nearest {
 #[derive(Clone, Copy)]
 struct Candidate {
     weights: [DVec3; 2],
-    way: DVec3,
+    displacement: DVec3,
     square: f64,
 }
 
@@ -102,11 +102,11 @@ pub(crate) fn nearest_below(f: &Corners, g: &Corners, limit: f64, noise: f64) ->
         FeatureResult::Beyond => None,
         FeatureResult::Found(found, along) => {
             let length = found.square.sqrt();
-            let Candidate { weights, way, .. } = found;
+            let Candidate { weights, displacement, .. } = found;
             let none = Nearest { weights, length, normal: DVec3::X, gap: f64::NEG_INFINITY };
             let mut nearest = none.with_plane(f, g, along);
             if nearest.gap < length - TIGHT * noise {
-                nearest = nearest.with_plane(f, g, way);
+                nearest = nearest.with_plane(f, g, displacement);
             }
             let tight = nearest.gap >= length - TIGHT * noise;
             let nearest = if tight { nearest } else { compare_all_features(f, g, nearest) };
@@ -152,22 +152,23 @@ fn by_features(f: &Corners, g: &Corners, end: f64) -> FeatureResult {
         for j in 0..3 {
             let [s, t] = on_edges((f[i], e[i]), (g[j], h[j]));
             let (p, q) = (f[i] + e[i] * s, g[j] + h[j] * t);
-            let way = q - p;
-            let square = way.length_squared();
+            let displacement = q - p;
+            let square = displacement.length_squared();
             // The distance of an edge without length is NaN. It is never the nearest.
             if square.is_nan() || square >= best.0 {
                 continue;
             }
             best = (square, [i, j], [s, t]);
             // Distances by which the third corners extend into the gap between the edges.
-            let into = (f[(i + 2) % 3] - p).dot(way).max(0.0);
-            let back = (g[(j + 2) % 3] - q).dot(way).min(0.0);
+            let into = (f[(i + 2) % 3] - p).dot(displacement).max(0.0);
+            let back = (g[(j + 2) % 3] - q).dot(displacement).min(0.0);
             if into == 0.0 && back == 0.0 {
                 return edge_pair(f, g, best);
             }
             let rest = square - into + back;
             apart |= rest > 0.0;
-            if rest > 0.0 && rest * rest >= end * end * square && is_beyond(f, g, way, end) {
+            if rest > 0.0 && rest * rest >= end * end * square && is_beyond(f, g, displacement, end)
+            {
                 return FeatureResult::Beyond;
             }
         }
@@ -214,11 +215,11 @@ fn edge_pair(f: &Corners, g: &Corners, best: (f64, [usize; 2], [f64; 2])) -> Fea
     let inner = |x: f64| x > 0.0 && x < 1.0;
     let along = match (inner(s), inner(t)) {
         (true, true) => edge_normal(e, h),
-        (true, false) => without_component(found.way, e),
-        (false, true) => without_component(found.way, h),
-        (false, false) => found.way,
+        (true, false) => without_component(found.displacement, e),
+        (false, true) => without_component(found.displacement, h),
+        (false, false) => found.displacement,
     };
-    FeatureResult::Found(found, if along.dot(found.way) < 0.0 { -along } else { along })
+    FeatureResult::Found(found, if along.dot(found.displacement) < 0.0 { -along } else { along })
 }
 
 fn edge_vectors([a, b, c]: &Corners) -> [DVec3; 3] {
@@ -234,9 +235,9 @@ fn along_edge(k: usize, s: f64) -> DVec3 {
 /// Returns the positions, from 0 to 1, at which two segments are nearest, up to rounding. Each segment is given by a
 /// point and a vector.
 fn on_edges((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
-    let way = b - a;
+    let displacement = b - a;
     let (ee, hh, eh) = (e.length_squared(), h.length_squared(), e.dot(h));
-    let (we, wh) = (way.dot(e), way.dot(h));
+    let (we, wh) = (displacement.dot(e), displacement.dot(h));
     let s = clamped_ratio(we * hh - wh * eh, ee * hh - eh * eh);
     let t = (s * eh - wh) / hh;
     // An edge without length is represented by its first end.
@@ -365,12 +366,12 @@ fn points_over(face: &Corners, [a, b]: [DVec3; 2], mut tell: impl FnMut(DVec3, f
 /// Returns the positions of [`on_edges`] for edges that may be nearly parallel. The cross product of the edges depends
 /// on the angle itself and not on its square. Then each position is computed again from the other.
 fn on_edges_carefully((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
-    let (way, normal) = (b - a, e.cross(h));
-    let mut s = clamped_ratio(way.cross(h).dot(normal), normal.length_squared());
+    let (displacement, normal) = (b - a, e.cross(h));
+    let mut s = clamped_ratio(displacement.cross(h).dot(normal), normal.length_squared());
     let mut t = 0.0;
     for _ in 0..2 {
-        t = clamped_ratio((e * s - way).dot(h), h.length_squared());
-        s = clamped_ratio((way + h * t).dot(e), e.length_squared());
+        t = clamped_ratio((e * s - displacement).dot(h), h.length_squared());
+        s = clamped_ratio((displacement + h * t).dot(e), e.length_squared());
     }
     [s, t]
 }
@@ -378,10 +379,10 @@ fn on_edges_carefully((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2
 /// Returns the normals of all planes that the features span, with either sign.
 fn candidate_normals(f: &Corners, g: &Corners, best: Nearest) -> impl Iterator<Item = DVec3> {
     let (e, h) = (edge_vectors(f), edge_vectors(g));
-    let way = mean(g, best.weights[1]) - mean(f, best.weights[0]);
-    let faces = [face_normal(f), face_normal(g), way];
+    let displacement = mean(g, best.weights[1]) - mean(f, best.weights[0]);
+    let faces = [face_normal(f), face_normal(g), displacement];
     let products = e.into_iter().flat_map(move |a| h.map(|b| edge_normal(a, b)));
-    let beside = e.into_iter().chain(h).map(move |a| without_component(way, a));
+    let beside = e.into_iter().chain(h).map(move |a| without_component(displacement, a));
     faces.into_iter().chain(products).chain(beside)
 }
 

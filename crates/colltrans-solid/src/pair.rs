@@ -304,7 +304,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
 
     #[inline]
     fn is_nested(&self) -> Result<bool, QueryError> {
-        Ok(nested(&pair_scene(self)?).is_some())
+        Ok(nested_shell(&pair_scene(self)?).is_some())
     }
 }
 
@@ -372,7 +372,7 @@ fn distance_answer(
 ) -> Distance<Solid> {
     let origin = pair.bodies.translations[0];
     let mut steps = nearest.steps;
-    let place = meeting(scene, nearest.lower, &mut steps);
+    let place = find_common_point(scene, nearest.lower, &mut steps);
     let spot = nearest.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
     let (near, points) = match place {
         Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),

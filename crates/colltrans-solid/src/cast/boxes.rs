@@ -41,7 +41,8 @@ pub(super) fn answer_by_boxes(cast: &Cast<'_, Solid>) -> BoxAnswer {
     if let Some(free) = boxes.widest_normal(slack).and_then(|normal| free_by_boxes(cast, normal)) {
         return BoxAnswer::Free(free);
     }
-    let is_axis_aligned = permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
+    let is_axis_aligned =
+        permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
     if is_axis_aligned && boxes.are_touching(TOUCHING_NOISES * noise) {
         BoxAnswer::Touching
     } else {

@@ -95,7 +95,9 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
     let boxes_disjoint = never_overlap(scene, &projected(true, 0), &projected(false, 0));
     let walked = cover.walk(bodies, |_, nodes, reason| match reason {
         Reason::Disjoint if nodes == [0, 0] && boxes_disjoint => true,
-        Reason::Disjoint => apart(scene, &projected(true, nodes[0]), &projected(false, nodes[1])),
+        Reason::Disjoint => {
+            are_separated(scene, &projected(true, nodes[0]), &projected(false, nodes[1]))
+        }
         Reason::FaceToFace => {
             !scene.has_min_gap()
                 && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
@@ -107,7 +109,7 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
         _ => false,
     });
     walked.map_err(|entry| CertificateError::Cover { entry })?;
-    if !boxes_disjoint && nested(scene).is_some() {
+    if !boxes_disjoint && nested_shell(scene).is_some() {
         return Err(CertificateError::Start);
     }
     Ok(())

@@ -10,7 +10,7 @@ use crate::solve::overlap::{Overlap, is_overlap};
 use crate::solve::projected::Projected;
 use crate::solve::scene::{Scene, Side};
 use crate::solve::search::{Aim, Found, SLACK, Search};
-use crate::solve::separate::{HEIGHTS, farthest};
+use crate::solve::separate::{HEIGHTS, max_height_along};
 use colltrans_convex::answer::{Contact, Outcome};
 
 /// Maximum number of facets of one body that are compared.
@@ -19,7 +19,7 @@ const MAX_FACETS: usize = 4;
 const NEAR_NOISES: f64 = 64.0;
 /// Depth of an overlap, as a share of the size, up to which the facets around the contact are tested.
 const MAX_SHALLOW_DEPTH: f64 = 1e-3;
-/// Maximum number of vertices that are compared for the farthest one.
+/// Maximum number of vertices that are compared for the max_height_along one.
 const MAX_TOP_VERTICES: usize = 32;
 
 /// Result of the facets around the contact.
@@ -90,24 +90,25 @@ impl Surface<'_> {
         let Self { body, .. } = self;
         let local = side.matrix.transpose() * normal;
         let height = |v: u32| local.dot(body.hull.vertices()[v as usize]);
-        let end = height(from) - 2.0 * side.moved() - scene.noise - body.hull.plateau_depth();
+        let end =
+            height(from) - 2.0 * side.max_displacement() - scene.noise - body.hull.plateau_depth();
         let (mut top, mut count, mut next) = ([from; MAX_TOP_VERTICES], 1, 0);
         let mut reach = f64::NEG_INFINITY;
         while body.has_all_vertices && next < count {
-            reach = reach.max(local.dot(side.vertex(body.solid_vertex(top[next]))));
+            reach = reach.max(local.dot(side.offset_vertex(body.solid_vertex(top[next]))));
             for &v in body.hull.neighbours(top[next]) {
                 if height(v) < end || top[..count].contains(&v) {
                     continue;
                 }
                 if count == MAX_TOP_VERTICES {
-                    return farthest(side, normal);
+                    return max_height_along(side, normal);
                 }
                 top[count] = v;
                 count += 1;
             }
             next += 1;
         }
-        if body.has_all_vertices { reach } else { farthest(side, normal) }
+        if body.has_all_vertices { reach } else { max_height_along(side, normal) }
     }
 }
 
@@ -130,7 +131,7 @@ pub(super) fn gap_lower_bound(
 ) -> Option<f64> {
     let (proof, length) = (&contact.certificate, scene.setting.length);
     if scene.moving.aligned[2] && scene.fixed.aligned[2] {
-        let [p, q] = Projected::roots(scene);
+        let [p, q] = Projected::root_bounds(scene);
         let gap = box_gaps(&p, &q)[0];
         if gap >= (proof.lower * length).max(0.0) {
             return Some(gap);
@@ -196,7 +197,7 @@ fn facets_around_contact(
             &bodies[k],
             vertex(0).0,
             &point,
-            NEAR_NOISES * scene.noise + 2.0 * side.moved(),
+            NEAR_NOISES * scene.noise + 2.0 * side.max_displacement(),
         )
     };
     Some([facet_group(0)?, facet_group(1)?])

@@ -136,7 +136,8 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
     fn new(solids: &'h Cast<'a, Solid>, hulls: &'h Hulls<'a>) -> Option<Self> {
         let setting = &solids.setting;
         let noise = setting.noise().point();
-        let is_axis_aligned = permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
+        let is_axis_aligned =
+            permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
         let tolerance =
             solids.options.tolerance.unwrap_or(default_tolerance(is_axis_aligned, noise));
         let is_dented = |surface: &Surface| surface.body.dent > LATERAL_NOISES * noise;
@@ -190,7 +191,7 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
     /// hulls and rounding; `None` if no margin remains.
     fn separated_clearance(&self, plane: &Separation) -> Option<Clearance<Solid>> {
         let normal = plane.normal;
-        let closing = separate::closing(&self.solids.setting, normal, self.noise);
+        let closing = separate::closing_bound(&self.solids.setting, normal, self.noise);
         let margin = plane.margin - self.missing_extent() - HEIGHT_NOISES * self.noise - closing;
         let separation =
             self.solids.options.before.is_none().then_some(Separation { normal, margin });

@@ -103,8 +103,8 @@ impl Run {
     ///   three digits, or `~` for as many digits as matter.
     /// - `VALUE` is a JSON pointer into a row without its first slash, or a text in quotation marks. Without `=VALUE` the
     ///   head is the pointer.
-    /// - ` + POINTER` behind a pointer adds another figure, ` ÷ POINTER` divides by one, ` × FACTOR UNIT` scales the result
-    ///   and prints a unit.
+    /// - ` + POINTER` behind a pointer adds another figure. ` ÷ POINTER` divides by one, ` ÷ NUMBER UNIT` by a number and
+    ///   prints a unit, ` × NUMBER` multiplies.
     /// - ` (FORMAT=VALUE)` adds another figure in brackets. `?TEXT` replaces figures that are missing. `|` before a column
     ///   draws a bar.
     ///
@@ -164,6 +164,7 @@ struct Column {
     paths: Vec<String>,
     divisor: Option<String>,
     factor: f64,
+    scale: f64,
     unit: String,
     missing: String,
     bracketed: Option<Box<Column>>,
@@ -199,8 +200,9 @@ impl Column {
         let (rest, bracketed) = split(rest, " (");
         let (format, value) = split(rest, "=");
         let (value, factor) = split(value.unwrap_or(head), " × ");
-        let (factor, unit) = split(factor.unwrap_or("1"), " ");
         let (value, divisor) = split(value, " ÷ ");
+        let (scale, unit) = split(divisor.unwrap_or("1"), " ");
+        let scale = scale.parse::<f64>();
         let (width, digits) = split(format.trim_start_matches(['<', '>']), ".");
         let number = |digits: &str| digits.parse().expect("a number of digits");
         let style = match (width, digits.map(|digits| split(digits, "e"))) {
@@ -222,9 +224,10 @@ impl Column {
             width: width.parse().unwrap_or(0),
             style,
             paths: value.split(" + ").map(Into::into).collect(),
-            divisor: divisor.map(Into::into),
-            factor: factor.parse().expect("a factor"),
-            unit: unit.map_or(String::new(), |unit| format!(" {unit}")),
+            divisor: divisor.filter(|_| scale.is_err()).map(Into::into),
+            factor: factor.map_or(1.0, |factor| factor.parse().expect("a factor")),
+            unit: unit.filter(|_| scale.is_ok()).map_or(String::new(), |unit| format!(" {unit}")),
+            scale: scale.unwrap_or(1.0),
             missing: missing.unwrap_or(unknown).into(),
             bracketed: bracketed
                 .map(|other| Box::new(Self::new(&format!(":{}", other.trim_end_matches(')'))))),
@@ -238,7 +241,7 @@ impl Column {
         let found = |path: &String| row.pointer(&format!("/{path}")).filter(|v| !v.is_null());
         let number = |path| found(path).and_then(Value::as_f64).unwrap_or(f64::NAN);
         let sum: f64 = self.paths.iter().map(number).sum();
-        let value = self.factor * sum / self.divisor.as_ref().map_or(1.0, number);
+        let value = self.factor * sum / self.divisor.as_ref().map_or(self.scale, number);
         let text = match self.style {
             Style::Plain => match found(&self.paths[0]) {
                 Some(Value::String(text)) => text.clone(),
@@ -309,15 +312,13 @@ mod tests {
     #[test]
     fn columns_print_the_figures_that_they_name() {
         let row = json!({ "a": "x", "b": { "n": 3, "ns": 1500.0 }, "c": [0.25, null] });
-        let table = "a:<3;n:>3=b/n;|us:>8.2=b/ns × 1e-3 us;:>5.1=b/ns ÷ b/n;:>2.0=b/n + b/n;:>.1e=c/0;\
+        let table = "a:<3;n:>3=b/n;|us:>8.2=b/ns ÷ 1e3 us;:>5.1=b/ns ÷ b/n;:>2.0=b/n + b/n;:>.1e=c/0;\
             w:>4.1=c/1?none;:>4=\"who\";:,=b/ns (~=c/0)";
         let columns = columns(table);
         let printed = "x     3 |  1.50 us 500.0  6 2.5e-1 none  who 1,500 (0.25)";
         assert_eq!(line(&columns, |column| column.cell(&row)), printed);
-        assert_eq!(
-            line(&columns, |column| column.head.clone()),
-            "a     n |       us                  w"
-        );
+        let heads = line(&columns, |column| column.head.clone());
+        assert_eq!(heads, format!("a     n |       us{:>15}", "w"));
     }
 
     #[test]

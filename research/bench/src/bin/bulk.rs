@@ -86,7 +86,7 @@ fn main() -> ExitCode {
         let columns = "set:<8; body:<12=shape; n:>4=vertices; hit%:>4.0=hits × 100;
             |cast:>6.0=ns/cast; tracker:>7.0=ns/tracker; any:>6.0=ns/any direction; one:>6.0=ns/one direction;
             |any:>5.2=ns/cast ÷ ns/any direction; one:>5.2=ns/cast ÷ ns/one direction;
-            |faces:>6.0=make_ns × 1e-3; map:>5.0=map_ns × 1e-3; |any:>6.0=pays/0; one:>6.0=pays/1;
+            |faces:>6.0=make_ns ÷ 1e3; map:>5.0=map_ns ÷ 1e3; |any:>6.0=pays/0; one:>6.0=pays/1;
             |any:>5.1=left/0 × 100; one:>5.1=left/1 × 100; looks:>5.2";
         let legend = "ns a cast, the least of all turns; times as fast as the ordinary cast; us to make the faces and the map; \
              casts after which they have paid (any direction, one direction); % not answered by the faces";

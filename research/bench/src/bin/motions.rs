@@ -83,7 +83,7 @@ fn bolts(run: &mut Run) {
     let nut = solid(&thread([1.04, 0.1, 0.5], [0.6, 1.4], [24, 9], Some(1.5)));
     let [a, b] = [&bolt, &nut].map(|s| parry::triangle_mesh(s.vertices(), s.triangles()));
     let clock = Clock::new(1);
-    let columns = "bolt and nut:<20=name; ours ms:>9.0=ours_ns × 1e-6; parry ms:>9.0=parry_ns × 1e-6; ratio:>7.0; nodes:>8;
+    let columns = "bolt and nut:<20=name; ours ms:>9.0=ours_ns ÷ 1e6; parry ms:>9.0=parry_ns ÷ 1e6; ratio:>7.0; nodes:>8;
         leaves:>7; lower:>20.15; width:>9.1e?inf; parry:>20?none";
     run.table("", columns);
     for (name, factor) in [("its pitch", 1.0), ("5 % wrong", 0.95), ("no rise", 0.0)] {

@@ -28,8 +28,8 @@ const BLOCK: usize = 25;
 fn main() -> ExitCode {
     let about = "Measures distances of solids and of parry3d-f64's triangle meshes on the same settings; prints a table";
     harness::run("solid_distance", about, |run, meshes: &MeshArguments| {
-        let columns = "pair:<44=name; facets:>9; ours:>11.1=median_ns × 1e-3 us; p99:>11.0=p99_ns × 1e-3 us;
-            parry:>11.1=parry_median_ns × 1e-3 us; ratio:>6.2=ratio_of_medians; mean:>7.2=ratio; nodes:>9; leaves:>8;
+        let columns = "pair:<44=name; facets:>9; ours:>11.1=median_ns ÷ 1e3 us; p99:>11.0=p99_ns ÷ 1e3 us;
+            parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>6.2=ratio_of_medians; mean:>7.2=ratio; nodes:>9; leaves:>8;
             off:>9.1e";
         run.table("", columns);
         for (name, [a, b]) in pairs(meshes) {

@@ -43,8 +43,8 @@ fn main() -> ExitCode {
     let about =
         "Measures solids and parry3d-f64's triangle meshes on the same settings; prints a table";
     harness::run("solids", about, |run, meshes: &MeshArguments| {
-        let columns = "what:<48=name; facets:>9; ours:>11.2=median_ns × 1e-3 us; mean:>11.2=mean_ns × 1e-3 us;
-            p99:>9.0=p99_ns × 1e-3 us; parry:>11.1=parry_median_ns × 1e-3 us; ratio:>8.2=ratio_of_medians; hits:>5";
+        let columns = "what:<48=name; facets:>9; ours:>11.2=median_ns ÷ 1e3 us; mean:>11.2=mean_ns ÷ 1e3 us;
+            p99:>9.0=p99_ns ÷ 1e3 us; parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>8.2=ratio_of_medians; hits:>5";
         run.table("", columns);
         let convex = meshes.wants("convex").then(convex_pairs).into_iter().flatten();
         for pair in pairs(meshes).into_iter().chain(convex) {

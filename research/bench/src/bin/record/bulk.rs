@@ -17,7 +17,7 @@ pub(super) fn section(run: &Value) -> String {
     let columns = "casts:<=set; bodies:<=shape; vertices:,; cast:,=ns/cast; tracker:,=ns/tracker?-;
         any:,=ns/any direction (>.2=ns/cast ÷ ns/any direction)?-;
         one:,=ns/one direction (>.2=ns/cast ÷ ns/one direction)?-;
-        make:~=make_ns + map_ns × 1e-3; pays:,?never; left:>.1=left/0 × 100";
+        make:~=make_ns + map_ns ÷ 1e3; pays:,?never; left:>.1=left/0 × 100";
     format!(
         "\n## One pair, many times\n{}Of 4,096 casts of two bodies with one rotation of each: ns a cast with making it, the least of all turns. \
          *any*: by the faces of the Minkowski difference; *one*: with a map for one direction, which *rays* have not; \

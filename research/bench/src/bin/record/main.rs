@@ -286,8 +286,8 @@ fn solids(run: &Value) -> String {
             row["name"] = format!("{group}: {name}").trim_end_matches(": ?").into();
         }
     }
-    let columns = "what:<=name; facets:,; median:~=median_ns × 1e-3; mean:~=mean_ns × 1e-3;
-        parry, median:~=parry_median_ns × 1e-3; x:~=ratio_of_medians (~=ratio)";
+    let columns = "what:<=name; facets:,; median:~=median_ns ÷ 1e3; mean:~=mean_ns ÷ 1e3;
+        parry, median:~=parry_median_ns ÷ 1e3; x:~=ratio_of_medians (~=ratio)";
     let starts = "\n*Near*: settings that meet, started 0.02 times the sum of the radii before. *Near miss*: such \
          settings moved aside until they miss, by at most 0.01 times the sum. *Touching*: put \
          forward until they meet, and a millionth of the sum more. All others: 1.05 times it before each \

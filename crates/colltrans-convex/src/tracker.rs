@@ -15,7 +15,7 @@ use crate::answer::{
     Clearance, ContactRange, DirectionalDepth, Distance, Intersection, Outcome, StartedFrom, Steps,
 };
 use crate::body::ConvexPolyhedron;
-use crate::cast::{Cast, clearance_of, depth_of, intersection_by_casts, range_of};
+use crate::cast::{Cast, clearance_of, contact_range_by_casts, depth_of, intersection_by_casts};
 use crate::pair::{Pair, distance_from};
 use crate::setting::error::QueryError;
 use crate::solve::cta::options::Region;
@@ -160,7 +160,7 @@ impl<'a> Tracker<'a> {
     /// Returns the errors of [`Cast::contact_range`].
     pub fn contact_range(&mut self, cast: &Cast<'a>) -> Result<ContactRange, QueryError> {
         self.begin_cast_query(cast);
-        range_of(cast, |cast| self.cast_either_way(cast))
+        contact_range_by_casts(cast, |cast| self.cast_either_way(cast))
     }
 
     /// Computes [`Cast::clearance`], starting from the last answer.

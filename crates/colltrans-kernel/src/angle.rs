@@ -4,7 +4,8 @@
 //! two numbers. `r` is the remainder after `k` quarter turns, `|r|` at most slightly above `pi/4`.
 //!
 //! - *Reduction.* `pi/2` is a sum of three numbers, of which the first two have at most 33 bits (Cody and
-//!   Waite). `r` is a sum of two numbers with an error below `2^-100`.
+//!   Waite). `r` is a sum of two numbers. Its error is below `2^-100` if the second part of the angle is 0, and below
+//!   `2^-89` for the angles of motions.
 //! - *Series.* The Taylor series are used up to `r^17` and `r^18`.
 //!
 //! Sine and cosine have an absolute error below `2 u`. For a small angle, the relative error of the sine is

@@ -1,7 +1,8 @@
 //! Simultaneous descent of two bounding volume trees.
 //!
 //! A pair of nodes represents all pairs of items below the two nodes. [`node_to_split`] selects the node of a
-//! pair that is replaced by its children. All searches and all proofs use this rule. [`best_first`] splits
+//! pair that is replaced by its children. Searches and proofs over two trees use this rule; the search for
+//! self-intersections has its own. [`best_first`] splits
 //! the pair with the least bound next. Until it has a first result, it continues with the better child of the
 //! last pair, because a result limits the number of pairs in the queue.
 

@@ -68,7 +68,7 @@ pub struct Way<'p>([&'p Fine; 2]);
 impl Way<'_> {
     /// Computes the displacement in twice the usual precision.
     #[inline]
-    fn to_twice(&self) -> Vector<Twice> {
+    fn to_twice(self) -> Vector<Twice> {
         let [from, to] =
             self.0.map(|point| Vector(point.coordinates.map(|x| Twice::new(x.high, x.low))));
         to.minus(&from)
@@ -148,12 +148,12 @@ pub fn determinant([x, y, z]: [Way; 3]) -> NumberWithError {
 /// errors if rounding leaves the sign uncertain.
 #[inline]
 pub fn determinant_sign(ways: [Way; 3]) -> Option<Ordering> {
-    determinant(ways).sign().or_else(|| tracked_sign(ways))
+    determinant(ways).sign().or_else(|| tracked_determinant_sign(ways))
 }
 
 /// Returns the sign of `det[x, y, z]`, computed only with tracked errors; `None` if it is uncertain.
 #[inline]
-pub fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
+pub fn tracked_determinant_sign(ways: [Way; 3]) -> Option<Ordering> {
     tracked_determinant(&ways.map(|way| way.tracked_coordinates())).certain_sign()
 }
 

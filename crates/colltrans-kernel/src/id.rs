@@ -1,13 +1,12 @@
 //! Typed numbers of vertices, faces and obstacles.
 //!
 //! A body renumbers its vertices and faces, and the input has its own numbers. Mappings between the two
-//! numberings, and answers, use these types. Plain `u32` are numbers of the body where the meaning is
-//! unambiguous:
+//! numberings, and answers, use these types. Plain `u32` are used where the meaning is unambiguous:
 //!
-//! - corners that bodies are built and drawn from (`Solid::triangles`, `ConvexPolyhedron::face_vertices`),
-//! - positions of triangles in such a list,
-//! - walks over the edges of a body (`HalfEdge`, `ConvexPolyhedron::neighbours`), where each use would
-//!   convert the types.
+//! - corners that bodies are built from: positions in the vertices passed with them,
+//! - corners that bodies are drawn from (`Solid::triangles`, `ConvexPolyhedron::face_vertices`), positions of
+//!   triangles, faces passed to `ConvexPolyhedron`, and walks over edges (`HalfEdge`): numbers of the body,
+//! - `Solid::face_numbers`: values of `FaceId`.
 
 use std::fmt;
 

@@ -17,7 +17,7 @@ pub const SMALL: usize = 15;
 /// Number of limbs that suffices for every determinant.
 pub const LARGE: usize = 48;
 /// Number of limbs that suffices for the product of two determinants.
-pub const TWICE_LARGE: usize = 2 * LARGE;
+pub const PRODUCT_LIMBS: usize = 2 * LARGE;
 
 /// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]

@@ -7,19 +7,19 @@ use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::{Arc, OnceLock};
 
 /// Derived data that a body can store.
-pub trait Keepable: Any + Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
+pub trait DerivedData: Any + Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Returns the number of bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
 
 /// A slot for one value of derived data, which clones of the body share.
 #[derive(Debug, Clone, Default)]
-pub struct Kept(OnceLock<Arc<dyn Keepable>>);
+pub struct Kept(OnceLock<Arc<dyn DerivedData>>);
 
 impl Kept {
     /// Returns the stored value, or stores `make()` in an empty slot. `None` if the slot contains a value of
     /// another type.
-    pub fn get_or_make<T: Keepable>(&self, make: impl FnOnce() -> T) -> Option<&T> {
+    pub fn get_or_make<T: DerivedData>(&self, make: impl FnOnce() -> T) -> Option<&T> {
         let kept: &dyn Any = &**self.0.get_or_init(|| Arc::new(make()));
         kept.downcast_ref()
     }

@@ -18,7 +18,7 @@ use crate::error::MotionError;
 use crate::error_free::{difference_error, product_error};
 use crate::noise;
 use crate::pose::Pose;
-use crate::range::{MIN_MAGNITUDE, in_exact_range};
+use crate::range::{MIN_MAGNITUDE, is_in_exact_range};
 
 /// Maximum sine of half the angle of a rotation between two poses that counts as rounding error of 0.
 const NO_ROTATION: f64 = 1e-15;
@@ -183,10 +183,10 @@ impl Motion {
     }
 
     /// Returns the screw motion from one pose to another by the smaller angle. It ends at `to` up to
-    /// rounding.
+    /// rounding and the defects of the two matrices (1e-6).
     ///
     /// # Errors
-    /// [`MotionError::Number`] if the axis or the displacement is out of range.
+    /// [`MotionError::Number`] if the arm of the axis or the displacement along the axis is out of range.
     #[inline]
     pub fn between(from: Pose, to: Pose) -> Result<Self, MotionError> {
         Self::through(&[from, to])
@@ -309,7 +309,7 @@ impl Piece {
     /// this point.
     #[inline]
     #[doc(hidden)]
-    pub fn velocity_of(&self, from_axis: DVec3) -> DVec3 {
+    pub fn point_velocity(&self, from_axis: DVec3) -> DVec3 {
         self.velocity + self.axis.cross(from_axis) * self.rate
     }
 
@@ -374,7 +374,7 @@ fn unit_vector(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> 
 /// Checks that a vector is finite and in the exact range. Components below the range count as 0.
 #[inline]
 fn check_vector(what: &'static str, vector: DVec3) -> Result<(), MotionError> {
-    if in_exact_range(flush_tiny(vector)) {
+    if is_in_exact_range(flush_tiny(vector)) {
         Ok(())
     } else {
         Err(MotionError::Number { what, vector })

@@ -172,14 +172,14 @@ impl Noise {
     /// Returns the margin by which the length of a weighted mean of points of `M` is raised to an upper
     /// bound.
     #[inline]
-    pub fn mean_raised(self) -> f64 {
+    pub fn mean_length_margin(self) -> f64 {
         MEAN_NOISES[0] * self.0
     }
 
     /// Returns the margin by which a check raises the length of a weighted mean of points of `M`, which it
     /// computes nearly without rounding.
     #[inline]
-    pub fn mean_checked(self) -> f64 {
+    pub fn checked_mean_length_margin(self) -> f64 {
         MEAN_NOISES[1] * self.0
     }
 
@@ -193,27 +193,27 @@ impl Noise {
     /// Returns the margin by which a check raises the length of a weighted mean of points of `M` minus a
     /// translation, before it compares the length with a minimum gap.
     #[inline]
-    pub fn mean_kept(self) -> f64 {
+    pub fn checked_gap_margin(self) -> f64 {
         GAP_NOISES * self.0
     }
 
     /// Returns the margin by which the height of a point of `M` is lowered to a lower bound.
     #[inline]
-    pub fn height_lowered(self) -> f64 {
+    pub fn height_margin(self) -> f64 {
         HEIGHT_NOISES[0] * self.0
     }
 
     /// Returns the margin by which a check lowers the height of a point of `M`, which it computes nearly
     /// without rounding.
     #[inline]
-    pub fn height_checked(self) -> f64 {
+    pub fn checked_height_margin(self) -> f64 {
         HEIGHT_NOISES[1] * self.0
     }
 
     /// Returns the minimum distance of an upper bound along `n` above the weighted mean of the corners, if a
     /// check computes the mean without rounding.
     #[inline]
-    pub fn above_mean(self) -> f64 {
+    pub fn checked_upper_bound_margin(self) -> f64 {
         (UPPER_BOUND_NOISES - 1.0) * self.0
     }
 
@@ -226,7 +226,7 @@ impl Noise {
     /// Returns the maximum distance of the witness points of a certificate for bodies that were widened
     /// laterally.
     #[inline]
-    pub fn residual_widened(self) -> f64 {
+    pub fn widened_residual_tolerance(self) -> f64 {
         WIDENING_CORNER * self.widest() + BOUND_NOISES * self.0
     }
 }

@@ -81,7 +81,8 @@ impl PlaneTree {
     }
 
     /// Returns the least depth of a point of the body below a plane, or any depth not greater than `enough`.
-    /// `near` is the plane to begin with, and is set to the plane with the returned depth. The number of
+    /// `near` is the plane to begin with, as its position in the order of the tree (0 is always valid if there are
+    /// planes), and is set to the plane with the returned depth. The number of
     /// visited planes and nodes is added to `looks`.
     pub fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize, looks: &mut usize) -> f64 {
         let depth = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(p);

@@ -11,7 +11,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::error::PoseError;
-use crate::range::{MIN_MAGNITUDE, in_exact_range};
+use crate::range::{MIN_MAGNITUDE, is_in_exact_range};
 
 /// Maximum difference of the length of a quaternion from 1, and of an entry of `R^T R` from that of the
 /// identity. Single precision is accepted.
@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-6;
 
 /// Factor by which a pose stretches a length at most, because its entries may differ from a rotation by
 /// [`TOLERANCE`].
-pub const STRETCHED: f64 = 1.0 + 4.0 * TOLERANCE;
+pub const MAX_STRETCH: f64 = 1.0 + 4.0 * TOLERANCE;
 
 /// Maximum difference of the length of a quaternion, or of an entry of `R^T R`, that [`Pose::from_rounded`]
 /// and [`Pose::from_rounded_matrix`] accept. Two written digits are sufficient.
@@ -79,12 +79,13 @@ impl Pose {
         Ok(Self { matrix: flush_tiny(matrix_from_quaternion(rotation)), translation })
     }
 
-    /// Builds a pose from the nine entries of a rotation matrix, which are stored unchanged, and a
-    /// translation in world units.
+    /// Builds a pose from the nine entries of a rotation matrix and a translation in world units.
+    ///
+    /// The entries are stored unchanged, except that magnitudes below `2^-200` become 0.
     ///
     /// # Errors
-    /// [`PoseError::NotARotationMatrix`] with the defect, if the matrix differs from a rotation by more than
-    /// 1e-6. [`PoseError::Translation`] if the translation is not finite or out of range.
+    /// [`PoseError::NotARotationMatrix`] with the defect, if an entry of `R^T R` differs from that of the identity by
+    /// more than 1e-6, or the determinant is negative. [`PoseError::Translation`] if the translation is not finite or out of range.
     ///
     /// ```
     /// use colltrans::Pose;
@@ -350,7 +351,11 @@ pub fn rotation_defect(matrix: DMat3) -> f64 {
 
 #[inline]
 fn check_translation(translation: DVec3) -> Result<(), PoseError> {
-    if in_exact_range(translation) { Ok(()) } else { Err(PoseError::Translation { translation }) }
+    if is_in_exact_range(translation) {
+        Ok(())
+    } else {
+        Err(PoseError::Translation { translation })
+    }
 }
 
 /// Replaces entries of a rotation below `2^-200` by zero, because they are rounding noise of zero. Products

@@ -19,6 +19,6 @@ pub fn without_traces(v: DVec3) -> DVec3 {
 
 /// Checks whether all components are finite and zero or in the exact range.
 #[inline]
-pub fn in_exact_range(v: DVec3) -> bool {
+pub fn is_in_exact_range(v: DVec3) -> bool {
     v.to_array().into_iter().all(|c| c == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&c.abs()))
 }

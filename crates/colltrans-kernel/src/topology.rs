@@ -110,7 +110,7 @@ impl Topology {
     }
 
     /// Drops the links, which the next access rebuilds.
-    pub fn let_go_of_links(&mut self) {
+    pub fn drop_links(&mut self) {
         self.links.take();
     }
 

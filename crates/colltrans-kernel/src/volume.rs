@@ -36,7 +36,7 @@ pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
 /// Returns the sign of `det[a, b, c]` for points as `TwoBodies::difference` rounds them, with an error below
 /// `9 u size` each. `None` if rounding leaves it uncertain.
 #[inline]
-pub fn rounded_sign([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
+pub fn rounded_origin_side([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
     let det = a.dot(b.cross(c));
     (det.abs() > ROUNDED_POINT_ERROR * (size * size * size)).then(|| det.total_cmp(&0.0))
 }

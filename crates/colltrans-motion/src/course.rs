@@ -137,7 +137,7 @@ impl<'a, B: Hull> Course<'a> for Span<'a, B> {
 
     fn velocity(&self, at: &Instant<'a, [Moved; 2], B>, which: usize, point: DVec3) -> DVec3 {
         let moved = &at.moved[which];
-        self.piece(which).velocity_of(moved.arm + moved.rotation * point)
+        self.piece(which).point_velocity(moved.arm + moved.rotation * point)
     }
 
     fn bend(

@@ -84,12 +84,12 @@ use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
 pub use colltrans_convex::body::Moving;
 use colltrans_convex::body::{ConvexPolyhedron, Hull};
-use colltrans_convex::setting::check_keep;
+use colltrans_convex::setting::check_min_gap;
 use colltrans_convex::setting::error::{QueryError, Stalled};
 pub use colltrans_kernel::error::MotionError;
 pub use colltrans_kernel::motion::{Motion, Piece as MotionPiece};
 use colltrans_kernel::noise::Noise;
-use colltrans_kernel::pose::STRETCHED;
+use colltrans_kernel::pose::MAX_STRETCH;
 use colltrans_kernel::range::MAX_MAGNITUDE;
 use colltrans_solid::StartOverlap;
 use colltrans_solid::body::Solid;
@@ -153,7 +153,7 @@ impl MotionCast<'_> {
     /// # Errors
     /// A gap that is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
-        check_keep(gap)?;
+        check_min_gap(gap)?;
         Ok(Self { keep: gap, ..self })
     }
 
@@ -193,7 +193,7 @@ impl MotionCast<'_> {
     /// Returns how far the points that both bodies were made of may be beyond their faces; 0 if they are not.
     fn left_out(&self) -> f64 {
         let beyond = |body: &ConvexPolyhedron| body.hull_error() + body.input_excess();
-        (beyond(self.moving.body) + beyond(self.fixed.body)) * STRETCHED
+        (beyond(self.moving.body) + beyond(self.fixed.body)) * MAX_STRETCH
     }
 
     /// Returns when the bodies certainly meet, if they do as solids from this time on: never for certain, if what the

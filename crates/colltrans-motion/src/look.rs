@@ -123,7 +123,7 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
             return (near.distance + error <= keep).then_some(Met::Near(near));
         }
         let enough = deep_enough(keep, error);
-        let depth = pair.depth_beyond(enough).ok()?;
+        let depth = pair.depth_until(enough).ok()?;
         (depth.lower > enough).then(|| Met::Deep(Box::new(depth)))
     }
 }
@@ -152,7 +152,7 @@ impl ConvexLooker {
             PlaneGap { normal: -depth.direction, gap: -depth.upper }
         });
         let there =
-            plane.map_or_else(VertexPair::default, |plane| difference.lowest_pair(plane.normal));
+            plane.map_or_else(VertexPair::default, |plane| difference.support_pair(plane.normal));
         (plane, ([there; 3], [1.0, 0.0, 0.0]))
     }
 }

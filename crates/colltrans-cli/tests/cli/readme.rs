@@ -88,9 +88,10 @@ fn guides_show_what_commands_print() {
                 continue;
             }
             let folder = TemporaryFolder::new();
-            let placed = |word: &str| match word.ends_with(".svg") {
-                true => folder.path().join(word).to_str().unwrap().to_owned(),
-                false => word.to_owned(),
+            let placed = |word: &str| {
+                let is_picture = Path::new(word).extension().is_some_and(|kind| kind == "svg");
+                let place = if is_picture { folder.path().join(word) } else { word.into() };
+                place.to_str().unwrap().to_owned()
             };
             let printed =
                 colltrans(&root()).args(arguments.split_whitespace().map(placed)).output().unwrap();

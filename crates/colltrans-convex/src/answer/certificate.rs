@@ -19,7 +19,7 @@ use crate::setting::error::QueryError;
 use crate::setting::{Setting, VertexPair};
 use colltrans_kernel::extent;
 use colltrans_kernel::noise::{self, Noise};
-use colltrans_kernel::pose::STRETCHED;
+use colltrans_kernel::pose::MAX_STRETCH;
 
 /// Factor that exceeds the rounding errors of a few operations.
 const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -343,7 +343,7 @@ impl Certificate {
             Some(Ok(upper)) => upper,
             Some(Err(error)) if !noise.is_slight(keep) => return Err(error),
             // Bodies in contact are within any gap. For a slight gap, contact may be the only provable claim.
-            _ => self.proven_upper(setting)? + noise.above_mean() / steepness,
+            _ => self.proven_upper(setting)? + noise.checked_upper_bound_margin() / steepness,
         };
         let lower = proven_lower(setting, normal, keep)?;
         // For a slight gap, the upper bound may be that of contact. The bounds then differ by the gap as
@@ -371,7 +371,8 @@ impl Certificate {
         noise: Noise,
     ) -> Result<f64, CertificateError> {
         let mean = self.weighted_mean(setting)?;
-        let residual = (mean - setting.direction * self.upper).length() + noise.mean_kept();
+        let residual =
+            (mean - setting.direction * self.upper).length() + noise.checked_gap_margin();
         // An infinite bound claims nothing. Its residual is not finite.
         if self.upper == f64::INFINITY || residual <= keep {
             Ok(self.upper)
@@ -388,8 +389,11 @@ impl Certificate {
         let noise = setting.noise();
         // Certificates of widened bodies have no upper bound, and their witness points may differ by the
         // widening.
-        let tolerance =
-            if self.upper == f64::INFINITY { noise.residual_widened() } else { noise.residual() };
+        let tolerance = if self.upper == f64::INFINITY {
+            noise.widened_residual_tolerance()
+        } else {
+            noise.residual()
+        };
         if residual <= tolerance {
             Ok(upper)
         } else {
@@ -477,7 +481,7 @@ pub fn check_lateral_normal(setting: &Setting, normal: DVec3) -> Result<(), Cert
 pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
     let [low, high] = extent::dot(normal, setting.direction);
     let along = low.abs().max(high.abs()) / setting.length * ROUND_UP;
-    let closing = along * (setting.scale() * STRETCHED) * ROUND_UP;
+    let closing = along * (setting.scale() * MAX_STRETCH) * ROUND_UP;
     let gap = (setting.distance_along(normal) - closing).next_down();
     let [least, most] = extent::dot(normal, normal);
     let across = if gap > 0.0 {

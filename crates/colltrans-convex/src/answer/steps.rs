@@ -53,7 +53,7 @@ pub struct Steps {
 impl Steps {
     /// Builds the work of a cast that made `pivots` exchanges and nothing else.
     #[doc(hidden)]
-    pub fn of_pivots(pivots: u32, started_from: StartedFrom) -> Self {
+    pub fn from_pivots(pivots: u32, started_from: StartedFrom) -> Self {
         Self { pivots, started_from, ..Self::default() }
     }
 

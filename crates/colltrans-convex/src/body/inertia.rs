@@ -82,7 +82,7 @@ impl Inertia {
 
     /// Returns the product `L^T m`.
     #[inline]
-    pub(crate) fn axes_by_factor(&self, m: &DMat3) -> DMat3 {
+    pub(crate) fn transposed_factor_product(&self, m: &DMat3) -> DMat3 {
         let l = &self.factor;
         let column = |c: DVec3| {
             DVec3::new(l.x_axis.dot(c), l.y_axis.y * c.y + l.y_axis.z * c.z, l.z_axis.z * c.z)

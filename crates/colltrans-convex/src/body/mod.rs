@@ -9,11 +9,11 @@ mod moving;
 pub(crate) mod placed;
 
 #[doc(hidden)]
-pub use colltrans_kernel::kept::{Keepable, Kept};
+pub use colltrans_kernel::kept::{DerivedData, Kept};
 pub use colltrans_kernel::topology::HalfEdge;
 pub use colltrans_kernel::{Aabb, FaceId, InputFacet, InputVertex, ObstacleId, Pose, VertexId};
 pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
-pub(crate) use convex::{FAN, LargeFace, MOST_RIMS, Rim, greatest_near};
+pub(crate) use convex::{FAN, LargeFace, MAX_RIMS, Rim, cyclic_maximum};
 pub(crate) use feature::feature;
 pub use feature::{Feature, Features};
 pub use hull::Hull;

@@ -81,7 +81,7 @@ pub trait Numbered {
     /// Returns the input number of each vertex of the body.
     fn inputs(&self) -> &[InputVertex];
     /// Returns the corners of a face as positions among the body's vertices.
-    fn corners_of_face(&self, face: u32) -> Vec<u32>;
+    fn face_corner_positions(&self, face: u32) -> Vec<u32>;
 }
 
 /// Returns the vertices of a feature as positions among the body's vertices.
@@ -93,7 +93,9 @@ fn feature_vertices<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
     match feature {
         Feature::Vertex(v) => vec![position(v)],
         Feature::Edge(ends) => ends.map(position).to_vec(),
-        Feature::Face(face) => body.corners_of_face(face.0).into_iter().map(VertexId).collect(),
+        Feature::Face(face) => {
+            body.face_corner_positions(face.0).into_iter().map(VertexId).collect()
+        }
     }
 }
 
@@ -102,7 +104,7 @@ impl Numbered for ConvexPolyhedron {
         self.input_indices()
     }
 
-    fn corners_of_face(&self, face: u32) -> Vec<u32> {
+    fn face_corner_positions(&self, face: u32) -> Vec<u32> {
         self.face_vertices(face).collect()
     }
 }

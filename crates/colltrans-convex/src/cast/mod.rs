@@ -28,7 +28,9 @@ use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{TrackerUpdate, WarmStart, keep, search};
 pub use contact::WitnessPoints;
-pub use multi_cast::{clearance_of, common_end, depth_of, intersection_by_casts, range_of};
+pub use multi_cast::{
+    clearance_of, common_translation, contact_range_by_casts, depth_of, intersection_by_casts,
+};
 #[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
 pub use sideways::verified_overlap;
@@ -453,7 +455,7 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<ContactRange, QueryError> {
-        range_of(self, |cast| cast.first_contact_observed(observer))
+        contact_range_by_casts(self, |cast| cast.first_contact_observed(observer))
     }
 
     /// Computes [`Self::clearance`] and reports each step to an observer.
@@ -507,7 +509,7 @@ impl CastBody for ConvexPolyhedron {
     }
 
     fn contact_range(cast: &Cast<'_>) -> Result<ContactRange, QueryError> {
-        range_of(cast, Cast::first_contact)
+        contact_range_by_casts(cast, Cast::first_contact)
     }
 
     fn clearance(cast: &Cast<'_>) -> Result<Clearance, QueryError> {

@@ -14,7 +14,7 @@ use colltrans_kernel::range::MIN_MAGNITUDE;
 ///
 /// # Errors
 /// Returns the errors of `run`.
-pub fn range_of<'a>(
+pub fn contact_range_by_casts<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<ContactRange, QueryError> {
@@ -47,7 +47,7 @@ pub fn range_of<'a>(
 /// It is the mean of the estimates, clamped to the intersection of both ends' bounds. This intersection is
 /// not empty, because both are correct bounds of the same translation.
 #[inline]
-pub fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
+pub fn common_translation(first: Bounded, last: Bounded) -> Option<f64> {
     (first.value > last.value).then(|| {
         let [low, high] = [first.lower.max(last.lower), first.upper.min(last.upper)];
         f64::midpoint(first.value, last.value).min(high).max(low)
@@ -56,7 +56,7 @@ pub fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
 
 /// Replaces estimates in the wrong order by their common translation.
 fn order_range_ends(first: &mut Contact, last: &mut Contact) {
-    if let Some(both) = common_end(first.bounded(), last.exit()) {
+    if let Some(both) = common_translation(first.bounded(), last.exit()) {
         (first.translation, last.translation) = (both, -both);
     }
 }

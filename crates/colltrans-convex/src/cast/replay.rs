@@ -22,7 +22,7 @@ use colltrans_kernel::pose::PoseRecord;
 #[non_exhaustive]
 pub enum CaseError {
     /// The file is not JSON, or lacks a field.
-    #[error("not a saved query: {}", what_is_wrong(.0))]
+    #[error("not a saved query: {}", json_error_message(.0))]
     Syntax(#[from] serde_json::Error),
     /// The file was written by another version.
     #[error("the format is {found:?}, not {known:?}")]
@@ -50,7 +50,7 @@ pub enum CaseError {
 
 /// Returns the message of a parser error in terms of the file, with line and column. An input error keeps the
 /// parser's message.
-pub fn what_is_wrong(error: &serde_json::Error) -> String {
+pub fn json_error_message(error: &serde_json::Error) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {
         Category::Io => return error.to_string(),

@@ -41,7 +41,7 @@ impl Pair<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn depth(&self) -> Result<Depth, QueryError> {
-        self.depth_beyond(f64::INFINITY)
+        self.depth_until(f64::INFINITY)
     }
 
     /// Computes the penetration depth as [`Self::depth`] does, but ends as soon as the lower bound exceeds
@@ -51,7 +51,7 @@ impl Pair<'_> {
     /// Returns [`QueryError::NotConverged`] if the search ends without an answer.
     #[doc(hidden)]
     #[inline]
-    pub fn depth_beyond(&self, enough: f64) -> Result<Depth, QueryError> {
+    pub fn depth_until(&self, enough: f64) -> Result<Depth, QueryError> {
         let difference = Difference::new(&self.bodies);
         let mut found = nearest_points(&difference, &difference.depth_start(), None);
         found.supports += 1;

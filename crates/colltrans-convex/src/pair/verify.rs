@@ -37,7 +37,7 @@ pub(super) fn verify_points(
     }
     let sum: f64 = weights.iter().sum();
     let mean: DVec3 = terms.iter().zip(weights).map(|(m, w)| m.point() * (w / sum)).sum();
-    let proven = (mean.length() + bodies.noise().mean_checked()).next_up();
+    let proven = (mean.length() + bodies.noise().checked_mean_length_margin()).next_up();
     if *distance >= proven {
         Ok(proven)
     } else {
@@ -83,7 +83,8 @@ fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, Certi
         let [_, square] = extent::dot(*normal, *normal);
         let length = square.sqrt().next_up();
         for corner in corners {
-            let height = normal.dot(points[*corner as usize]) - bodies.noise().height_checked();
+            let height =
+                normal.dot(points[*corner as usize]) - bodies.noise().checked_height_margin();
             least = least.min((height / length).next_down());
         }
     }

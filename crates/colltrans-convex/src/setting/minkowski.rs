@@ -145,9 +145,9 @@ impl<'a> MinkowskiDifference<'a> {
     /// from the pair `near`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
-    pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
-        let moving = self.setting.moving.support_from(self.in_moving(normal), near.moving.0);
-        let fixed = self.setting.fixed.support_from(-self.in_fixed(normal), near.fixed.0);
+    pub(crate) fn support_point_from(&self, normal: DVec3, near: VertexPair) -> Point {
+        let moving = self.setting.moving.support_point_from(self.in_moving(normal), near.moving.0);
+        let fixed = self.setting.fixed.support_point_from(-self.in_fixed(normal), near.fixed.0);
         self.point(VertexPair::of(moving, fixed), normal)
     }
 
@@ -159,13 +159,13 @@ impl<'a> MinkowskiDifference<'a> {
 
     /// Transforms a normal from the moving body's frame to the shadow frame.
     #[inline]
-    pub(crate) fn shadow_of_moving(&self, normal: DVec3) -> DVec3 {
+    pub(crate) fn moving_normal_to_shadow(&self, normal: DVec3) -> DVec3 {
         transpose_mul(&self.moving_from_shadow, normal)
     }
 
     /// Transforms a normal from the fixed body's frame to the shadow frame.
     #[inline]
-    pub(crate) fn shadow_of_fixed(&self, normal: DVec3) -> DVec3 {
+    pub(crate) fn fixed_normal_to_shadow(&self, normal: DVec3) -> DVec3 {
         transpose_mul(&self.fixed_from_shadow, normal)
     }
 
@@ -174,7 +174,7 @@ impl<'a> MinkowskiDifference<'a> {
     ///
     /// Returns `None` if the bodies have rotated relative to each other by more than the limit
     /// `MIN_COSINE_BETWEEN_QUERIES`.
-    pub(crate) fn shadow_from_bodies(
+    pub(crate) fn body_normals_to_shadow(
         &self,
         [in_moving, in_fixed]: [DVec3; 2],
     ) -> Option<[DVec3; 2]> {
@@ -233,8 +233,8 @@ impl<'a> MinkowskiDifference<'a> {
     #[inline]
     pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
-        let a = Symmetric::gram(&moving.axes_by_factor(&self.moving_from_shadow));
-        let b = Symmetric::gram(&fixed.axes_by_factor(&self.fixed_from_shadow));
+        let a = Symmetric::gram(&moving.transposed_factor_product(&self.moving_from_shadow));
+        let b = Symmetric::gram(&fixed.transposed_factor_product(&self.fixed_from_shadow));
         (self.center(), [a, b])
     }
 

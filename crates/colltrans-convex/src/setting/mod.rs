@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use crate::body::{ConvexPolyhedron, Placed, VertexId};
 use crate::setting::error::QueryError;
-use colltrans_kernel::range::{MAX_MAGNITUDE, in_exact_range};
+use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range};
 pub use two_bodies::TwoBodies;
 
 /// A vertex of each body.
@@ -53,7 +53,7 @@ impl VertexPair {
 /// exact range.
 #[inline]
 pub fn check_direction(direction: DVec3) -> Result<(), QueryError> {
-    if direction == DVec3::ZERO || !in_exact_range(direction) {
+    if direction == DVec3::ZERO || !is_in_exact_range(direction) {
         return Err(QueryError::Direction { direction });
     }
     Ok(())
@@ -77,7 +77,7 @@ pub fn check_length(length: f64) -> Result<(), QueryError> {
 /// Returns [`QueryError::Keep`] if the gap is negative, not finite or larger than [`MAX_MAGNITUDE`]. Without
 /// the feature `keep`, any gap except 0 is an error.
 #[inline]
-pub fn check_keep(gap: f64) -> Result<(), QueryError> {
+pub fn check_min_gap(gap: f64) -> Result<(), QueryError> {
     let most = if cfg!(feature = "keep") { MAX_MAGNITUDE } else { 0.0 };
     if (0.0..=most).contains(&gap) { Ok(()) } else { Err(QueryError::Keep { gap }) }
 }

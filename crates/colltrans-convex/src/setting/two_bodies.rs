@@ -14,7 +14,7 @@ use colltrans_kernel::error_free::{difference_error, sum_error};
 use colltrans_kernel::extent;
 use colltrans_kernel::noise::Noise;
 use colltrans_kernel::orientation::Terms;
-use colltrans_kernel::pose::STRETCHED;
+use colltrans_kernel::pose::MAX_STRETCH;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
 /// Two placed bodies in the setting frame.
@@ -117,7 +117,7 @@ impl<'a, B> TwoBodies<'a, B> {
 
     /// Returns `t_Q - t_P` as a rounded value and its error.
     #[inline]
-    pub fn exact_offset(&self) -> [DVec3; 2] {
+    pub fn offset_and_error(&self) -> [DVec3; 2] {
         [self.offset, self.offset_error]
     }
 }
@@ -141,7 +141,7 @@ impl<B: Hull> TwoBodies<'_, B> {
     pub fn distance_along(&self, normal: DVec3) -> f64 {
         let fixed = (self.fixed.corners(), &self.fixed_matrix);
         let moving = (self.moving.corners(), &self.moving_matrix);
-        extent::distance(normal, fixed, moving, self.exact_offset())
+        extent::distance(normal, fixed, moving, self.offset_and_error())
     }
 
     /// Returns the gap that the plane with this normal proves between the bodies, in world units, rounded
@@ -166,7 +166,7 @@ impl<B: Hull> TwoBodies<'_, B> {
     /// world units.
     #[inline]
     pub fn input_excess(&self) -> f64 {
-        (self.moving.input_excess() + self.fixed.input_excess()) * STRETCHED
+        (self.moving.input_excess() + self.fixed.input_excess()) * MAX_STRETCH
     }
 }
 

@@ -27,7 +27,7 @@ use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
 use cta::options::Region;
-use cta::{CtaOptions, Guess, Origin, RegionFocus};
+use cta::{Guess, MinimisationOptions, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, Options};
 use portal::{
@@ -234,7 +234,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
                 self.enclosure_of_walk(walk)
             }
             WarmStart::Apart { normals, pair } => {
-                let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
+                let [p, q] = self.context.difference.body_normals_to_shadow(*normals)?;
                 self.confirmed_separation((p + q).truncate(), [*pair; 2])
             }
         }
@@ -346,7 +346,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         if normal.dot(self.context.difference.vertex(near).shadow()) < least {
             return None;
         }
-        let point = self.context.difference.support_from(normal.extend(0.0), near);
+        let point = self.context.difference.support_point_from(normal.extend(0.0), near);
         self.context.watch.support(|| Support::from_point(normal.extend(0.0), &point));
         let margin = normal.dot(point.shadow());
         let end = if point.pair == other { near } else { other };
@@ -390,7 +390,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         self.context.watch.ended(Phase::Setup);
         let cta::options::Options { until, keeps_to_cell, cuts, starts_cold, .. } = self.narrowing;
         let gap = until.gap();
-        let options = CtaOptions { start: origin, gap, keeps_to_cell, cuts, starts_cold };
+        let options = MinimisationOptions { start: origin, gap, keeps_to_cell, cuts, starts_cold };
         let narrowed =
             cta::minimise(self.context.difference.setting, &options, &mut self.context.watch);
         let corners = narrowed.corners.as_ref();
@@ -430,7 +430,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             Region::Everywhere => return None,
             Region::Fixed(delta) => delta,
             Region::Automatic => {
-                self.context.difference.shadow_from_bodies(normals)?;
+                self.context.difference.body_normals_to_shadow(normals)?;
                 setting.lateral_displacement(touching)
             }
         };
@@ -581,7 +581,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     #[inline]
     fn separation_from_last(&mut self, last: &WarmStart) -> Option<Separation> {
         let WarmStart::Apart { normals, pair } = last else { return None };
-        let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
+        let [p, q] = self.context.difference.body_normals_to_shadow(*normals)?;
         let lateral = (p + q).truncate();
         // The square of a shorter vector underflows.
         if lateral.length_squared() <= f64::MIN_POSITIVE {

@@ -5,7 +5,7 @@ use crate::answer::{
     WhyFree,
 };
 use crate::body::{Body, ConvexPolyhedron};
-use crate::setting::check_keep;
+use crate::setting::check_min_gap;
 use crate::setting::error::QueryError;
 use crate::solve::cta::options as cta;
 
@@ -100,7 +100,7 @@ impl Options {
         {
             return Err(QueryError::NarrowingGap { gap });
         }
-        check_keep(self.keep)
+        check_min_gap(self.keep)
     }
 }
 

@@ -20,9 +20,9 @@ pub(crate) struct ProvenFace<'a> {
     weights: [f64; 3],
     /// Estimate of the collision translation, in multiples of the direction, like the fields below.
     translation: f64,
-    /// ProvenFace lower bound.
+    /// Proven lower bound.
     lower: f64,
-    /// ProvenFace upper bound; infinite for widened bodies.
+    /// Proven upper bound; infinite for widened bodies.
     upper: f64,
     /// Bound on the part of `upper - lower` that rounding and the excess of the bodies cause.
     rounding: f64,

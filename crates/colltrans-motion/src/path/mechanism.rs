@@ -13,7 +13,7 @@ use colltrans_convex::setting::error::QueryError;
 use colltrans_kernel::angle;
 use colltrans_kernel::error::PoseError;
 use colltrans_kernel::noise;
-use colltrans_kernel::range::{MAX_MAGNITUDE, in_exact_range, without_traces};
+use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range, without_traces};
 
 /// A place that a joint carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +92,7 @@ impl Mechanism {
             }
             if let Joint::Turning(axis) | Joint::Sliding(axis) = &mut frame.joint {
                 let length = axis.length();
-                if !(in_exact_range(without_traces(*axis)) && length > 0.0) {
+                if !(is_in_exact_range(without_traces(*axis)) && length > 0.0) {
                     return Err(PathError::Axis { frame: k, axis: *axis });
                 }
                 if (length - 1.0).abs() > noise::UNIT_VECTOR {

@@ -66,7 +66,7 @@ use std::collections::HashSet;
 
 use colltrans_convex::body::{Placed, Pose};
 use colltrans_convex::pair::Pair;
-use colltrans_convex::setting::check_keep;
+use colltrans_convex::setting::check_min_gap;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_kernel::range::MAX_MAGNITUDE;
 use colltrans_solid::Solid;
@@ -160,7 +160,7 @@ impl<'a> PathCast<'a> {
     /// # Errors
     /// A gap that is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, PathError> {
-        check_keep(gap).map_err(|_| PathError::Keep { gap })?;
+        check_min_gap(gap).map_err(|_| PathError::Keep { gap })?;
         Ok(Self { keep: gap, ..self })
     }
 

@@ -14,7 +14,7 @@ use super::proof::FacetsMet;
 use super::tree::Tree;
 use colltrans_convex::body::Hull;
 use colltrans_convex::setting::TwoBodies;
-use colltrans_kernel::range::{in_exact_range, without_traces};
+use colltrans_kernel::range::{is_in_exact_range, without_traces};
 use colltrans_solid::body::{Solid, crossing};
 use colltrans_solid::solve::nearest::triangle::{self, Corners};
 
@@ -144,7 +144,7 @@ fn contains(bodies: &TwoBodies<Tree>, moving: bool, point: DVec3, off: f64) -> b
     let of_moving = |v: DVec3| bodies.moving_matrix * v;
     let of_fixed = |v: DVec3| bodies.fixed_matrix * v + bodies.offset;
     let there = if moving { of_moving(point) } else { of_fixed(point) };
-    in_exact_range(without_traces(there))
+    is_in_exact_range(without_traces(there))
         && if moving {
             is_inside(bodies.fixed, there, off, of_fixed)
         } else {
@@ -181,8 +181,8 @@ fn clipped(f: &Corners, g: &Corners, normal: DVec3) -> Vec<DVec3> {
 pub(crate) fn holds<S: Surface>(bodies: &TwoBodies<S>, off: f64, point: DVec3) -> bool {
     let off = OFF * off;
     let there = bodies.fixed_matrix * point + bodies.offset;
-    in_exact_range(without_traces(point))
-        && in_exact_range(without_traces(there))
+    is_in_exact_range(without_traces(point))
+        && is_in_exact_range(without_traces(there))
         && is_inside(bodies.moving, there, off, |v| bodies.moving_matrix * v)
         && is_inside(bodies.fixed, point, off, |v| v)
 }

@@ -37,7 +37,7 @@ use super::{MotionCast, Moving, check_fine, usual_tolerance};
 use colltrans_convex::body::Features;
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::setting::{Setting, check_keep};
+use colltrans_convex::setting::{Setting, check_min_gap};
 use colltrans_solid::SolidScene;
 use colltrans_solid::SolidSteps;
 use colltrans_solid::body::{AsSolid, Solid};
@@ -92,7 +92,7 @@ impl<'a> MotionCast<'a, Solid> {
     /// # Errors
     /// A gap that is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
-        check_keep(gap)?;
+        check_min_gap(gap)?;
         Ok(Self { keep: gap, ..self })
     }
 

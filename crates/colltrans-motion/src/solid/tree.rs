@@ -79,7 +79,7 @@ impl Hull for Tree<'_> {
 impl<'a> Tree<'a> {
     /// Of a solid that is shrunk by so much.
     pub(super) fn new(solid: &'a Solid, amount: f64) -> Self {
-        let vertices = if amount == 0.0 || !solid.can_shrink() {
+        let vertices = if amount == 0.0 || !solid.has_offset() {
             Cow::Borrowed(solid.vertices())
         } else {
             let field = &solid.shrinking().field;

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use colltrans_convex::answer::CertificateError;
-use colltrans_convex::cast::replay::what_is_wrong;
+use colltrans_convex::cast::replay::json_error_message;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::MotionProofError;
 use colltrans_motion::path::{PathError, PathProofError};
@@ -18,7 +18,7 @@ pub(super) const VERSION: u64 = 2;
 #[non_exhaustive]
 pub enum ProofFileError {
     /// It is not JSON, or lacks something.
-    #[error("not a saved proof: {}", what_is_wrong(.0))]
+    #[error("not a saved proof: {}", json_error_message(.0))]
     Syntax(serde_json::Error),
     /// An object has to name one thing, and names none or several.
     #[error(

@@ -240,7 +240,7 @@ impl ProofFile {
         let poses = [pair.moving_pose(), pair.fixed_pose()];
         let again = Pair::new(moving.at(poses[0]), fixed.at(poses[1]))?;
         let (answer, mut found) = ask(pair)?;
-        if !(bodies[0].has_tree_of(moving) && bodies[1].has_tree_of(fixed)) {
+        if !(bodies[0].has_same_tree(moving) && bodies[1].has_same_tree(fixed)) {
             found = ask(&again)?.1;
         }
         let statement = Statement::SolidDistance(in_file(again.prove(found)?, [moving, fixed]));

@@ -8,7 +8,7 @@ use super::scene::Scene;
 use super::{ProofFile, Statement};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
-use colltrans_convex::setting::{check_direction, check_keep};
+use colltrans_convex::setting::{check_direction, check_min_gap};
 use colltrans_solid::kinds::ByKind;
 
 /// A statement with what it is about.
@@ -33,7 +33,7 @@ impl ProofFile {
         Ok(match (&self.query, &self.placement, &self.statement) {
             (Query::Cast(along), Placement::Poses(places), statement) => {
                 check_direction(along.direction)?;
-                check_keep(along.keep)?;
+                check_min_gap(along.keep)?;
                 match (statement, self.two(places)?) {
                     (Statement::Contacts(of), [Convex(p), Convex(q)])
                         if of.first.or(of.last).is_some() =>

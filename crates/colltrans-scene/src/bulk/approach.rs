@@ -10,7 +10,7 @@ use super::faces::Faces;
 use super::proof::{Clear, Line, Rim, axes, contact, separated};
 use super::search::{ENTERED, Reached, Seen, axes_of, steps, walk};
 use colltrans_convex::answer::{Clearance, ContactRange, Outcome};
-use colltrans_convex::cast::{Cast, clearance_of, range_of};
+use colltrans_convex::cast::{Cast, clearance_of, contact_range_by_casts};
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
 
@@ -92,7 +92,7 @@ impl<'f, 'a> Approach<'f, 'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn contact_range(&self, cast: &Cast<'a>) -> Result<ContactRange, QueryError> {
-        range_of(cast, |cast| self.first_contact(cast))
+        contact_range_by_casts(cast, |cast| self.first_contact(cast))
     }
 
     /// [`Cast::clearance`].

@@ -20,7 +20,7 @@ use glam::DVec3;
 pub use approach::Approach;
 use colltrans_convex::answer::{Clearance, ContactRange, Outcome, Solver};
 use colltrans_convex::body::{ConvexPolyhedron, Placed, Pose};
-use colltrans_convex::cast::{Cast, clearance_of, range_of};
+use colltrans_convex::cast::{Cast, clearance_of, contact_range_by_casts};
 use colltrans_convex::setting::TwoBodies;
 use colltrans_convex::setting::error::QueryError;
 use faces::Faces;
@@ -118,7 +118,7 @@ impl<'a> FixedRotations<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn contact_range(&self, cast: &Cast<'a>) -> Result<ContactRange, QueryError> {
-        range_of(cast, |cast| self.first_contact(cast))
+        contact_range_by_casts(cast, |cast| self.first_contact(cast))
     }
 
     /// [`Cast::clearance`].

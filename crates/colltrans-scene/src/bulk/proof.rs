@@ -1,6 +1,6 @@
 //! From a face of `M0`, or two that meet at the rim of its shadow, to an answer with its proof.
 //!
-//! The bounds on rounding are derived in the head of [`noise`](colltrans_kernel::noise), under *Polygon* and *Rim*.
+//! `docs/theory/rounding.md` derives the bounds on rounding, under *Polygon* and *Rim*.
 
 use glam::{DVec2, DVec3};
 

@@ -65,7 +65,7 @@ pub(super) fn walk(seen: &impl Seen, mut face: u32, clear: &Clear) -> Option<(Re
 
 /// Work done by looking at so many faces.
 pub(super) fn steps(looked: u32) -> Steps {
-    Steps::of_pivots(looked, StartedFrom::Difference)
+    Steps::from_pivots(looked, StartedFrom::Difference)
 }
 
 /// All faces, along any direction.

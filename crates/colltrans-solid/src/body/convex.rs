@@ -1,13 +1,13 @@
 //! Convex polyhedra as solids, built on first use and stored with the polyhedron.
 
 use super::{AsSolid, Solid, SolidError};
-use colltrans_convex::body::{ConvexPolyhedron, Keepable};
+use colltrans_convex::body::{ConvexPolyhedron, DerivedData};
 
 /// The solid of a convex polyhedron, stored with it.
 #[derive(Debug)]
 struct StoredSolid(Result<Solid, SolidError>);
 
-impl Keepable for StoredSolid {
+impl DerivedData for StoredSolid {
     fn heap_bytes(&self) -> usize {
         size_of::<Self>() + self.0.as_ref().map_or(0, Solid::heap_bytes)
     }

@@ -138,13 +138,18 @@ impl Parts {
 
     /// Returns the part of [`Self::gain`] that the edge contributes.
     #[inline]
-    pub(crate) fn edge_gain(&self, depths: &Depths) -> f64 {
+    pub(crate) fn edge_support_reduction(&self, depths: &Depths) -> f64 {
         self.weights[1] * depths[usize::from(self.edge & 31)]
     }
 
     /// Returns [`Self::gain`] for the cuts of a node, with the parameters of [`depths`], without computing a table.
     #[inline]
-    pub(crate) fn gain_of(&self, cuts: &[u8; CUTS], size: DVec3, moved: f64) -> f64 {
+    pub(crate) fn support_reduction_by_cuts(
+        &self,
+        cuts: &[u8; CUTS],
+        size: DVec3,
+        moved: f64,
+    ) -> f64 {
         let [w, v] = self.weights;
         let (corner, edge) = (usize::from(self.corner), usize::from(self.edge));
         let all = size.element_sum();

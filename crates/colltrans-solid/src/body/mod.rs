@@ -102,7 +102,7 @@ impl Numbered for Solid {
         &self.vertex_index
     }
 
-    fn corners_of_face(&self, face: u32) -> Vec<u32> {
+    fn face_corner_positions(&self, face: u32) -> Vec<u32> {
         self.face_corners(face)
     }
 }
@@ -363,7 +363,7 @@ impl Solid {
     #[cfg(feature = "json")]
     #[doc(hidden)]
     #[inline]
-    pub fn has_tree_of(&self, other: &Self) -> bool {
+    pub fn has_same_tree(&self, other: &Self) -> bool {
         let place = |node: &Node| (node.skip, node.first, node.count);
         self.vertices == other.vertices
             && self.triangles == other.triangles
@@ -433,7 +433,7 @@ impl Solid {
     /// Checks whether any shell has an offset, that is, is not a sheet.
     #[doc(hidden)]
     #[inline]
-    pub fn can_shrink(&self) -> bool {
+    pub fn has_offset(&self) -> bool {
         self.report.shells.iter().any(|s| s.kind != ShellKind::Sheet)
     }
 
@@ -476,7 +476,7 @@ impl Solid {
 
     /// Returns the offset field, or `None` if this amount changes nothing.
     fn shrinking_by(&self, amount: f64) -> Option<&Shrinking> {
-        (amount != 0.0 && self.can_shrink()).then(|| self.shrinking())
+        (amount != 0.0 && self.has_offset()).then(|| self.shrinking())
     }
 
     /// Returns a box around the body offset inwards by this amount.

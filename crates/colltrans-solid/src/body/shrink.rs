@@ -2,10 +2,10 @@
 //!
 //! - Under an offset by `e`, vertex `v` moves to `v + e x`. Here `x` is the shortest vector with `n.x <= -1` for the
 //!   unit normals `n` of all facets around the vertex. If no such vector exists (at a saddle), the vertex stays.
-//! - `x` does not depend on `e`, so one field of displacements serves all amounts. The sum `v + e x` is rounded once.
-//!   The rounded vertices define the offset body.
-//! - Sheets have no inner side. Their vertices, which they do not share, stay.
-//! - Facets with a height below a millionth of the body size are ignored if the vertex has others, because in single
+//! - `x` does not depend on `e`, so one field of displacements serves all amounts. `v + e x` is computed in floating point
+//!   (traces become 0), and the results define the offset body. If `x` is longer than 64, the vertex stays, too.
+//! - Sheets have no inner side. Their vertices, which they share only with other sheets, stay.
+//! - Facets with a height below a millionth of the body's reach are ignored if the vertex has others, because in single
 //!   precision their normals are noise.
 //! - A [`NodeMotion`] bounds the changes of the facets of a node.
 //!
@@ -21,7 +21,7 @@ use super::tree::{self, Node};
 use super::{ShellKind, Solid, Surface};
 use super::{self_intersection, shells};
 use colltrans_convex::body::{Aabb, InputFacet, InputVertex};
-use colltrans_kernel::range::{in_exact_range, without_traces};
+use colltrans_kernel::range::{is_in_exact_range, without_traces};
 
 /// Height below which the normal of a facet is noise, in multiples of the reach of the body.
 const MIN_HEIGHT: f64 = 1e-6;
@@ -124,7 +124,7 @@ impl Solid {
             .zip(&self.shrinking().field)
             .map(|(v, x)| displace(*v, *x, signed))
             .collect();
-        if !vertices.iter().all(|v| in_exact_range(*v)) {
+        if !vertices.iter().all(|v| is_in_exact_range(*v)) {
             return Err(SolidError::Amount { amount });
         }
         let surface = Surface {

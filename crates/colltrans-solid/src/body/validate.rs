@@ -18,7 +18,7 @@ use super::polygon::triangulate;
 use super::report::{ShellKind, SolidReport};
 use super::weld::first_equal_vertices;
 use colltrans_convex::body::{InputFacet, InputVertex};
-use colltrans_kernel::range::in_exact_range;
+use colltrans_kernel::range::is_in_exact_range;
 
 /// Maximum number of subdivision rounds. Each round joins at least one pair of edges in every slit that can be
 /// closed.
@@ -109,7 +109,7 @@ pub(super) fn validated_surface<F: AsRef<[u32]>>(
 
 fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), SolidError> {
     for (vertex, &point) in vertices.iter().enumerate() {
-        if !in_exact_range(point) {
+        if !is_in_exact_range(point) {
             return Err(SolidError::Coordinate { vertex, point });
         }
     }

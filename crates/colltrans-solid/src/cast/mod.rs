@@ -35,8 +35,8 @@ use colltrans_convex::answer::{
     Bounded, CertificateError, Clearance, ContactRange, Intersection, Outcome, RangeEnd, Separation,
 };
 use colltrans_convex::body::{Body, Placed, Pose};
-use colltrans_convex::cast::{Cast, CastBody, common_end};
-use colltrans_convex::setting::check_keep;
+use colltrans_convex::cast::{Cast, CastBody, common_translation};
+use colltrans_convex::setting::check_min_gap;
 use colltrans_convex::setting::error::QueryError;
 
 /// Default tolerance of rotated bodies, in noises.
@@ -201,7 +201,7 @@ impl CastBody for Solid {
     type CastProof<'p> = SolidProof<'p>;
 
     fn check_options(cast: &Cast<'_, Self>) -> Result<(), QueryError> {
-        check_keep(cast.options.keep)?;
+        check_min_gap(cast.options.keep)?;
         let Some(tolerance) = cast.options.tolerance else { return Ok(()) };
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(QueryError::Tolerance { tolerance });
@@ -223,7 +223,7 @@ impl CastBody for Solid {
         let first = cast.first_contact_in(workspace)?;
         Ok(match (first, cast.reversed().first_contact_in(workspace)?) {
             (Outcome::Contact(mut first), Outcome::Contact(mut last)) => {
-                if let Some(both) = common_end(first.translation, last.exit()) {
+                if let Some(both) = common_translation(first.translation, last.exit()) {
                     (first.translation.value, last.translation.value) = (both, -both);
                 }
                 ContactRange::Contact { first, last }

@@ -18,7 +18,7 @@ use crate::solve::bound::{Profile, Reason, reason_holds};
 use crate::solve::leaf::{self, Facet, Gap, Meeting};
 use crate::solve::overlap::Overlap;
 use crate::solve::projected::Projected;
-use crate::solve::rim::{self, Upright};
+use crate::solve::rim::{self, EdgeOnFacet};
 use crate::solve::scene::Scene;
 use crate::solve::search::{Aim, node_rounding};
 use crate::solve::separating_axes::SeparatingAxes;
@@ -238,7 +238,7 @@ pub(crate) fn leaf_gap_bound(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f6
         }
     }
     if rim::may_have_edge_on(scene, nodes) {
-        let [f, g] = [true, false].map(|m| Upright::of_leaf(scene, m, nodes[usize::from(!m)]));
+        let [f, g] = [true, false].map(|m| EdgeOnFacet::of_leaf(scene, m, nodes[usize::from(!m)]));
         rim::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
             least = least
                 .min(aim.contribution(&gap).map_or(f64::INFINITY, |value| value - scene.noise));

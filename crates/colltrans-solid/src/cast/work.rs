@@ -22,7 +22,7 @@ fn distance_proof_needs_no_second_search() {
     let meshes = [bumpy_ball(1_000), slab(DVec3::ZERO, DVec3::ONE, [5, 5, 1])];
     let ([ball, plate], rebuilt) =
         (meshes.each_ref().map(to_solid), meshes.each_ref().map(to_solid));
-    assert!(ball.has_tree_of(&rebuilt[0]) && plate.has_tree_of(&rebuilt[1]));
+    assert!(ball.has_same_tree(&rebuilt[0]) && plate.has_same_tree(&rebuilt[1]));
     for far in [0.0, 1.0, 3.0] {
         let pose = Pose::new(rotation(), DVec3::splat(far)).expect("a pose");
         let pair = Pair::new(ball.at(pose), plate.at(Pose::IDENTITY)).expect("a pair");

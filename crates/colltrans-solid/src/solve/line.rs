@@ -23,7 +23,7 @@ use super::triangle::Triangle;
 use crate::body::Solid;
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
-use colltrans_kernel::integer::{Integer, SMALL, TWICE_LARGE, determinant, difference};
+use colltrans_kernel::integer::{Integer, PRODUCT_LIMBS, SMALL, determinant, difference};
 
 /// A line with a direction `u`.
 #[derive(Clone, Copy)]
@@ -97,13 +97,13 @@ pub(super) fn enters_body(
     let facet = Triangle::new(side, triangle as usize);
     if through && is_within_a_face(scene, line, &facet) {
         let is_touched = is_touched::<SMALL>(scene, line, &facet)
-            .or_else(|| is_touched::<TWICE_LARGE>(scene, line, &facet));
+            .or_else(|| is_touched::<PRODUCT_LIMBS>(scene, line, &facet));
         if is_touched == Some(false) {
             return true;
         }
     }
     is_inside_past::<SMALL>(scene, line, &facet)
-        .or_else(|| is_inside_past::<TWICE_LARGE>(scene, line, &facet))
+        .or_else(|| is_inside_past::<PRODUCT_LIMBS>(scene, line, &facet))
         .unwrap_or_default()
 }
 
@@ -140,7 +140,7 @@ pub(super) fn is_inside_other_piece(scene: &Scene, side: &Side, point: &Corner) 
     let is_inside_one = || {
         PointOnLine::<SMALL>::from_start(scene, &line, side)
             .is_inside()
-            .or_else(|| PointOnLine::<TWICE_LARGE>::from_start(scene, &line, side).is_inside())
+            .or_else(|| PointOnLine::<PRODUCT_LIMBS>::from_start(scene, &line, side).is_inside())
     };
     side.solid.spans().len() > 1 && is_inside_one().unwrap_or_default()
 }

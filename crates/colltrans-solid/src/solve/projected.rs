@@ -154,7 +154,11 @@ impl Projected {
     /// Returns the length by which the cuts of its box shorten its extent against a vector of the body frame.
     fn cut_gain(&self, side: &Side, local: DVec3) -> f64 {
         let node = &side.solid.nodes()[self.node as usize];
-        Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.max_displacement())
+        Parts::new(-local).support_reduction_by_cuts(
+            &node.cuts,
+            node.bounds.size(),
+            side.max_displacement(),
+        )
     }
 
     /// Checks whether the slab bounds heights.

@@ -23,7 +23,7 @@ use colltrans_convex::body::Aabb;
 use colltrans_kernel::integer::{Integer, LARGE, SMALL};
 
 /// A facet of an open shell that is parallel to the direction.
-pub(crate) struct Upright {
+pub(crate) struct EdgeOnFacet {
     triangle: u32,
     corners: [Corner; 3],
     moving: bool,
@@ -68,7 +68,7 @@ pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut(
     }
     let upright = |moving, t: u32| {
         let open = scene.side(moving).solid.is_open(t as usize);
-        open.then(|| Upright::new(scene, moving, t as usize)).flatten()
+        open.then(|| EdgeOnFacet::new(scene, moving, t as usize)).flatten()
     };
     let (f, g) = (upright(true, s), upright(false, t));
     if f.is_none() && g.is_none() {
@@ -83,8 +83,8 @@ pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut(
 /// its facets that face the first leaf.
 pub(crate) fn each_gap(
     scene: &Scene,
-    (uprights, front): (&[Upright], &[Facet]),
-    (others, back): (&[Upright], &[Facet]),
+    (uprights, front): (&[EdgeOnFacet], &[Facet]),
+    (others, back): (&[EdgeOnFacet], &[Facet]),
     take: &mut dyn FnMut([u32; 2], Gap),
 ) {
     for f in uprights {
@@ -104,7 +104,7 @@ pub(crate) fn each_gap(
     }
 }
 
-impl Upright {
+impl EdgeOnFacet {
     /// Returns the edge-on facets of a leaf.
     pub(crate) fn of_leaf(scene: &Scene, moving: bool, node: u32) -> Vec<Self> {
         let solid = scene.side(moving).solid;
@@ -389,7 +389,7 @@ fn enters_at_side(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool 
 }
 
 /// Computes the gap of a moving and a fixed edge-on facet; `None` if they do not meet.
-fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
+fn with_upright(scene: &Scene, f: &EdgeOnFacet, g: &EdgeOnFacet) -> Option<Gap> {
     if f.is_beside(scene, &g.bounds) {
         return None;
     }
@@ -399,8 +399,9 @@ fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
 
 /// Computes the gap of case 3: the least gap of the leading sides, and the sign of the largest gap of the trailing
 /// ones.
-fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
-    let sides = |upright: &Upright, k: usize| -> [Corner; 2] { upright.side_ends(k).map(|c| *c) };
+fn in_one_plane(scene: &Scene, f: &EdgeOnFacet, g: &EdgeOnFacet) -> Option<Gap> {
+    let sides =
+        |upright: &EdgeOnFacet, k: usize| -> [Corner; 2] { upright.side_ends(k).map(|c| *c) };
     let mut gap: Option<Gap> = None;
     let (mut least, mut largest) = (Greater, Less);
     for wanted in [Greater, Less] {
@@ -428,7 +429,12 @@ fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
 }
 
 /// Computes the gap of case 4.
-fn crossing_gap(scene: &Scene, f: &Upright, g: &Upright, of_f: [Ordering; 2]) -> Option<Gap> {
+fn crossing_gap(
+    scene: &Scene,
+    f: &EdgeOnFacet,
+    g: &EdgeOnFacet,
+    of_f: [Ordering; 2],
+) -> Option<Gap> {
     let of_g = [0, 1].map(|k| scene.turn(g.shadow_end(0), g.shadow_end(1), f.shadow_end(k)));
     let apart = |t: [Ordering; 2]| t[0] == t[1];
     if apart(of_f) || apart(of_g) {

@@ -79,7 +79,7 @@ impl<'a> Scene<'a> {
         let at_origin = [DVec3::ZERO; 2];
         let moving =
             Side::new((setting.moving, moving, true), setting.moving_matrix, at_origin, frame);
-        let offset = setting.exact_offset();
+        let offset = setting.offset_and_error();
         let fixed = Side::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
         let mut scene = Self { setting: *setting, moving, fixed, frame, keep, noise: 0.0 };
         scene.set_noise_and_gap(keep);
@@ -114,7 +114,7 @@ impl<'a> Scene<'a> {
     /// Returns this scene with the bodies offset by other amounts.
     pub(crate) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &Side<'a>, amount| {
-            let amount = if side.solid.can_shrink() { amount } else { 0.0 };
+            let amount = if side.solid.has_offset() { amount } else { 0.0 };
             let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
             let inward = inward_side(side.along, side.aligned, side.moving, amount);
             Side { amount, shrinking, inward, ..*side }
@@ -149,7 +149,7 @@ impl<'a> Side<'a> {
         let rows = view.transpose();
         let permuting = permutes_axes(matrix);
         // A body of sheets alone is not offset and remains exact.
-        let amount = if solid.can_shrink() { amount } else { 0.0 };
+        let amount = if solid.has_offset() { amount } else { 0.0 };
         let unit = |row: DVec3| permuting && is_axis(row);
         let aligned = [unit(rows.x_axis), unit(rows.y_axis), unit(rows.z_axis)];
         Self {

@@ -15,7 +15,7 @@ use std::ops::Range;
 use super::bound::{Profile, Reason, dismissal_reason, least_gap};
 use super::leaf::{self, Facet, Gap, Meeting, Opposed, Wanted};
 use super::projected::Projected;
-use super::rim::{self, Upright};
+use super::rim::{self, EdgeOnFacet};
 use super::scene::{Scene, Side};
 use super::separate;
 use super::separating_axes::{Reach, SeparatingAxes};
@@ -76,7 +76,7 @@ pub(crate) struct Found {
 
 impl Found {
     /// Returns this pair with the lower bound on all other pairs that a completed search guarantees.
-    pub(crate) fn among_all(self, scene: &Scene) -> Self {
+    pub(crate) fn with_least_others(self, scene: &Scene) -> Self {
         Self { others: self.gap - SLACK * scene.noise - 1.0625 * node_rounding(scene), ..self }
     }
 
@@ -330,11 +330,11 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         if rim::may_have_edge_on(scene, nodes) {
             let [f, g] = [(front, true), (back, false)].map(|(facets, moving)| {
                 let k = usize::from(!moving);
-                (Upright::of_leaf(scene, moving, nodes[k]), facets, k)
+                (EdgeOnFacet::of_leaf(scene, moving, nodes[k]), facets, k)
             });
             let [f, g] = [f, g].map(|(uprights, facets, k)| (uprights, &seen[k].facets[facets]));
             rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| {
-                self.record_gap(pair, &gap)
+                self.record_gap(pair, &gap);
             });
         }
     }

@@ -97,7 +97,7 @@ impl BodyAxes {
         let [own, other] = self.lines;
         for first in [0, 3, 6, own, own + 6] {
             for (r, p) in reach[first..first + 3].iter_mut().zip(&self.parts[first..first + 3]) {
-                *r -= p.edge_gain(depths);
+                *r -= p.edge_support_reduction(depths);
             }
         }
         reach[EDGES] -= self.parts[EDGES].gain(depths);

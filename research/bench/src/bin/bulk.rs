@@ -31,7 +31,7 @@ enum Set {
     /// From one place along many directions, about every second a hit.
     Rays,
     /// Boxes that are not turned, along an axis, from places nowhere in particular.
-    Upright,
+    EdgeOnFacet,
     /// The same from places on a grid of quarters: mostly ties.
     Tied,
 }
@@ -41,7 +41,7 @@ impl Set {
         match self {
             Self::Places => "places",
             Self::Rays => "rays",
-            Self::Upright => "upright",
+            Self::EdgeOnFacet => "upright",
             Self::Tied => "tied",
         }
     }
@@ -65,14 +65,14 @@ impl Set {
                 let aim = random.direction() * (2.6 * random.unit().cbrt());
                 (pose(p, far), aim - far)
             }
-            Self::Upright => (Pose::from_translation(any(random)).expect("a place"), DVec3::X),
+            Self::EdgeOnFacet => (Pose::from_translation(any(random)).expect("a place"), DVec3::X),
             Self::Tied => {
                 let place = (any(random) * 4.0).round() * 0.25;
                 (Pose::from_translation(place).expect("a place"), DVec3::X)
             }
         };
         let casts = (0..CASTS).map(|_| one(random)).collect();
-        let still = matches!(self, Self::Upright | Self::Tied);
+        let still = matches!(self, Self::EdgeOnFacet | Self::Tied);
         (casts, if still { Pose::IDENTITY } else { pose(q, DVec3::ZERO) })
     }
 }
@@ -98,7 +98,7 @@ fn main() -> ExitCode {
                 sets.extend(run.sizes(&SIZES).into_iter().map(|n| (set, shape, n)));
             }
         }
-        sets.extend([Set::Upright, Set::Tied].map(|set| (set, Shape::Box, 8)));
+        sets.extend([Set::EdgeOnFacet, Set::Tied].map(|set| (set, Shape::Box, 8)));
         for (set, shape, n) in sets {
             let failed = naming(format!("{} of {n} vertices", shape.name()));
             run.add(measure(set, shape, n, run).map_err(failed)?);

@@ -133,7 +133,7 @@ impl ConvexPolyhedron {
         most: f64,
     ) -> Option<(u32, f64)> {
         if self.support.is_scanned() {
-            let found = self.support_from(normal, near);
+            let found = self.support_point_from(normal, near);
             let gain = normal.dot(self.vertices[found as usize] - self.vertices[near as usize]);
             return (gain <= most * length).then(|| (found, self.scan_excess()));
         }
@@ -288,7 +288,7 @@ impl ConvexPolyhedron {
         let excess_of = |face: u32| {
             let found = self.large_faces.binary_search_by_key(&face, |large| large.face).ok()?;
             let large = &self.large_faces[found];
-            let excess = || self.excess_of_face(large, normal, length, vertex, most);
+            let excess = || self.large_face_excess(large, normal, length, vertex, most);
             let is_across = normal.dot(large.normal) > MIN_NORMAL_COSINE * length;
             is_across.then(excess).flatten().map(|excess| (face, excess))
         };
@@ -313,7 +313,7 @@ impl ConvexPolyhedron {
     /// Computes the excess beyond a vertex from three corners of a large face. Returns `None` if the plateau may
     /// leave the face, or the excess may exceed `most`.
     #[inline]
-    pub(crate) fn excess_of_face(
+    pub(crate) fn large_face_excess(
         &self,
         large: &LargeFace,
         normal: DVec3,

@@ -86,7 +86,7 @@ impl Fan {
     }
 
     /// Finds the steepest edge along `direction`, as a position among the neighbours.
-    pub(super) fn steepest_edge(
+    pub(super) fn steepest_edge_position(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -94,7 +94,7 @@ impl Fan {
     ) -> usize {
         let slope = self.slope_function(vertices, topology, direction);
         let near = self.ring.first_candidate(direction) as usize;
-        greatest_near(topology.neighbours(self.vertex).len(), near, slope)
+        cyclic_maximum(topology.neighbours(self.vertex).len(), near, slope)
     }
 
     /// Returns the function that computes the slope of an edge along `direction`: its gain along `direction` divided
@@ -129,7 +129,7 @@ impl Fan {
     ) -> bool {
         let neighbours = topology.neighbours(self.vertex);
         let slope = self.slope_function(vertices, topology, above.normal);
-        let steepest = self.steepest_edge(vertices, topology, above.normal);
+        let steepest = self.steepest_edge_position(vertices, topology, above.normal);
         let min_gain = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
         // Lengths along `inward` are rounded, too.
         let aspect = self.longest / self.least;
@@ -165,7 +165,7 @@ impl Fan {
 /// The search proceeds uphill with strides that double while the value increases. Then it halves the stride and
 /// tests both sides.
 #[inline]
-pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
+pub(crate) fn cyclic_maximum(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut best = (near, value(near));
     work::count(1);
     let mut rises = |step: usize| {

@@ -25,10 +25,10 @@ pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::topology::{HalfEdge, Topology};
 pub(crate) use excess::LargeFace;
-pub(crate) use fan::{FAN, greatest_near};
+pub(crate) use fan::{FAN, cyclic_maximum};
 pub(crate) use ring::Rim;
 use sections::SectionIndex;
-pub(crate) use support::MOST_RIMS;
+pub(crate) use support::MAX_RIMS;
 use support::SupportIndex;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
@@ -246,7 +246,7 @@ impl ConvexPolyhedron {
     /// vertex `near` is near the result.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
-    pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
+    pub(crate) fn support_point_from(&self, direction: DVec3, near: u32) -> u32 {
         self.support.farthest_vertex_near(&self.vertices, &self.topology, direction, near)
     }
 
@@ -264,12 +264,12 @@ impl ConvexPolyhedron {
         self.support.has_rings()
     }
 
-    /// Returns at most [`MOST_RIMS`] rims and points whose hull approximates the body. The iterator is empty if
+    /// Returns at most [`MAX_RIMS`] rims and points whose hull approximates the body. The iterator is empty if
     /// there is no such approximation.
     #[inline]
     pub(crate) fn outline(&self) -> impl ExactSizeIterator<Item = Rim> {
         let known = self.support.outline();
-        let few = known.is_empty() && self.vertices.len() <= MOST_RIMS;
+        let few = known.is_empty() && self.vertices.len() <= MAX_RIMS;
         let count = if few { self.vertices.len() } else { known.len() };
         let point = |k: usize| Rim::from_vertex(k as u32, self.vertices[k]);
         (0..count).map(move |k| if few { point(k) } else { known[k] })
@@ -277,14 +277,18 @@ impl ConvexPolyhedron {
 
     /// Finds the farthest vertex along `direction` on the rim that contains `vertex`. Returns `vertex` if it is on
     /// no rim.
-    pub(crate) fn farthest_on_rim(&self, direction: DVec3, vertex: u32) -> u32 {
+    pub(crate) fn farthest_rim_vertex(&self, direction: DVec3, vertex: u32) -> u32 {
         self.support.farthest_on_ring(&self.vertices, &self.topology, direction, vertex)
     }
 
     /// Finds the edge of `vertex` that is steepest along `direction`, as a position among its neighbours. The vertex
     /// must have more than [`FAN`] neighbours.
-    pub(crate) fn steepest_edge(&self, vertex: u32, direction: DVec3) -> usize {
-        self.support.fan_of_vertex(vertex).steepest_edge(&self.vertices, &self.topology, direction)
+    pub(crate) fn steepest_edge_position(&self, vertex: u32, direction: DVec3) -> usize {
+        self.support.fan_of_vertex(vertex).steepest_edge_position(
+            &self.vertices,
+            &self.topology,
+            direction,
+        )
     }
 
     /// Returns a range of positions among the neighbours of `vertex`, as first position and count, cyclic. It

@@ -42,7 +42,7 @@ const MAX_DIVISIONS: u32 = 20;
 const RING_CHECK_STEPS: usize = 3;
 
 /// Maximum number of rims and points in the outline of a body.
-pub(crate) const MOST_RIMS: usize = 8;
+pub(crate) const MAX_RIMS: usize = 8;
 
 /// Marks a vertex without a ring.
 const NO_RING: u16 = u16::MAX;
@@ -194,8 +194,8 @@ impl SupportIndex {
             let (best, gain) = if neighbours.len() <= FAN {
                 steepest_neighbour(vertices, neighbours, origin, direction)
             } else {
-                let best =
-                    neighbours[self.fan_of_vertex(at).steepest_edge(vertices, topology, direction)];
+                let best = neighbours
+                    [self.fan_of_vertex(at).steepest_edge_position(vertices, topology, direction)];
                 (best, direction.dot(vertices[best as usize] - origin))
             };
             if gain <= 0.0 {
@@ -292,7 +292,7 @@ impl SupportIndex {
     }
 
     /// Computes the outline. Returns `None` if a ring is not nearly an ellipse, or if there are more than
-    /// [`MOST_RIMS`] rims and points.
+    /// [`MAX_RIMS`] rims and points.
     fn compute_outline(&self, vertices: &[DVec3]) -> Option<Vec<Rim>> {
         let mut outline = Vec::new();
         let mut is_known = vec![false; self.rings.len() + self.fans.len()];
@@ -306,7 +306,7 @@ impl SupportIndex {
                     return None;
                 }
             }
-            if outline.len() > MOST_RIMS {
+            if outline.len() > MAX_RIMS {
                 return None;
             }
         }
@@ -366,7 +366,7 @@ impl SupportIndex {
         if count <= FAN {
             return (0, count);
         }
-        let best = self.fan_of_vertex(vertex).steepest_edge(vertices, topology, direction);
+        let best = self.fan_of_vertex(vertex).steepest_edge_position(vertices, topology, direction);
         ((best + count - 1) % count, 3)
     }
 

@@ -73,8 +73,8 @@ pub(super) enum ExitResult {
     Missed,
 }
 
-/// Place where `phi` falls: at these levels the contact is on the boundary of these faces, and continues on
-/// them.
+/// Place where `phi` falls: at these levels, up to rounding, the contact is in one face of each body or on its
+/// boundary, and continues on these faces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Descent {
     /// Face of each body, by a half-edge.
@@ -133,8 +133,8 @@ impl ExitTest<'_, '_> {
         })
     }
 
-    /// Returns where the contact continues on the faces of these half-edges. The level of a vertex is replaced
-    /// by one just above or just below it, on the side of the face.
+    /// Returns where the contact continues on the faces of these half-edges. The level of a vertex
+    /// is kept if the face is above, which cuts just above the vertex, and else replaced by the next lower number.
     fn descent_over(&self, features: [Feature; 2], faces: [u32; 2], levels: [f64; 2]) -> Descent {
         let level = |body: usize| match features[body] {
             Feature::Vertex(v) => {
@@ -233,7 +233,7 @@ impl ExitTest<'_, '_> {
         // The sum of the coordinates bounds the length of the normal without a square root (the paper, V-A).
         let noise = self.setting.noise().point() * normal.abs().element_sum();
         let farthest = [0, 1].map(|body| {
-            let outward = self.to_body_frame(body, if body == 0 { normal } else { -normal });
+            let outward = self.in_body_frame(body, if body == 0 { normal } else { -normal });
             self.farthest_step(body, outward, features[body])
         });
         if farthest.iter().all(|(distance, _)| *distance <= noise) {
@@ -296,7 +296,7 @@ impl ExitTest<'_, '_> {
         );
         for (body, feature) in features.into_iter().enumerate() {
             let sign = if body == 0 { 1.0 } else { -1.0 };
-            let [d, e1, e2] = [unit, e1, e2].map(|v| self.to_body_frame(body, v * sign));
+            let [d, e1, e2] = [unit, e1, e2].map(|v| self.in_body_frame(body, v * sign));
             self.for_each_step(body, feature, |step, _| {
                 normals.cut_by(DVec2::new(e1.dot(step), e2.dot(step)), noise - d.dot(step));
             });
@@ -358,7 +358,7 @@ impl ExitTest<'_, '_> {
     }
 
     /// Rotates a covector of the setting frame into the body frame.
-    fn to_body_frame(&self, body: usize, covector: DVec3) -> DVec3 {
+    fn in_body_frame(&self, body: usize, covector: DVec3) -> DVec3 {
         self.rotation_matrix(body).transpose() * covector
     }
 

@@ -2,7 +2,7 @@
 //! best point of the cell, end if this point solves the problem, else cut the region and repeat.
 //!
 //! The paper's shift ends in its cell. Here a shift can continue into neighbouring cells if the remaining
-//! levels are a few edges wide and [`CtaOptions::keeps_to_cell`] is not set. The exit test names the faces to
+//! levels are a few edges wide and [`MinimisationOptions::keeps_to_cell`] is not set. The exit test names the faces to
 //! which the contact passes on where `phi` falls, so that the neighbouring cell is known without a search. Its
 //! best point is lower, therefore no cell is crossed twice.
 
@@ -30,7 +30,7 @@ const MAX_CELLS: u32 = 16;
 
 /// Options of a minimisation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct CtaOptions {
+pub(crate) struct MinimisationOptions {
     /// First levels.
     pub(crate) start: Origin,
     /// Difference of the upper and the lower bound at which the minimisation ends, as a share of the extent of
@@ -94,7 +94,7 @@ impl NarrowedSearch {
 /// Minimises `phi` for two bodies of dimension 3. Adds the iterations of the planar problems to `watch`.
 pub(crate) fn minimise<O: Observer>(
     setting: &Setting,
-    options: &CtaOptions,
+    options: &MinimisationOptions,
     watch: &mut Watch<O>,
 ) -> NarrowedSearch {
     let sections = SectionPair::new(setting);
@@ -109,7 +109,7 @@ impl SectionPair<'_> {
     /// Solves the first planar problem, and further ones unless it solves the problem.
     fn minimise_phi<O: Observer>(
         &self,
-        options: &CtaOptions,
+        options: &MinimisationOptions,
         watch: &mut Watch<O>,
     ) -> NarrowedSearch {
         let initial = self.initial_state(&options.start);

@@ -27,7 +27,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use minimise::{CtaOptions, Guess, minimise};
+pub(crate) use minimise::{Guess, MinimisationOptions, minimise};
 pub(crate) use start::{Origin, RegionFocus};
 
 /// Maximum number of planar problems in a query. 40 cuts through centroids leave less than

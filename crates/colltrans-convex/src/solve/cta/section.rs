@@ -120,7 +120,7 @@ impl Section<'_> {
                 return Some(up);
             };
             if let Some(search) = self.side.chain_search(self.level) {
-                if let Some(found) = search.along_faces(up) {
+                if let Some(found) = search.crossing_along_faces(up) {
                     return Some(found);
                 }
                 if step == STEPS_BEFORE_SEARCH || topology.outgoing(vertex).len() > MAX_FAN {

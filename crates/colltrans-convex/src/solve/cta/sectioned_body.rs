@@ -54,7 +54,7 @@ impl<'a> SectionedBody<'a> {
         Self {
             vertices,
             topology,
-            near_distance: NEAR_EDGES * sections.of_an_edge,
+            near_distance: NEAR_EDGES * sections.mean_edge_range,
             sections,
             axis: sections.axis,
             shadow,

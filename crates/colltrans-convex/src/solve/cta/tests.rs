@@ -10,7 +10,7 @@ use super::planar::{self, LastAnswer, PlanarAnswer, PlanarHint};
 use super::section::Section;
 use super::section_pair::SectionPair;
 use super::sectioned_body::SectionedBody;
-use super::{CtaOptions, Guess, Origin};
+use super::{Guess, MinimisationOptions, Origin};
 use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
@@ -35,7 +35,10 @@ impl Observer for ExitCounter {
 }
 
 /// Returns the result of a minimisation and the work that it took.
-fn minimise_counting_steps(setting: &Setting, options: &CtaOptions) -> (NarrowedSearch, Steps) {
+fn minimise_counting_steps(
+    setting: &Setting,
+    options: &MinimisationOptions,
+) -> (NarrowedSearch, Steps) {
     let mut none = NoObserver;
     let mut watch = Watch::new(&mut none);
     let narrowed = minimise(setting, options, &mut watch);
@@ -113,7 +116,7 @@ fn brute_force_contact(p: &PlacedMesh, q: &PlacedMesh, d: DVec3) -> BruteForce {
     BruteForce::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
-const EXACT: CtaOptions = CtaOptions {
+const EXACT: MinimisationOptions = MinimisationOptions {
     start: Origin::Center,
     gap: 1e-10,
     keeps_to_cell: false,
@@ -340,7 +343,7 @@ fn exit_on_many_sided_face_gives_corners_around_the_line() {
 
 #[test]
 fn shifts_within_cells_need_a_quarter_more_planar_problems() {
-    let one_by_one = CtaOptions { keeps_to_cell: true, ..EXACT };
+    let one_by_one = MinimisationOptions { keeps_to_cell: true, ..EXACT };
     let mut random = Random(47);
     let bodies = ellipsoid_pair(2000, false);
     let (mut within, mut crossed) = (0, 0);
@@ -362,9 +365,9 @@ fn shifts_within_cells_need_a_quarter_more_planar_problems() {
 /// Cuts through the planar problem's value and cold starts find the same contact with more work.
 #[test]
 fn centroid_cuts_and_cold_starts_reach_same_contact_with_more_work() {
-    let paper = CtaOptions { keeps_to_cell: true, ..EXACT };
-    let centroid = CtaOptions { cuts: Cuts::Centroid, ..paper };
-    let cold = CtaOptions { starts_cold: true, ..paper };
+    let paper = MinimisationOptions { keeps_to_cell: true, ..EXACT };
+    let centroid = MinimisationOptions { cuts: Cuts::Centroid, ..paper };
+    let cold = MinimisationOptions { starts_cold: true, ..paper };
     let mut random = Random(53);
     let bodies = ellipsoid_pair(500, false);
     let mut work = [Steps::default(); 3];
@@ -430,7 +433,7 @@ fn ten_planar_problems_suffice_on_average_up_to_20000_vertices() {
             ellipsoid(count, DVec3::from_array(axes))
         });
         let mut steps = 0;
-        let options = CtaOptions { gap: 2.5e-3, ..EXACT };
+        let options = MinimisationOptions { gap: 2.5e-3, ..EXACT };
         for _ in 0..300 {
             let e = colliding_setting(&mut random);
             let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();

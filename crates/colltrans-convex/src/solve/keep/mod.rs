@@ -165,7 +165,7 @@ impl Line {
 
     /// Checks whether a vector, as computed, is for certain not longer than the gap.
     pub(crate) fn is_within_gap(&self, way: DVec3) -> bool {
-        way.length() + self.noise.mean_raised() <= self.keep
+        way.length() + self.noise.mean_length_margin() <= self.keep
     }
 
     /// Returns the distance of the bounds that `noises` noises, and the plane's error beyond its support,

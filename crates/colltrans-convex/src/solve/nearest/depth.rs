@@ -250,7 +250,7 @@ impl<'a> Polytope<'a> {
     /// can grow.
     fn grow_at_nearest(&mut self, best: &mut DepthBounds, enough: f64) {
         let noise = self.difference.noise.point();
-        let enough = enough + 2.0 * self.difference.noise.height_lowered();
+        let enough = enough + 2.0 * self.difference.noise.height_margin();
         for _ in 0..MAX_STEPS {
             let nearest = self.nearest_triangle();
             let Triangle { corners, normal, height, is_final, .. } = self.triangles[nearest];
@@ -374,7 +374,7 @@ impl<'a> Polytope<'a> {
     fn prove_lower_bound(self, best: &mut DepthBounds) {
         let noise = self.difference.noise;
         let least = self.triangles.iter().map(|t| t.height).fold(f64::MAX, f64::min);
-        let lower = (least - noise.height_lowered()).next_down();
+        let lower = (least - noise.height_margin()).next_down();
         if lower <= best.lower {
             return;
         }

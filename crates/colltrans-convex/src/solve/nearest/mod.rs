@@ -7,7 +7,7 @@
 //!
 //! Invariant: the bounds hold for the plane and the points that are returned, regardless of how these were found.
 //! - *Upper*: the points are weighted means of vertices. Their distance is raised by its rounding error
-//!   ([`Noise::mean_raised`]).
+//!   ([`Noise::mean_length_margin`]).
 //! - *Lower*: the height along a rounded unit normal is lowered by one noise and by the excess of the bodies beyond the
 //!   support points ([`TwoBodies::support_with_excess`]).
 
@@ -75,8 +75,8 @@ impl<'a> Difference<'a> {
         let (in_moving, in_fixed) = (normals[0], -normals[1]);
         let (moving, fixed) = match near {
             Some(near) => (
-                bodies.moving.support_from(in_moving, near.moving.0),
-                bodies.fixed.support_from(in_fixed, near.fixed.0),
+                bodies.moving.support_point_from(in_moving, near.moving.0),
+                bodies.fixed.support_point_from(in_fixed, near.fixed.0),
             ),
             None => (bodies.moving.support(in_moving).0, bodies.fixed.support(in_fixed).0),
         };
@@ -85,7 +85,7 @@ impl<'a> Difference<'a> {
 
     /// Returns the vertex pair that is lowest along `normal` (setting frame, any length).
     #[inline]
-    pub fn lowest_pair(&self, normal: DVec3) -> VertexPair {
+    pub fn support_pair(&self, normal: DVec3) -> VertexPair {
         self.support_point(normal, None).pair
     }
 
@@ -122,7 +122,7 @@ impl<'a> Difference<'a> {
             return direction_or_x(center);
         }
         let ellipsoid = |inertia: &Inertia, rotation: &DMat3| {
-            Symmetric::gram(&inertia.axes_by_factor(&rotation.transpose()))
+            Symmetric::gram(&inertia.transposed_factor_product(&rotation.transpose()))
         };
         let [a, b] = [ellipsoid(p, &bodies.moving_matrix), ellipsoid(q, &bodies.fixed_matrix)];
         direction_or_x(ellipsoid_gap_normal(&a, &b, center, q.radius / p.radius))
@@ -470,7 +470,7 @@ impl DescentResult {
         let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point();
         let common = if is_near { self.points_around_origin(difference) } else { None };
         common.unwrap_or_else(|| {
-            let distance = (self.upper + difference.noise.mean_raised()).next_up();
+            let distance = (self.upper + difference.noise.mean_length_margin()).next_up();
             NearPoints { pairs, weights, distance }
         })
     }

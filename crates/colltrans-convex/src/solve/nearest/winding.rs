@@ -30,7 +30,7 @@ pub(super) fn winds_around_origin(
     let size = bodies.scale();
     let mut has_volume = false;
     for corners in &surface.triangles {
-        let rounded = volume::rounded_sign(corners.map(|k| points[k as usize]), size);
+        let rounded = volume::rounded_origin_side(corners.map(|k| points[k as usize]), size);
         let sign = rounded.unwrap_or_else(|| {
             let [a, b, c] = corners.map(|k| bodies.terms(surface.pairs[k as usize]));
             volume::sign([&a, &b, &c], size)

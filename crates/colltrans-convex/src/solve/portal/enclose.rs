@@ -173,7 +173,7 @@ impl<O: Observer> PortalSearch<'_, '_, '_, O> {
             if !slope.is_finite() {
                 break;
             }
-            let point = self.context.difference.support_from(normal_of(slope), near);
+            let point = self.context.difference.support_point_from(normal_of(slope), near);
             self.context.watch.support(|| Support::from_point(normal_of(slope), &point));
             if outward.dot(point.shadow()) < least_scaled {
                 return Ok(Tangent { point, slope });
@@ -249,7 +249,7 @@ pub(crate) fn widest_margin<O: Observer>(
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = normal_and_distance(&segment) else { break };
         let lateral: DVec3 = normal.extend(0.0);
-        let climbed = context.difference.support_from(lateral, segment[0].pair);
+        let climbed = context.difference.support_point_from(lateral, segment[0].pair);
         let line = verified_line(&context.difference, normal, climbed);
         let SeparatingLine { margin, point, .. } = line;
         context.watch.support(|| Support::from_point(lateral, &point));

@@ -128,20 +128,20 @@ fn walk_to_line<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usi
 /// Limits of a face walk from a guess.
 pub(crate) struct WalkLimits {
     /// Maximum number of corrections of the guess by the curvature of the ellipsoids.
-    max_corrections: usize,
+    corrections: usize,
     /// Maximum distance of the line, in widths of the last triangle that is so near, at which a walk
     /// begins if corrections come no nearer. From farther away, enclosing the line is faster.
-    max_widths: f64,
+    widths: f64,
     /// Maximum number of faces of `M` crossed. Beyond that, enclosing the line is faster.
-    max_crossings: usize,
+    crossings: usize,
 }
 
 /// Limits for a guess from ellipsoids (measured).
 pub(crate) const ELLIPSOID_LIMITS: WalkLimits =
-    WalkLimits { max_corrections: 3, max_widths: 8.0, max_crossings: MAX_CROSSINGS };
+    WalkLimits { corrections: 3, widths: 8.0, crossings: MAX_CROSSINGS };
 /// Limits for a guess from outlines, which is either right or wrong (measured).
 pub(super) const OUTLINE_LIMITS: WalkLimits =
-    WalkLimits { max_corrections: 0, max_widths: 4.0, max_crossings: 8 };
+    WalkLimits { corrections: 0, widths: 4.0, crossings: 8 };
 
 /// Maximum ratio of the distances from the line after and before a correction. If a correction exceeds
 /// it, the bodies are not similar to ellipsoids.
@@ -189,10 +189,10 @@ pub(crate) fn walk_from_guess<O: Observer>(
         };
         let edge = Edge::from_corner(&portal, from);
         let [distance, width] = [edge.scaled_distance(), edge.scaled_width()];
-        if distance <= limits.max_widths * width {
+        if distance <= limits.widths * width {
             within_reach = Some(edge);
         }
-        if distance <= MAX_WALK_WIDTHS * width || corrections == limits.max_corrections {
+        if distance <= MAX_WALK_WIDTHS * width || corrections == limits.corrections {
             break;
         }
         if has_polygonal_faces(&context.difference) {
@@ -220,8 +220,8 @@ pub(crate) fn walk_from_guess<O: Observer>(
         }
     }
     let nearest = NormalGuess { normal: normal_of(slope), near: Some(vertex.pair) };
-    let walk = within_reach
-        .map_or(WalkResult::Lost, |edge| walk_to_line(context, edge, limits.max_crossings));
+    let walk =
+        within_reach.map_or(WalkResult::Lost, |edge| walk_to_line(context, edge, limits.crossings));
     (walk, nearest)
 }
 
@@ -232,7 +232,7 @@ fn current_slopes(
     last: &ContactPortal,
     shift: DVec2,
 ) -> Option<[DVec2; 2]> {
-    let [p, q] = difference.shadow_from_bodies(last.normals)?;
+    let [p, q] = difference.body_normals_to_shadow(last.normals)?;
     let near = difference.is_near(shift.length()) && p.z.min(q.z) > 0.0;
     near.then(|| [p, q].map(|n| n.truncate() / n.z))
 }

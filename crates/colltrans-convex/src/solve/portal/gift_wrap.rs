@@ -11,7 +11,7 @@ use std::hint::select_unpredictable;
 
 use glam::{DVec2, DVec3};
 
-use crate::body::{ConvexPolyhedron, FAN, greatest_near};
+use crate::body::{ConvexPolyhedron, FAN, cyclic_maximum};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 
@@ -116,8 +116,8 @@ impl BodyRotation {
             let size = run.abs() + rise.abs();
             if run > self.least { -rise / size } else { (rise.abs() / size - 2.0).max(-2.0) }
         };
-        let near = body.steepest_edge(vertex, -self.up);
-        let i = greatest_near(neighbours.len(), near, precedence);
+        let near = body.steepest_edge_position(vertex, -self.up);
+        let i = cyclic_maximum(neighbours.len(), near, precedence);
         let (rise, run) = ahead(i);
         if run > self.least {
             FirstNeighbour { vertex: neighbours[i], rise, run }

@@ -58,7 +58,7 @@ impl<O: Observer> Context<'_, '_, O> {
     #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
     fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> Point {
         let point = match near {
-            Some(near) => self.difference.support_from(normal, near),
+            Some(near) => self.difference.support_point_from(normal, near),
             None => self.difference.support(normal),
         };
         self.watch.support(|| Support::from_point(normal, &point));

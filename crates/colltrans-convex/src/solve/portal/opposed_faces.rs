@@ -61,8 +61,8 @@ fn face_pair_contact(difference: &MinkowskiDifference, f: &LargeFace) -> Option<
     let setting = difference.setting;
     let g = setting.fixed.large_face_toward(-difference.in_fixed(DVec3::Z))?;
     let have_few_corners = f.has_few_corners() && g.has_few_corners();
-    let normal = difference.shadow_of_moving(f.normal);
-    let parallel = normal.dot(difference.shadow_of_fixed(g.normal)) < -MIN_PARALLEL_COSINE;
+    let normal = difference.moving_normal_to_shadow(f.normal);
+    let parallel = normal.dot(difference.fixed_normal_to_shadow(g.normal)) < -MIN_PARALLEL_COSINE;
     if !parallel || normal.z <= 0.0 {
         return None;
     }
@@ -124,7 +124,7 @@ fn opposite_corners(difference: &MinkowskiDifference, f: &LargeFace, g: &LargeFa
         body.vertices()[origin_vertex(body, h) as usize] - body.inertia().center
     };
     let ([p, ..], [first, ..]) = (f.half_edges, g.half_edges);
-    let first_corner = difference.in_fixed(difference.shadow_of_moving(place(moving, p)));
+    let first_corner = difference.in_fixed(difference.moving_normal_to_shadow(place(moving, p)));
     let mut farthest = (f64::NEG_INFINITY, first);
     for quarters in 0..4 {
         let q = half_edge_at_quarter(fixed, first, quarters);

@@ -14,13 +14,13 @@ use glam::{DMat2, DVec2, DVec3};
 use super::face_walk::{OUTLINE_LIMITS, WalkResult, walk_from_guess};
 use super::outline_maximum::{Maximum, maximise};
 use super::{Context, NormalGuess, Portal, PortalStatus, normal_of};
-use crate::body::{MOST_RIMS, Rim};
+use crate::body::{MAX_RIMS, Rim};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::Observer;
 
-/// Minimum cosine of the angle between the axis of a rim and the direction. Below that, the plane of
-/// the rim is nearly parallel to the direction, and no vertex can meet it.
+/// Minimum cosine of the angle between the axis of a rim and the direction for which the cap of the rim is tried.
+/// Below that, the cap is nearly parallel to the direction, and the maximisation decides.
 const MIN_AXIS_COSINE: f64 = 1e-3;
 
 /// Walks to a face near the line by means of the outlines, from the guess `start`.
@@ -72,7 +72,7 @@ pub(super) struct RimInDifference {
 
 /// Outline of one body as a part of `M`.
 pub(super) struct Outline {
-    pub(super) rims: [RimInDifference; MOST_RIMS],
+    pub(super) rims: [RimInDifference; MAX_RIMS],
     count: usize,
 }
 
@@ -85,16 +85,18 @@ pub(super) struct HeightExpansion {
 }
 
 impl Outline {
-    const NONE: Self = Self { rims: [RimInDifference::POINT; MOST_RIMS], count: 0 };
+    const NONE: Self = Self { rims: [RimInDifference::POINT; MAX_RIMS], count: 0 };
 
     /// Stores the outline of the moving body, negated.
     fn set_moving(&mut self, difference: &MinkowskiDifference) {
         self.set_rims(difference.setting.moving.outline(), |rim| {
             let [to, away] = rim.ends;
             RimInDifference {
-                center: -difference.shadow_of_moving(rim.center),
+                center: -difference.moving_normal_to_shadow(rim.center),
                 ends: [away, to],
-                ..RimInDifference::without_center(rim, |axis| difference.shadow_of_moving(axis))
+                ..RimInDifference::without_center(rim, |axis| {
+                    difference.moving_normal_to_shadow(axis)
+                })
             }
         });
     }
@@ -103,7 +105,7 @@ impl Outline {
     fn set_fixed(&mut self, difference: &MinkowskiDifference) {
         self.set_rims(difference.setting.fixed.outline(), |rim| RimInDifference {
             center: difference.difference(DVec3::ZERO, rim.center),
-            ..RimInDifference::without_center(rim, |axis| difference.shadow_of_fixed(axis))
+            ..RimInDifference::without_center(rim, |axis| difference.fixed_normal_to_shadow(axis))
         });
     }
 
@@ -257,7 +259,7 @@ fn lowest_point_on_rims(
     [of_moving, of_fixed]: [DVec3; 2],
 ) -> Point {
     let setting = difference.setting;
-    let moving = setting.moving.farthest_on_rim(difference.in_moving(of_moving), moving);
-    let fixed = setting.fixed.farthest_on_rim(-difference.in_fixed(of_fixed), fixed);
+    let moving = setting.moving.farthest_rim_vertex(difference.in_moving(of_moving), moving);
+    let fixed = setting.fixed.farthest_rim_vertex(-difference.in_fixed(of_fixed), fixed);
     difference.vertex(VertexPair::of(moving, fixed))
 }

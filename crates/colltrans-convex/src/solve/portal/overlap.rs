@@ -82,7 +82,7 @@ fn overlap_by_polygon<O: Observer>(
         }
         let inward = (-outward).extend(0.0);
         let is_last = |depth: f64| depth - reach <= context.difference.noise.point();
-        let mut point = context.difference.support_from(inward, corners[edge].pair);
+        let mut point = context.difference.support_point_from(inward, corners[edge].pair);
         if is_last(outward.dot(point.shadow())) {
             point = Plane::verified_support_point(&context.difference, inward, point);
         }

@@ -100,8 +100,8 @@ impl Plane {
         let lowest = VertexPair::of(f.corners[0], g.corners[0]);
         let noise = difference.noise.point();
         let most = 0.5 * noise;
-        let excess = setting.moving.excess_of_face(f, normals[0], 1.0, lowest.moving.0, most)?
-            + setting.fixed.excess_of_face(g, -normals[1], 1.0, lowest.fixed.0, most)?;
+        let excess = setting.moving.large_face_excess(f, normals[0], 1.0, lowest.moving.0, most)?
+            + setting.fixed.large_face_excess(g, -normals[1], 1.0, lowest.fixed.0, most)?;
         (excess <= MAX_EXCESS * noise).then(|| {
             let excess = excess + setting.input_excess();
             Self { normal, normals, lowest, excess }

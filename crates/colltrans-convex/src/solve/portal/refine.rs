@@ -86,7 +86,7 @@ pub(crate) fn refine<O: Observer>(
                 narrow_portal_normal(portal)
             }
         };
-        let point = context.difference.support_from(plane, portal[newest].pair);
+        let point = context.difference.support_point_from(plane, portal[newest].pair);
         context.watch.support(|| Support::from_point(plane, &point));
         let rounding = context.difference.noise.plane(round >= TIES_AFTER);
         let below = match plane_or_lower_point(&context.difference, portal, plane, point, rounding)

@@ -19,7 +19,7 @@ const MAX_FACETS: usize = 4;
 const NEAR_NOISES: f64 = 64.0;
 /// Depth of an overlap, as a share of the size, up to which the facets around the contact are tested.
 const MAX_SHALLOW_DEPTH: f64 = 1e-3;
-/// Maximum number of vertices that are compared for the max_height_along one.
+/// Maximum number of vertices that are compared for the farthest one.
 const MAX_TOP_VERTICES: usize = 32;
 
 /// Result of the facets around the contact.
@@ -174,7 +174,7 @@ fn blocking_pair(
             break;
         }
     }
-    best.map(|found| ContactGuess::Stop(found.among_all(scene), least))
+    best.map(|found| ContactGuess::Stop(found.with_least_others(scene), least))
 }
 
 /// Finds the facets of both bodies around a contact of their hulls; `None` if a body has no facet there.

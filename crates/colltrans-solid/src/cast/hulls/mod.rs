@@ -19,7 +19,7 @@ use glam::DVec3;
 use crate::body::Solid;
 use colltrans_convex::answer::{Contact, Outcome};
 use colltrans_convex::body::ConvexPolyhedron;
-use colltrans_convex::body::Keepable;
+use colltrans_convex::body::DerivedData;
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::Setting;
 use colltrans_convex::solve::options::Options;
@@ -97,7 +97,7 @@ struct ConvexBody {
     inner_radius: f64,
 }
 
-impl Keepable for CachedBody {
+impl DerivedData for CachedBody {
     fn heap_bytes(&self) -> usize {
         self.0.as_ref().map_or(0, |body| {
             body.hull.memory_bytes() + body.triangle_at.capacity() * size_of::<u32>()

@@ -67,8 +67,9 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// Computes for each side of a triangle how far a point lies inside it, seen against the point's normal. Each
-    /// value is a distance, less at least `slack`, times a length of at most that of the side.
+    /// Computes for each side of a triangle, seen against the point's normal, the distance of the point inside the side
+    /// times the side's projected length, minus `slack` times the sum norm of the side. A positive `slack` is thus
+    /// subtracted from the distance at least in full, and a negative one is added at least in full.
     pub(super) fn distances_inside(
         &self,
         triangle: u32,

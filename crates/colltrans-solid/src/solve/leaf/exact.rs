@@ -125,7 +125,7 @@ impl<'s, 'a> FinePair<'s, 'a> {
     fn volume_over_area(&self, volume: [Way; 3], [x, y]: [Way; 2]) -> Option<Above> {
         let over = fine::determinant(volume);
         let Some(sign) = over.sign() else {
-            return fine::tracked_sign(volume)?.is_eq().then_some(Above::LEVEL);
+            return fine::tracked_determinant_sign(volume)?.is_eq().then_some(Above::LEVEL);
         };
         let under = fine::determinant([x, y, Fine::ORIGIN.to(&self.direction)]);
         let sign = if under.sign()?.is_lt() { sign.reverse() } else { sign };
@@ -135,8 +135,8 @@ impl<'s, 'a> FinePair<'s, 'a> {
     }
 }
 
-/// Computes the height of a corner above the plane of a facet, which is counter-clockwise from below; `None` if a
-/// number does not fit.
+/// Computes the height of a corner above the plane of a facet of either orientation, as a multiple of the direction;
+/// `None` if a number does not fit.
 fn above_facet<const N: usize>(
     scene: &Scene,
     direction: &[Integer<N>; 3],

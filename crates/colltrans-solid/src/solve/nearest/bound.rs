@@ -154,7 +154,7 @@ impl NodeExtents {
         let local = side.matrix.transpose() * rest;
         let middle = local.dot(self.middle) + rest.dot(side.offset[0]);
         let node = &side.solid.nodes()[self.node as usize];
-        let gain = Parts::new(-local).gain_of(&node.cuts, self.half * 2.0, 0.0);
+        let gain = Parts::new(-local).support_reduction_by_cuts(&node.cuts, self.half * 2.0, 0.0);
         by_slab + middle - local.abs().dot(self.half) + gain
     }
 }

@@ -218,7 +218,7 @@ impl ConvexPolyhedron {
         // Queries use the links to walk around faces of small bodies and along rims of large faces. Other bodies
         // drop them.
         if body.vertices.len() > hull::MAX_INPUT_ORDER && body.large_faces.is_empty() {
-            body.topology.let_go_of_links();
+            body.topology.drop_links();
         }
         body
     }

@@ -168,7 +168,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
 
     /// Finds an edge that crosses the level on a face with many sides, next to the edge `up`, which does not cross
     /// it. Returns `None` if neither face has many sides, or the search does not reach the level.
-    pub(crate) fn along_faces(&self, up: u32) -> Option<u32> {
+    pub(crate) fn crossing_along_faces(&self, up: u32) -> Option<u32> {
         let beside = [up, self.topology.half_edge(up).twin];
         beside.into_iter().find_map(|h| self.along_face(h))
     }

@@ -149,7 +149,7 @@ pub(crate) struct AxisSections {
     pub(crate) diameter: f64,
     /// The difference of `range` divided by the square root of the number of vertices, approximately the range of
     /// one edge.
-    pub(crate) of_an_edge: f64,
+    pub(crate) mean_edge_range: f64,
     /// Scaled coordinates of the section plane: `position_i = plane_i . v - origin_i`.
     plane: [DVec3; 2],
     origin: [f64; 2],
@@ -180,7 +180,7 @@ impl AxisSections {
         let mut sections = Self {
             range,
             diameter: (range[1] - range[0]) / axis.length() + 2.0 * across,
-            of_an_edge: (range[1] - range[0]) / (vertices.len() as f64).sqrt(),
+            mean_edge_range: (range[1] - range[0]) / (vertices.len() as f64).sqrt(),
             axis,
             plane,
             origin,

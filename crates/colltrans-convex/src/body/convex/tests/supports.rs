@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::bodies::{Random, cone, prism};
 use crate::body::ConvexPolyhedron;
-use crate::body::convex::fan::{AboveQuery, greatest_near};
+use crate::body::convex::fan::{AboveQuery, cyclic_maximum};
 
 /// Builds a frustum over a polygon with its corners on an ellipse, most of them close together.
 fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
@@ -52,7 +52,7 @@ fn support_point_on_rims_is_farthest_vertex() {
             let d = sample_direction(&mut random, k);
             let farthest = vertices.iter().map(|v| d.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
             let near = random.index(vertices.len()) as u32;
-            for found in [body.support(d).0, body.support_from(d, near)] {
+            for found in [body.support(d).0, body.support_point_from(d, near)] {
                 let short = farthest - d.dot(vertices[found as usize]);
                 // Corners are rounded. Therefore coordinates along the boundary may deviate by this amount.
                 let rounding = 64.0 * f64::EPSILON * d.abs().dot(size);
@@ -143,7 +143,7 @@ fn greatest_near_finds_maximum_from_any_start() {
                 looks.set(looks.get() + 1);
                 -(away(i) as f64 / count as f64).powf(bent)
             };
-            assert_eq!(greatest_near(count, near, value), top, "of {count} from {near}");
+            assert_eq!(cyclic_maximum(count, near, value), top, "of {count} from {near}");
             let looks = looks.get();
             let most = 3 + 8 * (away(near) as f64 + 1.0).log2() as usize;
             assert!(looks <= most, "{looks} evaluations at distance {}", away(near));

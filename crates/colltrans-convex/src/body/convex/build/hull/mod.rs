@@ -23,7 +23,7 @@ use glam::DVec3;
 use crate::body::Aabb;
 use crate::body::error::{BuildError, TopologyError};
 use colltrans_kernel::noise;
-use colltrans_kernel::range::in_exact_range;
+use colltrans_kernel::range::is_in_exact_range;
 use colltrans_kernel::topology::{Topology, bucket};
 use quickhull::Simplicial;
 use violation::Gauge;
@@ -70,7 +70,7 @@ pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
         if !point.is_finite() {
             return Err(BuildError::NotFinite { index, point });
         }
-        if !in_exact_range(point) {
+        if !is_in_exact_range(point) {
             return Err(BuildError::OutOfRange { index, point });
         }
     }

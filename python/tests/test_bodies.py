@@ -193,7 +193,9 @@ def test_bodies_that_cannot_shrink_or_grow() -> None:
         segment.grown(0.125)
     for amount in (-1, np.nan, np.inf):
         for move in (plate.shrunk, plate.grown):
-            with pytest.raises(BuildError, match="invalid amount (-1|NaN|inf) to shrink or grow by"):
+            with pytest.raises(
+                BuildError, match="invalid amount (-1|NaN|inf) to shrink or grow by"
+            ):
                 move(amount)
     with pytest.raises(BuildError, match="out of range"):
         plate.grown(1e75)

@@ -192,7 +192,12 @@ fn options_of_other_commands_are_told() {
     refused(folder, &third, 2, &["colltrans clearance MOVING --among"]);
     let unknown = stderr(&run(folder, &two("distance", &["--frm", "a"])));
     assert!(unknown.contains("similar argument exists: '--from'"), "{unknown}");
-    refused(folder, &two("cast", &["--direction", "x", "--keep", "1e70"]), 2, &["the minimum gap 1000"]);
+    refused(
+        folder,
+        &two("cast", &["--direction", "x", "--keep", "1e70"]),
+        2,
+        &["the minimum gap 1000"],
+    );
 }
 
 /// How the independent checker ends; nothing where there is no Python.

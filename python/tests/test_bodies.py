@@ -183,7 +183,9 @@ def test_bodies_that_cannot_shrink_or_grow() -> None:
     sheet = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 0])
     segment = ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])
     for thin in (sheet, segment):
-        with pytest.raises(BuildError, match=r"shrunk by 0\.125 .* one of radius 0 it does"):
+        with pytest.raises(
+            BuildError, match=r"shrunk by 0\.125: it contains no ball.* one of radius 0"
+        ):
             thin.shrunk(0.125)
         for same, report in (thin.shrunk(0), thin.grown(0)):
             assert same.vertices.tolist() == thin.vertices.tolist()
@@ -197,7 +199,7 @@ def test_bodies_that_cannot_shrink_or_grow() -> None:
                 BuildError, match="invalid amount (-1|NaN|inf) to shrink or grow by"
             ):
                 move(amount)
-    with pytest.raises(BuildError, match="out of range"):
+    with pytest.raises(BuildError, match="not negative, in range"):
         plate.grown(1e75)
     with pytest.raises(TypeError):
         plate.grown("1")  # type: ignore[arg-type]

@@ -11,7 +11,10 @@ from conftest import ROOT
 import colltrans
 
 TUTORIALS = ROOT / "python" / "docs" / "tutorials"
-PAGES = [ROOT / "docs" / "python.md", *sorted(TUTORIALS.glob("*.md"))]
+GUIDES = [
+    ROOT / "docs" / "guide" / f"{name}.md" for name in ("python", "distance", "motions", "robots")
+]
+PAGES = [*GUIDES, *sorted(TUTORIALS.glob("*.md"))]
 
 #: What pages use beside numpy.
 NEEDED = {"cad": ["plotly"], "data": ["pyarrow"], "python": ["plotly"]}

@@ -9,8 +9,7 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 
 use super::{
-    Ending, FeatureRecord, Features, FeaturesRecord, StartOverlapRecord, coordinates, kept,
-    open_ones, record,
+    Ending, Features, FeaturesRecord, StartOverlapRecord, coordinates, kept, open_ones, record,
 };
 
 record! {
@@ -193,7 +192,7 @@ impl ClearanceRecord {
 
 impl ContactRecord {
     fn of(contact: &Contact, cast: &Cast) -> Self {
-        let Features { moving, fixed } = contact.features(cast);
+        let features = contact.features(cast);
         let translation = contact.bounded();
         Self {
             translation: Some(translation.value),
@@ -202,10 +201,7 @@ impl ContactRecord {
             point: Some(coordinates(contact.points(cast).on_fixed)),
             rounding: Some(contact.certificate.rounding),
             keep: kept(cast.options().keep),
-            features: Some(FeaturesRecord {
-                moving: FeatureRecord::of(moving, cast.moving()),
-                fixed: FeatureRecord::of(fixed, cast.fixed()),
-            }),
+            features: Some(FeaturesRecord::of(features, [cast.moving(), cast.fixed()])),
             solver: Some(contact.solver),
             steps: Some(contact.steps),
             ..Self::default()
@@ -264,10 +260,10 @@ impl SolidClearanceRecord {
                 shrunk_distance_bounds: Some(contact.shrunk_distance.bounds()),
                 normal: Some(coordinates(contact.normal)),
                 point: Some(coordinates(contact.point_on_fixed)),
-                features: Some(FeaturesRecord {
-                    moving: FeatureRecord::of(contact.moving_feature, cast.moving()),
-                    fixed: FeatureRecord::of(contact.fixed_feature, cast.fixed()),
-                }),
+                features: Some(FeaturesRecord::of(
+                    Features { moving: contact.moving_feature, fixed: contact.fixed_feature },
+                    [cast.moving(), cast.fixed()],
+                )),
                 ..record
             },
         }

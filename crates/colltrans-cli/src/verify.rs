@@ -1,7 +1,7 @@
 //! `colltrans verify`: checks the proofs that `--save-proof` writes.
 
 use colltrans::record::FreeRecord;
-use colltrans::{AnyNear, DistanceStatement, ProofError, ProofFile, Proven, Statement};
+use colltrans::{AnyNear, DistanceStatement, ProofFile, Proven, Statement};
 use serde_json::{Map, Value, json};
 
 use crate::args::VerifyArguments;
@@ -14,9 +14,8 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let text = read_text(&arguments.proof)?;
     let proof = ProofFile::from_json(&text)
         .map_err(|error| Failure::new(Code::Input, format!("{place}: {error}")))?;
-    match Verified::check(&proof) {
-        Ok(of) if arguments.json => print_json(&format!("{}\n", of.json)),
-        Ok(of) => print(&format!("holds: {}\n", of.words)),
+    match proof.check() {
+        Ok(proven) => print_statement(&proof, &proven, arguments.json),
         Err(error) => {
             let error = error.to_string();
             if arguments.json {
@@ -28,26 +27,19 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     }
 }
 
-/// Statement of a proof that holds.
-struct Verified {
-    words: String,
-    /// Fields of answers.
-    json: Value,
-}
-
-impl Verified {
-    fn check(proof: &ProofFile) -> Result<Self, ProofError> {
-        let proven = proof.check()?;
-        let mut words = proof.to_string();
-        let free = match &proven {
-            Proven::Directions(free) => Some(FreeRecord::of(free, |_| [None, None])),
-            _ => None,
-        };
-        let json = told(proof, proven.time(), free.as_ref(), &words);
-        if let Some(free) = &free {
-            words = format!("{words}: {}", directions::verified(free));
-        }
-        Ok(Self { words, json })
+/// Prints the statement of a proof that holds, in words or in the fields of answers.
+fn print_statement(proof: &ProofFile, proven: &Proven<'_>, as_json: bool) -> Result<(), Failure> {
+    let words = proof.to_string();
+    let free = match proven {
+        Proven::Directions(free) => Some(FreeRecord::of(free, |_| [None, None])),
+        _ => None,
+    };
+    if as_json {
+        return print_json(&format!("{}\n", told(proof, proven.time(), free.as_ref(), &words)));
+    }
+    match &free {
+        Some(free) => print(&format!("holds: {words}: {}\n", directions::verified(free))),
+        None => print(&format!("holds: {words}\n")),
     }
 }
 

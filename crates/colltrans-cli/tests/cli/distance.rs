@@ -5,9 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::proof::{checked_in_fractions, saved};
-use crate::support::{
-    answered, colltrans, data, folder, json as read, refused, run, stderr, stdout,
-};
+use crate::support::{answered, colltrans, folder, json as read, refused, run, stderr, stdout};
 
 /// A unit cube 3 to the left of another, and a little aside.
 const APART: [&str; 4] = ["cube.off", "cube.off", "--moving-pose", "-3,0.25,-0.5"];
@@ -252,24 +250,6 @@ fn lines_that_do_not_fit_their_query_are_refused() {
         assert!(told["outcome"] == "error" && message.contains(said), "{more}: {message}");
     }
     colltrans(folder.path()).args(["distance", "--help"]).assert().success();
-}
-
-/// What `docs/guide/distance.md` shows is what the commands print there.
-#[test]
-fn the_page_shows_what_is_printed() {
-    let root = data().join("..");
-    let page = std::fs::read_to_string(root.join("docs/guide/distance.md")).unwrap();
-    let blocks: Vec<&str> = page.split("```").collect();
-    let shown = blocks.windows(3).filter_map(|part| {
-        Some((part[0].strip_prefix("sh\ncolltrans ")?, part[2].strip_prefix("text\n")?))
-    });
-    let mut count = 0;
-    for (command, text) in shown {
-        let words: Vec<&str> = command.split_whitespace().collect();
-        assert_eq!(answered(&root, &words), text, "{command}");
-        count += 1;
-    }
-    assert_eq!(count, 3);
 }
 
 #[test]

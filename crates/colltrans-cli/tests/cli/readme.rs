@@ -39,30 +39,40 @@ fn blocks_of(page: &str) -> Vec<Block> {
     blocks
 }
 
+/// Returns the arguments of each command of a page that begins with `program` and is followed by its output, and this
+/// output.
+fn shown_commands(blocks: &[Block], program: &str) -> Vec<(String, String)> {
+    let shown = |pair: &[Block]| {
+        let [command, output] = pair else { unreachable!("windows of two") };
+        let is_shown = command.text.lines().count() == 1
+            && ["text", "json"].contains(&output.language.as_str());
+        let arguments = command.text.strip_prefix(program).filter(|_| is_shown)?;
+        Some((arguments.to_owned(), output.text.clone()))
+    };
+    blocks.windows(2).filter_map(shown).collect()
+}
+
+/// Runs a command of a page, its pictures written to a folder of their own. Returns what it prints.
+fn printed(arguments: &str) -> String {
+    let folder = TemporaryFolder::new();
+    let placed = |word: &str| {
+        let is_picture = Path::new(word).extension().is_some_and(|kind| kind == "svg");
+        let place = if is_picture { folder.path().join(word) } else { word.into() };
+        place.to_str().unwrap().to_owned()
+    };
+    let output =
+        colltrans(&root()).args(arguments.split_whitespace().map(placed)).output().unwrap();
+    assert!(output.status.success(), "{arguments}: {}", stderr(&output));
+    stdout(&output)
+}
+
 #[test]
 fn commands_print_what_it_shows() {
-    let blocks = blocks();
-    let mut shown = 0;
-    for pair in blocks.windows(2) {
-        let [command, answer] = pair else { unreachable!("windows of two") };
-        let Some(arguments) = command.text.strip_prefix("cargo run --release -- ") else {
-            continue;
-        };
-        if !["text", "json"].contains(&answer.language.as_str()) {
-            continue;
-        }
-        let pictures = TemporaryFolder::new();
-        let picture = |word: &str| match word {
-            "contact.svg" => pictures.path().join(word).to_str().unwrap().to_owned(),
-            _ => word.to_owned(),
-        };
-        let output =
-            colltrans(&root()).args(arguments.split_whitespace().map(picture)).output().unwrap();
-        assert!(output.status.success(), "{arguments}: {}", stderr(&output));
-        assert_eq!(stdout(&output), answer.text, "{arguments}");
-        shown += 1;
+    let shown = shown_commands(&blocks(), "cargo run --release -- ");
+    for (arguments, output) in &shown {
+        assert_eq!(printed(arguments), *output, "{arguments}");
     }
-    assert!(shown >= 2, "the README shows {shown} answers");
+    assert!(shown.len() >= 2, "the README shows {} answers", shown.len());
 }
 
 /// Every command of a guide that is followed by its output.
@@ -74,32 +84,18 @@ fn guides_show_what_commands_print() {
         .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
         .collect();
     pages.sort();
-    let mut shown = Vec::new();
+    let mut counts = Vec::new();
     for page in &pages {
         let blocks = blocks_of(&std::fs::read_to_string(page).unwrap());
-        let name = page.file_stem().unwrap().to_str().unwrap();
-        for pair in blocks.windows(2) {
-            let [command, output] = pair else { unreachable!("windows of two") };
-            let is_one = command.language == "sh" && command.text.lines().count() == 1;
-            let Some(arguments) = command.text.strip_prefix("colltrans ").filter(|_| is_one) else {
-                continue;
-            };
-            if output.language != "text" {
-                continue;
-            }
-            let folder = TemporaryFolder::new();
-            let placed = |word: &str| {
-                let is_picture = Path::new(word).extension().is_some_and(|kind| kind == "svg");
-                let place = if is_picture { folder.path().join(word) } else { word.into() };
-                place.to_str().unwrap().to_owned()
-            };
-            let printed =
-                colltrans(&root()).args(arguments.split_whitespace().map(placed)).output().unwrap();
-            assert_eq!(stdout(&printed), output.text, "{name}: colltrans {arguments}");
-            shown.push(name.to_owned());
+        let name = page.file_stem().unwrap().to_str().unwrap().to_owned();
+        let shown = shown_commands(&blocks, "colltrans ");
+        for (arguments, output) in &shown {
+            assert_eq!(printed(arguments), *output, "{name}: colltrans {arguments}");
         }
+        counts.push((name, shown.len()));
     }
-    assert!(shown.len() >= 7, "commands with their output: {shown:?}");
+    assert!(counts.contains(&("distance".into(), 3)), "{counts:?}");
+    assert!(counts.iter().map(|(_, count)| count).sum::<usize>() >= 7, "{counts:?}");
 }
 
 #[test]

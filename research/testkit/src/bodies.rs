@@ -56,6 +56,16 @@ pub fn cuboid(low: impl Into<DVec3>, high: impl Into<DVec3>) -> Solid {
     solid(&shapes::block(low, high))
 }
 
+/// Returns a floor with a wall at its end as one solid.
+///
+/// # Panics
+/// Never.
+pub fn floor_with_wall() -> Solid {
+    let floor = block([-4.0, -2.0, -1.0], [4.0, 2.0, 0.0]);
+    let wall = block([3.0, -2.0, 0.0], [4.0, 2.0, 5.0]);
+    Solid::from_pieces([&floor, &wall]).expect("pieces")
+}
+
 /// Returns a place without a rotation.
 ///
 /// # Panics

@@ -8,6 +8,33 @@ use glam::DVec3;
 
 use crate::shapes::{Mesh, extruded};
 
+/// Boxes, by their low and high corners, of a room from -2.2 to 2.2 with a window in its side towards x.
+pub const ROOM_WITH_WINDOW: [[[f64; 3]; 2]; 9] = [
+    [[-2.2, -2.2, -2.2], [2.2, 2.2, -2.0]],
+    [[-2.2, -2.2, 2.0], [2.2, 2.2, 2.2]],
+    [[-2.2, -2.2, -2.2], [-2.0, 2.2, 2.2]],
+    [[-2.2, -2.2, -2.2], [2.2, -2.0, 2.2]],
+    [[-2.2, 2.0, -2.2], [2.2, 2.2, 2.2]],
+    [[2.0, -2.2, -2.2], [2.2, 2.2, 0.5]],
+    [[2.0, -2.2, 1.3], [2.2, 2.2, 2.2]],
+    [[2.0, -2.2, -2.2], [2.2, -0.8, 2.2]],
+    [[2.0, 0.8, -2.2], [2.2, 2.2, 2.2]],
+];
+
+/// Boxes, by their low and high corners, of a tray with grooves for a lid that slides along x as far as a stop.
+pub const TRAY_WITH_GROOVES: [[[f64; 3]; 2]; 10] = [
+    [[-1.0, -1.0, -1.0], [5.0, 4.0, 0.0]],
+    [[-1.0, -1.0, 0.0], [0.0, 4.0, 3.5]],
+    [[4.0, -1.0, 0.0], [5.0, 4.0, 2.0]],
+    [[0.0, -1.0, 0.0], [4.0, 0.0, 2.0]],
+    [[0.0, 3.0, 0.0], [4.0, 4.0, 2.0]],
+    [[-1.0, -1.0, 2.0], [9.0, -0.5, 4.0]],
+    [[-1.0, 3.5, 2.0], [9.0, 4.0, 4.0]],
+    [[-1.0, -0.5, 3.0], [9.0, 0.0, 4.0]],
+    [[-1.0, 3.0, 3.0], [9.0, 3.5, 4.0]],
+    [[8.5, -1.0, 2.0], [9.0, 4.0, 4.0]],
+];
+
 /// A solid of revolution about `z`, with so many sides, from a closed profile of `[radius, height]`
 /// that runs counter-clockwise with radii to the right and heights upwards. Points at radius 0 are on
 /// the axis.

@@ -8,6 +8,7 @@ use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::solids::ROOM_WITH_WINDOW;
 use glam::{DAffine3, DVec3};
 
 /// Taken apart with a tolerance; the names of each step that is not within a group.
@@ -273,17 +274,7 @@ fn a_pair_that_holds_each_other_is_stuck() {
 #[test]
 fn a_way_between_the_samples_is_found_for_what_is_loose() {
     // A room with a window, and a cube within: it leaves through 0.4 % of the sphere.
-    let room = [
-        cuboid([-2.2, -2.2, -2.2], [2.2, 2.2, -2.0]),
-        cuboid([-2.2, -2.2, 2.0], [2.2, 2.2, 2.2]),
-        cuboid([-2.2, -2.2, -2.2], [-2.0, 2.2, 2.2]),
-        cuboid([-2.2, -2.2, -2.2], [2.2, -2.0, 2.2]),
-        cuboid([-2.2, 2.0, -2.2], [2.2, 2.2, 2.2]),
-        cuboid([2.0, -2.2, -2.2], [2.2, 2.2, 0.5]),
-        cuboid([2.0, -2.2, 1.3], [2.2, 2.2, 2.2]),
-        cuboid([2.0, -2.2, -2.2], [2.2, -0.8, 2.2]),
-        cuboid([2.0, 0.8, -2.2], [2.2, 2.2, 2.2]),
-    ];
+    let room = ROOM_WITH_WINDOW.map(|[low, high]| cuboid(low, high));
     let cube = [cuboid([-0.2, -0.2, -0.2], [0.2, 0.2, 0.2])];
     let samples = Sphere::with_directions(PlanOptions::default().samples).directions;
     let mut random = Random::new(5);

@@ -8,6 +8,7 @@ use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch, re
 use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::solids::TRAY_WITH_GROOVES;
 use glam::DVec3;
 
 fn planned(assembly: &Assembly, options: PlanOptions) -> Plan {
@@ -125,21 +126,7 @@ fn one_move_is_asked_for_and_two_are_not_looked_for() {
 
 /// A box whose lid slides in grooves, as far as a stop, with a cube in it.
 fn sliding_lid() -> Assembly {
-    let tray = blocks(
-        "tray",
-        &[
-            [[-1.0, -1.0, -1.0], [5.0, 4.0, 0.0]],
-            [[-1.0, -1.0, 0.0], [0.0, 4.0, 3.5]],
-            [[4.0, -1.0, 0.0], [5.0, 4.0, 2.0]],
-            [[0.0, -1.0, 0.0], [4.0, 0.0, 2.0]],
-            [[0.0, 3.0, 0.0], [4.0, 4.0, 2.0]],
-            [[-1.0, -1.0, 2.0], [9.0, -0.5, 4.0]],
-            [[-1.0, 3.5, 2.0], [9.0, 4.0, 4.0]],
-            [[-1.0, -0.5, 3.0], [9.0, 0.0, 4.0]],
-            [[-1.0, 3.0, 3.0], [9.0, 3.5, 4.0]],
-            [[8.5, -1.0, 2.0], [9.0, 4.0, 4.0]],
-        ],
-    );
+    let tray = blocks("tray", &TRAY_WITH_GROOVES);
     let cube = blocks("cube", &[[[1.0, 1.0, 0.5], [2.0, 2.0, 1.5]]]);
     let lid = blocks("lid", &[[[0.1, -0.4, 2.2], [3.9, 3.4, 2.8]]]);
     Assembly::new(vec![cube, lid, tray]).unwrap()

@@ -8,24 +8,12 @@ use colltrans_motion::{
     MotionProofError,
 };
 use colltrans_solid::Solid;
+use colltrans_testkit::bodies::{at_xyz as at, centered as cuboid, hull};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{random_hull, ring_sphere};
+use colltrans_testkit::shapes::ring_sphere;
 use glam::{DQuat, DVec3};
-
-fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
-    let half = DVec3::from_array(half);
-    ConvexPolyhedron::cuboid(-half, half).expect("a box")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
-
-fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
-}
 
 /// A motion of some kind, by up to an angle, through about where the other body is.
 fn any_motion(random: &mut Random, most: f64) -> Motion {

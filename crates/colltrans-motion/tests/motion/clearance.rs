@@ -3,29 +3,14 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Pose};
+use colltrans_convex::{Cast, Clearance, Pose};
 use colltrans_motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
 use colltrans_solid::{Solid, SolidCast, StartOverlap};
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid, hull, solid};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{Mesh, block, random_hull};
+use colltrans_testkit::shapes::block;
 use colltrans_testkit::solids::{pin, washer};
 use glam::{DMat3, DVec3};
-
-fn solid(mesh: &Mesh) -> Solid {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid")
-}
-
-fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
-}
-
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(low.into(), high.into()).expect("a box")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
 
 /// A pose on one of a few places of a grid, turned by quarter turns.
 fn tied(random: &mut Random) -> Pose {

@@ -9,18 +9,11 @@ use colltrans_motion::path::{
 };
 use colltrans_motion::{Motion, MotionCast, MotionOutcome};
 use colltrans_solid::Solid;
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid};
 use colltrans_testkit::oracle::path::Arm;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{block, random_hull};
 use glam::{DQuat, DVec3};
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
-
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(low.into(), high.into()).expect("a box")
-}
 
 /// An arm in a plane: links of length 1 along x, joints about z.
 fn planar(links: usize) -> Mechanism {

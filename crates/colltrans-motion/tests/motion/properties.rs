@@ -5,22 +5,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use colltrans_convex::{ConvexPolyhedron, Pose};
 use colltrans_motion::{Motion, MotionCast, MotionContact, MotionOutcome};
+use colltrans_testkit::bodies::{at_xyz as at, centered as cuboid, hull};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::random_hull;
 use glam::{DMat3, DQuat, DVec3};
-
-fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
-}
-
-fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
-    let half = DVec3::from_array(half);
-    ConvexPolyhedron::cuboid(-half, half).expect("a box")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
 
 /// The answer, whose proof holds.
 fn answered([p, q]: [&ConvexPolyhedron; 2], [a, b]: [&Motion; 2]) -> MotionOutcome {

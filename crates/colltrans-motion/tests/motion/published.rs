@@ -6,21 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use colltrans_convex::{ConvexPolyhedron, Pair, Pose};
 use colltrans_motion::{Motion, MotionCast, MotionContact, MotionOutcome};
 use colltrans_solid::Solid;
+use colltrans_testkit::bodies::{at_xyz as at, centered as cuboid, turned};
 use glam::{DQuat, DVec3};
-
-fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
-    let half = DVec3::from_array(half);
-    ConvexPolyhedron::cuboid(-half, half).expect("a box")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
-
-/// Turned about z, at a place in the plane.
-fn turned(x: f64, y: f64, angle: f64) -> Pose {
-    Pose::new(DQuat::from_rotation_z(angle), DVec3::new(x, y, 0.0)).expect("a pose")
-}
 
 type Moved<'a> = (&'a ConvexPolyhedron, &'a Motion);
 

@@ -9,20 +9,13 @@ use colltrans_motion::{
     SolidMotionProof,
 };
 use colltrans_solid::{Solid, SolidCast};
+use colltrans_testkit::bodies::{hull, solid};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::turning;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{Mesh, block, random_hull};
+use colltrans_testkit::shapes::{Mesh, block};
 use colltrans_testkit::solids::{pin, thread, washer};
 use glam::{DQuat, DVec3};
-
-fn solid(mesh: &Mesh) -> Solid {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid")
-}
-
-fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
-}
 
 fn still() -> Motion {
     Motion::still(Pose::IDENTITY)

@@ -5,14 +5,11 @@ use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathC
 use colltrans_motion::{Motion, MotionCast};
 use colltrans_proof::{ProofFile, ProofFileError};
 use colltrans_solid::{AsSolid, Solid};
+use colltrans_testkit::bodies::cube;
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::turned;
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Value, json};
-
-fn cube() -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube")
-}
 
 fn at(x: f64) -> Pose {
     Pose::from_translation(DVec3::X * x).expect("a pose")

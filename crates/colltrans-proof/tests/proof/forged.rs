@@ -5,6 +5,7 @@ use colltrans_convex::{
 };
 use colltrans_proof::ProofFile;
 use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
+use colltrans_testkit::bodies::{at_xyz as pose, cube};
 use colltrans_testkit::oracle::proofs::checkers::{Fractions, Verdict, verify};
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS};
 use colltrans_testkit::random::Random;
@@ -14,14 +15,6 @@ use serde_json::{Value, json};
 
 /// Rounding of one operation.
 const U: f64 = 0.5 * f64::EPSILON;
-
-fn cube() -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube")
-}
-
-fn pose(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
 
 /// `check.py`, where there is a Python.
 fn fractions() -> Option<Fractions> {

@@ -3,25 +3,11 @@
 use colltrans_convex::{Case, Cast, ConvexPolyhedron, Pose};
 use colltrans_proof::ProofFile;
 use colltrans_solid::Solid;
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid, floor_with_wall as corner};
 use glam::DVec3;
-
-fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(low, high).expect("a box")
-}
 
 fn cube() -> ConvexPolyhedron {
     cuboid(DVec3::splat(-0.5), DVec3::splat(0.5))
-}
-
-/// A floor with a wall at its end, as one body.
-fn corner() -> Solid {
-    let floor = cuboid(DVec3::new(-4.0, -2.0, -1.0), DVec3::new(4.0, 2.0, 0.0));
-    let wall = cuboid(DVec3::new(3.0, -2.0, 0.0), DVec3::new(4.0, 2.0, 5.0));
-    Solid::from_pieces([&floor, &wall]).expect("pieces")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
 }
 
 #[test]

@@ -11,7 +11,7 @@ use colltrans_solid::{Solid, SolidCast, StartOverlap};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::free::{FAMILIES, examine, is_free_of_all, thin::judge};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::solids::thread;
+use colltrans_testkit::solids::{ROOM_WITH_WINDOW, thread};
 use colltrans_testkit::tally::Tally;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -422,17 +422,7 @@ fn the_largest_margin_is_in_the_middle() {
 fn a_window_is_measured_alike_however_it_is_turned() {
     // A cube in a room with a window: one convex region, cut by sides of cells in every rotation elsewhere.
     let cube = cuboid([-0.2; 3], [0.2; 3]);
-    let room = joined(&[
-        cuboid([-2.2, -2.2, -2.2], [2.2, 2.2, -2.0]),
-        cuboid([-2.2, -2.2, 2.0], [2.2, 2.2, 2.2]),
-        cuboid([-2.2, -2.2, -2.2], [-2.0, 2.2, 2.2]),
-        cuboid([-2.2, -2.2, -2.2], [2.2, -2.0, 2.2]),
-        cuboid([-2.2, 2.0, -2.2], [2.2, 2.2, 2.2]),
-        cuboid([2.0, -2.2, -2.2], [2.2, 2.2, 0.5]),
-        cuboid([2.0, -2.2, 1.3], [2.2, 2.2, 2.2]),
-        cuboid([2.0, -2.2, -2.2], [2.2, -0.8, 2.2]),
-        cuboid([2.0, 0.8, -2.2], [2.2, 2.2, 2.2]),
-    ]);
+    let room = joined(&ROOM_WITH_WINDOW.map(|[low, high]| cuboid(low, high)));
     // The cube's upper edge passes the window's in front, its lower edge behind: z / x lies between
     // 0.7 / 1.8 and 1.1 / 2.4, y / x between -0.6 / 2.4 and 0.6 / 2.4.
     let (low, high) = ((0.7_f64 / 1.8).atan(), (1.1_f64 / 2.4).atan());

@@ -6,6 +6,7 @@ use colltrans_removal::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
 use colltrans_solid::{Solid, SolidCast};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::solids::TRAY_WITH_GROOVES;
 use glam::{DMat3, DVec3, EulerRot};
 
 fn solid(blocks: &[[[f64; 3]; 2]]) -> Solid {
@@ -341,18 +342,7 @@ fn another_body_moves_aside_first() {
     // A cube in a box whose lid slides in grooves.
     let cube = solid(&[[[1.0, 1.0, 0.5], [2.0, 2.0, 1.5]]]);
     let lid = solid(&[[[0.1, -0.4, 2.2], [3.9, 3.4, 2.8]]]);
-    let tray = solid(&[
-        [[-1.0, -1.0, -1.0], [5.0, 4.0, 0.0]],
-        [[-1.0, -1.0, 0.0], [0.0, 4.0, 3.5]],
-        [[4.0, -1.0, 0.0], [5.0, 4.0, 2.0]],
-        [[0.0, -1.0, 0.0], [4.0, 0.0, 2.0]],
-        [[0.0, 3.0, 0.0], [4.0, 4.0, 2.0]],
-        [[-1.0, -1.0, 2.0], [9.0, -0.5, 4.0]],
-        [[-1.0, 3.5, 2.0], [9.0, 4.0, 4.0]],
-        [[-1.0, -0.5, 3.0], [9.0, 0.0, 4.0]],
-        [[-1.0, 3.0, 3.0], [9.0, 3.5, 4.0]],
-        [[8.5, -1.0, 2.0], [9.0, 4.0, 4.0]],
-    ]);
+    let tray = solid(&TRAY_WITH_GROOVES);
     let placed = [&cube, &lid, &tray].map(|solid| solid.at(Pose::IDENTITY));
     let WaysOut::Found(way) = WaysOut::among(&placed, &[2], &WayOptions::default(), None).unwrap()
     else {

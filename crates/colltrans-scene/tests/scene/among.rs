@@ -5,19 +5,12 @@ use std::sync::Arc;
 use colltrans_convex::{CertificateError, ConvexPolyhedron, ObstacleId, Options, Pose, QueryError};
 use colltrans_scene::{Among, Obstacles};
 use colltrans_solid::{ByKind, Solid};
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::among::{FAMILIES, examine};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
 use glam::{DQuat, DVec3};
-
-fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(low, high).expect("a box")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
 
 #[test]
 fn all_families_are_right() {

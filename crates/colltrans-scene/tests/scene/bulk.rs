@@ -5,11 +5,11 @@ use colltrans_convex::{
     Cast, Clearance, ContactRange, ConvexPolyhedron, Outcome, Pose, Solver, StartedFrom,
 };
 use colltrans_scene::FixedRotations;
+use colltrans_testkit::bodies::hull;
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::oracle::still;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::random_hull;
 use glam::{DQuat, DVec3};
 
 /// Settings of a family.
@@ -50,10 +50,6 @@ fn answers_are_those_of_ordinary_casts() {
 
 fn is_by_faces(outcome: &Outcome) -> bool {
     outcome.steps().started_from == StartedFrom::Difference
-}
-
-fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
 }
 
 /// Poses with one rotation, and directions.

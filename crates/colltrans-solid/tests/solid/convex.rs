@@ -4,15 +4,12 @@
 
 use colltrans_convex::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose};
 use colltrans_solid::{Solid, SolidCast, SolidFree, SolidOptions, StartOverlap};
+use colltrans_testkit::bodies::solid;
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{Mesh, prism, ring_sphere};
+use colltrans_testkit::shapes::{prism, ring_sphere};
 use colltrans_testkit::solids::slab;
 use glam::{DQuat, DVec3};
-
-fn solid(mesh: &Mesh) -> Solid {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")
-}
 
 /// Cubes, plates, plates of many facets in a plane, prisms, balls of few and many facets.
 fn bodies(random: &mut Random) -> Vec<Solid> {

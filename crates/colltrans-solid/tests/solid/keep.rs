@@ -1,8 +1,9 @@
 //! Solids that keep a gap: families judged over all pairs of facets, what is known in closed form, proofs.
 
-use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, QueryError};
+use colltrans_convex::{Cast, Clearance, Outcome, Pose, QueryError};
 use colltrans_solid::proof::SolidCertificate;
 use colltrans_solid::{Solid, SolidCast, StartOverlap};
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid, floor_with_wall as corner};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::keep::{Seen, examine};
@@ -10,21 +11,6 @@ use colltrans_testkit::oracle::solids::nearest::MESHES;
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
 use colltrans_testkit::oracle::solids::sheets;
 use glam::{DQuat, DVec3};
-
-fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(low, high).expect("a box")
-}
-
-/// A floor with a wall at its end, as one body.
-fn corner() -> Solid {
-    let floor = cuboid(DVec3::new(-4.0, -2.0, -1.0), DVec3::new(4.0, 2.0, 0.0));
-    let wall = cuboid(DVec3::new(3.0, -2.0, 0.0), DVec3::new(4.0, 2.0, 5.0));
-    Solid::from_pieces([&floor, &wall]).expect("pieces")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
-}
 
 #[test]
 fn all_families_are_right() {

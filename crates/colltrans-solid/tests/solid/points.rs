@@ -11,6 +11,7 @@ use colltrans_convex::{
     Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Outcome, Pair, Pose, Within,
 };
 use colltrans_solid::{AsSolid, Solid, SolidCast, SolidError, SolidPair};
+use colltrans_testkit::bodies::cube;
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self, Mesh};
@@ -503,10 +504,6 @@ fn a_segment_is_stopped_where_it_first_runs_into_cubes() {
         }
     }
     assert!(stopped > cases(80) && free > cases(80), "{stopped} {free}");
-}
-
-fn cube() -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a box")
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! - The body frame has the rotation `E(t) R` and the translation `T + v (t - s) + (E(t) - 1) a`.
 //!
 //! The numbers `s, R, T, a, k, w, v` define a motion in exact arithmetic, as if the length of `k` were 1.
-//! [`Piece::error`] bounds the rounding error of computed points. The start of a piece equals the end of the
+//! `Piece::error` bounds the rounding error of computed points. The start of a piece equals the end of the
 //! previous one up to rounding.
 
 use glam::{DMat3, DQuat, DVec3};

@@ -133,12 +133,22 @@
 //! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
 //! whole numbers.
 //!
+//! # Features
+//!
+//! `solid`, `motion`, `removal`, `scene` and `keep` (casts with a minimum gap) are on by default. Without them the crate
+//! is the convex core alone: no other crate of the project but `colltrans-kernel` and `colltrans-convex` is compiled.
+//! `serde` and `json` bring all questions.
+//!
+//! # Crates
+//!
 //! The code is in crates of its own, each using only those before it: `colltrans-kernel` (numbers, predicates, poses),
 //! `colltrans-convex` (convex bodies), `colltrans-solid`, then `colltrans-removal` ([`free`], [`ways`]), `colltrans-scene`
 //! ([`Among`], [`FixedRotations`]) and `colltrans-motion` ([`motion`]), and `colltrans-proof` (files). [`solid`] holds what
 //! is of solids alone.
 
+#[cfg(feature = "motion")]
 pub mod motion;
+#[cfg(feature = "solid")]
 pub mod solid;
 
 #[doc(inline)]
@@ -169,55 +179,59 @@ pub use colltrans_proof::{
     Contacts, DistanceStatement, FreeStatement, ProofError, ProofFile, ProofFileError, Proven,
     Slide, Statement, Stop, Verify,
 };
+#[cfg(feature = "removal")]
 #[doc(inline)]
 pub use colltrans_removal::{free, ways};
+#[cfg(feature = "scene")]
 #[doc(inline)]
 pub use colltrans_scene::{
     Among, AmongProof, AmongSteps, ApartProof, ClearanceAmong, ClearanceProof, Nearby, NearbyProof,
     Nearest, NearestProof, Obstacles, PassedProof, UnknownObstacle,
 };
+#[cfg(feature = "scene")]
 #[doc(inline)]
 pub use colltrans_scene::{Approach, FixedRotations};
+#[cfg(feature = "solid")]
 #[doc(inline)]
 pub use colltrans_solid::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind, Solid};
 
 /// The example of the README, compiled and run as a test.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
 
 /// The examples of `docs/guide/casts.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/casts.md")]
 pub struct Casts;
 
 /// The examples of `docs/guide/distance.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/distance.md")]
 pub struct Distances;
 
 /// The examples of `docs/guide/scenes.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/scenes.md")]
 pub struct Scenes;
 
 /// The examples of `docs/guide/directions.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/directions.md")]
 pub struct Directions;
 
 /// The examples of `docs/guide/motions.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/motions.md")]
 pub struct Motions;
 
 /// The examples of `docs/guide/robots.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/robots.md")]
 pub struct Robots;
 
 /// The examples of `docs/reference/solids.md`, compiled and run as tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/reference/solids.md")]
 pub struct Solids;
 

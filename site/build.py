@@ -10,6 +10,7 @@ site says so.
 """
 
 import argparse
+import json
 import os
 import re
 import shutil
@@ -24,6 +25,7 @@ from typing import Any
 import links
 import nbformat
 import outputs
+import schema
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -127,6 +129,13 @@ def command_line(source: Path, program: Path) -> None:
         told = run(program, *command.split(), "--help", env=wide).rstrip()
         text += [f"## colltrans {command}".rstrip(), "", "````text", told, "````", ""]
     (source / "command-line.md").write_text("\n".join(text))
+
+
+def json_fields(source: Path) -> None:
+    """A table of every object that the programs write as JSON."""
+    read = json.loads((ROOT / "docs/answers.schema.json").read_text())
+    text = schema.Page(read, skipped="page_").text("JSON: all fields")
+    (source / "docs/reference/json.md").write_text(text)
 
 
 def gallery(source: Path, program: Path) -> None:
@@ -332,6 +341,7 @@ def main() -> None:
     )
     part("texts", lambda: gather(source))
     part("help", lambda: command_line(source, program))
+    part("json", lambda: json_fields(source))
     part("gallery", lambda: gallery(source, program))
     part("notebooks", lambda: notebooks(source))
     part("sphinx", lambda: sphinx(source, out))

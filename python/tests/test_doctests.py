@@ -12,7 +12,8 @@ import colltrans
 
 TUTORIALS = ROOT / "python" / "docs" / "tutorials"
 GUIDES = [
-    ROOT / "docs" / "guide" / f"{name}.md" for name in ("python", "distance", "motions", "robots")
+    ROOT / "docs" / "guide" / f"{name}.md"
+    for name in ("python", "python-arrays", "distance", "motions", "robots")
 ]
 PAGES = [*GUIDES, *sorted(TUTORIALS.glob("*.md"))]
 

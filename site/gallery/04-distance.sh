@@ -1,3 +1,3 @@
-# How far apart
-# Where the bodies are, without a direction: the shortest way between them, with proven bounds.
+# Distance
+# The closest points of two bodies at rest, with proven bounds of their distance.
 colltrans distance data/dodecahedron.off data/bracket.obj --moving-pose=6,3,5 --picture "$1"

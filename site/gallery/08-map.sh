@@ -1,6 +1,6 @@
-# Every direction as a map
-# How far a dodecahedron can go beside a bracket, for all directions: orange is free, with its proven border; blue is
-# blocked, the paler the later.
+# Map of all directions
+# Clearance of a dodecahedron next to a bracket in all directions: orange is free, with its proven border; blue is
+# blocked, paler for later contacts.
 folder=$(mktemp -d)
 cp data/dodecahedron.off data/bracket.obj "$folder"
 cat >"$folder/two.toml" <<'END'

@@ -1,6 +1,6 @@
 # Half a million grasps
-# How far a gripper can be lowered onto three objects, for each place above them: columns of
-# `clearance_many`. Above a white place the gripper meets no object.
+# Free travel downwards of a gripper over three objects, for each position: columns of
+# `clearance_many`. At white positions the gripper passes all objects.
 import sys
 
 import matplotlib.pyplot as plt
@@ -27,6 +27,6 @@ figure, axes = plt.subplots(figsize=(5, 4.2))
 image = axes.imshow(
     np.where(np.isfinite(reach), reach, np.nan), extent=(-1, 1, -1, 1), origin="lower"
 )
-figure.colorbar(image, label="it goes down so far")
+figure.colorbar(image, label="free travel downwards")
 axes.set(xlabel="x of the gripper", ylabel="y of the gripper")
 figure.savefig(sys.argv[1], bbox_inches="tight")

@@ -1,6 +1,6 @@
-# Every direction, proven
-# Along which directions does a block leave the corner that three walls make? The corners of the
-# region are exact; each dot is a direction that was asked by itself.
+# Removal directions
+# The directions along which a block leaves a corner of three walls. The corners of the free region
+# are exact; each dot is a direction that was tested by itself.
 import sys
 
 import matplotlib.pyplot as plt
@@ -14,13 +14,13 @@ corner = Solid.from_pieces([ConvexPolyhedron.cuboid(*wall) for wall in walls])
 free = free_directions(block, corner)
 
 random = np.random.default_rng(3)
-asked = random.normal(size=(3000, 3))
-asked /= np.linalg.norm(asked, axis=1, keepdims=True)
-says = np.array(free.says(asked))
+tested = random.normal(size=(3000, 3))
+tested /= np.linalg.norm(tested, axis=1, keepdims=True)
+says = np.array(free.says(tested))
 
 
 def flat(directions):
-    """The sphere as two hemispheres laid flat: z upwards is the middle, downwards the rim."""
+    """Projects the sphere to a disc: z is the centre, -z the border."""
     x, y, z = np.transpose(directions)
     away = np.arccos(np.clip(z, -1, 1)) / np.maximum(np.hypot(x, y), 1e-12)
     return x * away, y * away
@@ -28,7 +28,7 @@ def flat(directions):
 
 figure, axes = plt.subplots(figsize=(5, 5))
 for word, colour in (("free", "#0a8a68"), ("blocked", "#c9ced6")):
-    axes.scatter(*flat(asked[says == word]), s=6, color=colour, label=word)
+    axes.scatter(*flat(tested[says == word]), s=6, color=colour, label=word)
 for region in free.regions:
     axes.scatter(
         *flat(np.array(region["corners"])), color="#b01657", marker="s", label="corners, proven"

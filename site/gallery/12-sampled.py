@@ -1,6 +1,6 @@
-# What sampling does not see
-# A thin blade swings past a thin post. Ten poses find it free at each, and the distance between
-# them seems to say so; the proven first contact lies between two of them.
+# A contact that samples miss
+# A thin blade swings past a thin post. Ten sampled poses are free, at a distance that
+# suggests no contact. The proven first contact lies between two of them.
 import sys
 
 import matplotlib.pyplot as plt

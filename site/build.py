@@ -1,12 +1,12 @@
-"""The whole site, by one command and without a network: ``python site/build.py OUT``.
+"""Builds the whole site without a network: ``python site/build.py OUT``.
 
-Pages of text by Sphinx (the repository's own Markdown, Python's reference, the command line's
-help), notebooks and the gallery, whose cells and programs are run for it; Rust's documentation; the
-page; a report of the laboratory. Then every link of it is followed (``links.py``).
+The parts are pages of text by Sphinx (the Markdown of the repository, the reference of Python, the
+help of the command line, the JSON schema), notebooks and the gallery, whose cells and programs are
+executed, the documentation of Rust, the interactive page, and a report of the laboratory. At the
+end every link is followed (``links.py``).
 
-Needs what the repository's programs need, Rust and Python with ``pip install './python[docs]'``;
-and for the page Node, with ``npm ci`` done in ``web/``. ``--without page`` leaves it out, and the
-site says so.
+Needs Rust, Python with ``pip install './python[docs]'``, and for the page Node, after ``npm ci`` in
+``web/``. ``--without page`` omits the page; the site then states this.
 """
 
 import argparse
@@ -30,7 +30,7 @@ import schema
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-#: What people build upon, each after those that it uses; the others are programs, or measure these.
+#: The published libraries, each after those that it uses.
 CRATES = (
     "colltrans-kernel",
     "colltrans-convex",
@@ -45,7 +45,7 @@ CRATES = (
     "colltrans-assembly",
     "colltrans-assembly-io",
 )
-#: Of each a text, or a folder of them, and its place on the site.
+#: Texts, or folders of texts, and their places on the site.
 TEXTS = {
     "docs": "docs",
     "python/docs": "python",
@@ -60,7 +60,7 @@ KINDS = (".md", ".svg", ".ipynb", ".json")
 
 
 def run(*words: str | Path, **choices: Any) -> str:
-    """A program's standard output; a failure ends the build with what it said."""
+    """Returns the standard output of a program. A failure ends the build with this output."""
     told = [str(word) for word in words]
     choices = {"cwd": ROOT, "stdout": subprocess.PIPE, "text": True} | choices
     done = subprocess.run(told, check=False, **choices)
@@ -70,12 +70,12 @@ def run(*words: str | Path, **choices: Any) -> str:
 
 
 def gather(source: Path) -> None:
-    """All texts at their places, with links that lead to where things are on the site."""
+    """Copies all texts to their places, with links between places on the site."""
     places = dict(_files())
     for file, place in places.items():
         target = source / place
         target.parent.mkdir(parents=True, exist_ok=True)
-        # What is written for the site links to places on it.
+        # Texts of the folder site already link to places.
         if file.endswith(".md") and not file.startswith("site/"):
             text = (ROOT / file).read_text()
             target.write_text(relinked(text, PurePosixPath(file), places))
@@ -97,7 +97,7 @@ def _files() -> list[tuple[str, str]]:
 
 
 def relinked(text: str, file: PurePosixPath, places: dict[str, str]) -> str:
-    """Links between files as links between their places; others of the repository as words."""
+    """Replaces links to files by links to their places, or by their text if there is no place."""
 
     def kept(link: re.Match[str]) -> str:
         bang, words, target, anchor = link.groups()
@@ -113,33 +113,33 @@ def relinked(text: str, file: PurePosixPath, places: dict[str, str]) -> str:
 
 
 def command_line(source: Path, program: Path) -> None:
-    """The help of every command, as the program gives it."""
+    """Writes the page with the help of every command."""
     wide = os.environ | {"COLUMNS": "88"}
     text = [
         "# The command line",
         "",
-        "What the program says of itself. `colltrans setup` installs it as man pages.",
+        "The help of every command. `colltrans setup` installs it as man pages.",
         "",
     ]
-    # A man page for each command, and one for all.
+    # There is one man page for each command, and one for all.
     run(program, "setup", "--prefix", source.parent / "setup")
     pages = (source.parent / "setup" / "share" / "man" / "man1").glob("*.1")
     commands = sorted(page.stem.removeprefix("colltrans").removeprefix("-") for page in pages)
     for command in commands:
         told = run(program, *command.split(), "--help", env=wide).rstrip()
         text += [f"## colltrans {command}".rstrip(), "", "````text", told, "````", ""]
-    (source / "command-line.md").write_text("\n".join(text))
+    (source / "docs/reference/command-line.md").write_text("\n".join(text))
 
 
 def json_fields(source: Path) -> None:
-    """A table of every object that the programs write as JSON."""
+    """Writes the page with tables of every object that the programs write as JSON."""
     read = json.loads((ROOT / "docs/answers.schema.json").read_text())
     text = schema.Page(read, skipped="page_").text("JSON: all fields")
     (source / "docs/reference/json.md").write_text(text)
 
 
 def gallery(source: Path, program: Path) -> None:
-    """Runs every program of the gallery: each writes one picture, which stands beside its text."""
+    """Runs every program of the gallery, and writes the page with the pictures and the programs."""
     programs = sorted(
         file for file in (HERE / "gallery").iterdir() if file.suffix in (".sh", ".py")
     )
@@ -176,7 +176,7 @@ def gallery(source: Path, program: Path) -> None:
     head = [
         "# Gallery",
         "",
-        f"{len(programs)} pictures, each drawn by the program beside it when this site was built.",
+        f"{len(programs)} pictures, each with the program that drew it when this site was built.",
         "",
     ]
     cards = ["```{raw} html", '<div class="pictures">', *shown, "</div>", "```", ""]
@@ -184,7 +184,7 @@ def gallery(source: Path, program: Path) -> None:
 
 
 def notebooks(source: Path) -> None:
-    """Runs every notebook. A cell that fails, or whose text is not the kept one, ends the build."""
+    """Runs every notebook. A cell that fails, or has another output than stored, ends the build."""
     wrong = []
     for file in sorted((source / "notebooks").glob("*.ipynb")):
         book = outputs.executed(file)
@@ -195,7 +195,7 @@ def notebooks(source: Path) -> None:
 
 
 def described(program: str) -> list[str]:
-    """The lines of its first comment, without their signs: a title, then what is seen."""
+    """Returns the lines of the first comment: a title, then the description."""
     lines = program.splitlines()
     lines = lines[1:] if lines[0].startswith("#!") else lines
     told = []
@@ -239,10 +239,10 @@ def sphinx(source: Path, out: Path) -> None:
 
 
 def rust(out: Path) -> None:
-    # A folder of its own: what else has been documented is not on the site.
+    # A folder of its own, because other crates may have been documented in the usual one.
     folder = TARGET / "site"
     flags = {"RUSTDOCFLAGS": "-D warnings", "CARGO_TARGET_DIR": str(folder)}
-    # One after the other: rustdoc links to the pages of a crate only where they exist.
+    # In order of dependency: rustdoc links to the pages of a crate only if they exist.
     for crate in CRATES:
         run("cargo", "doc", "--no-deps", "--lib", "--quiet", "-p", crate, env=os.environ | flags)
     shutil.copytree(folder / "doc", out / "rust")
@@ -279,7 +279,7 @@ def laboratory(out: Path, results: Path | None) -> None:
 
 
 def not_built(out: Path, part: str) -> None:
-    """In the place of a part that was left out, a page that says so."""
+    """Writes a page in place of an omitted part."""
     names = {"page": "page/index.html", "laboratory": "laboratory/report.html"}
     wanted = {"rust": [f"rust/{crate.replace('-', '_')}/index.html" for crate in CRATES]}
     for name in wanted.get(part, [names.get(part, "")]):

@@ -11,7 +11,7 @@ import { serve } from "../web/serve.mjs";
 const [folder, pictures] = process.argv.slice(2).map((path) => resolve(path));
 /** Rust's documentation, the page and the laboratory's report are looked at by whoever makes them. */
 const OTHERS = /^(rust|page|laboratory|_static|_sources)\//;
-const PICTURED = ["index.html", "gallery.html", "docs/peers.html", "command-line.html", "notebooks/data.html", "python/api.html"];
+const PICTURED = ["index.html", "gallery.html", "docs/peers.html", "docs/reference/command-line.html", "notebooks/data.html", "python/api.html"];
 
 const pages = readdirSync(folder, { recursive: true })
   .filter((file) => file.endsWith(".html") && !OTHERS.test(file))

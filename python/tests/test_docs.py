@@ -95,6 +95,23 @@ def test_links_between_files_become_links_between_pages(build: ModuleType) -> No
     assert told == "[b](../python/t/b.md#x) ![p](p.svg) code [w](https://w.org) [h](#h)"
 
 
+def test_the_tables_of_the_schema_have_its_definitions_and_fields(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.syspath_prepend(str(SITE))
+    schema = importlib.import_module("schema")
+    read = json.loads((ROOT / "docs/answers.schema.json").read_text())
+    text = schema.Page(read, skipped="page_").text("JSON")
+    for name, definition in read["$defs"].items():
+        assert (f"\n## {name}\n" in text) == (not name.startswith("page_")), name
+        for field in definition.get("properties", {}):
+            assert name.startswith("page_") or f"| `{field}` |" in text, (name, field)
+    rows = [line for line in text.splitlines() if line.startswith("| ")]
+    assert all(len(re.findall(r"(?<!\\)\|", row)) == 4 for row in rows)
+    assert "| `translation` | number, optional | First contact" in text
+    assert "With outcome `separated`: `margin`." in text
+
+
 def test_notebooks_print_what_is_kept(build: ModuleType) -> None:
     outputs = importlib.import_module("outputs")
     notebooks = sorted((SITE / "notebooks").glob("*.ipynb"))

@@ -1,5 +1,6 @@
 """A page of reference from a JSON schema: a table of fields for each definition."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -18,7 +19,7 @@ class Page:
 
     def text(self, title: str) -> str:
         documents = kind_of({"anyOf": self.schema["anyOf"]})
-        text = [f"# {title}", "", self.schema["description"], ""]
+        text = [f"# {title}", "", cell(self.schema["description"]), ""]
         text += [f"A document is one of: {documents}.", ""]
         for name, value in self.schema["$defs"].items():
             if not name.startswith(self.skipped):
@@ -82,9 +83,9 @@ def kind_of(schema: Schema) -> str:
         count, most = schema.get("minItems"), schema.get("maxItems")
         item = schema.get("items")
         of = kind_of(item) if isinstance(item, dict) else "any value"
-        kinds = [f"list of {count} ({of})" if count and count == most else f"list of ({of})"] + [
-            kind for kind in kinds if kind != "array"
-        ]
+        of = f"({of})" if " or " in of else of
+        exact = f"{count} " if count and count == most else ""
+        kinds = [f"list of {exact}{of}", *(kind for kind in kinds if kind != "array")]
     limits = ", ".join(f"{words} {schema[key]}" for key, words in LIMITS.items() if key in schema)
     return " or ".join(kinds) + (f", {limits}" if limits else "")
 
@@ -94,5 +95,6 @@ def code(value: Any) -> str:
 
 
 def cell(text: str) -> str:
-    """Returns text in the form that a cell of a table needs."""
+    """Returns text for a cell of a table, with options of the command line as code."""
+    text = re.sub(r"(?<![`\w-])--[a-z-]+", r"`\g<0>`", text)
     return text.replace("|", "\\|").replace("\n", " ")

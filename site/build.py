@@ -61,11 +61,11 @@ KINDS = (".md", ".svg", ".ipynb", ".json")
 
 def run(*words: str | Path, **choices: Any) -> str:
     """Returns the standard output of a program. A failure ends the build with this output."""
-    told = [str(word) for word in words]
+    command = [str(word) for word in words]
     choices = {"cwd": ROOT, "stdout": subprocess.PIPE, "text": True} | choices
-    done = subprocess.run(told, check=False, **choices)
+    done = subprocess.run(command, check=False, **choices)
     if done.returncode != 0:
-        raise SystemExit(f"{done.stdout or ''}\n{' '.join(told)}: exit code {done.returncode}")
+        raise SystemExit(f"{done.stdout or ''}\n{' '.join(command)}: exit code {done.returncode}")
     return done.stdout or ""
 
 
@@ -126,8 +126,8 @@ def command_line(source: Path, program: Path) -> None:
     pages = (source.parent / "setup" / "share" / "man" / "man1").glob("*.1")
     commands = sorted(page.stem.removeprefix("colltrans").removeprefix("-") for page in pages)
     for command in commands:
-        told = run(program, *command.split(), "--help", env=wide).rstrip()
-        text += [f"## colltrans {command}".rstrip(), "", "````text", told, "````", ""]
+        help_text = run(program, *command.split(), "--help", env=wide).rstrip()
+        text += [f"## colltrans {command}".rstrip(), "", "````text", help_text, "````", ""]
     (source / "docs/reference/command-line.md").write_text("\n".join(text))
 
 
@@ -149,7 +149,7 @@ def gallery(source: Path, program: Path) -> None:
         "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}",
         "PYTHONDONTWRITEBYTECODE": "1",
     }
-    shown, told = [], []
+    shown, sections = [], []
     for file in programs:
         picture = folder / f"{file.stem}.svg"
         language = "sh" if file.suffix == ".sh" else "python"
@@ -164,15 +164,10 @@ def gallery(source: Path, program: Path) -> None:
             )
         )
         text = without_head(file.read_text())
-        told += [f"## {title}", "", " ".join(words), "", f"![{title}](gallery/{picture.name})", ""]
-        told += [
-            f"`site/gallery/{file.name} OUT.svg`",
-            "",
-            f"```{language}",
-            text.strip(),
-            "```",
-            "",
-        ]
+        sections += [f"## {title}", "", " ".join(words), ""]
+        sections += [f"![{title}](gallery/{picture.name})", ""]
+        sections += [f"`site/gallery/{file.name} OUT.svg`", ""]
+        sections += [f"```{language}", text.strip(), "```", ""]
     head = [
         "# Gallery",
         "",
@@ -180,7 +175,7 @@ def gallery(source: Path, program: Path) -> None:
         "",
     ]
     cards = ["```{raw} html", '<div class="pictures">', *shown, "</div>", "```", ""]
-    (source / "gallery.md").write_text("\n".join(head + cards + told))
+    (source / "gallery.md").write_text("\n".join(head + cards + sections))
 
 
 def notebooks(source: Path) -> None:
@@ -198,12 +193,12 @@ def described(program: str) -> list[str]:
     """Returns the lines of the first comment: a title, then the description."""
     lines = program.splitlines()
     lines = lines[1:] if lines[0].startswith("#!") else lines
-    told = []
+    head = []
     for line in lines:
         if not line.startswith("#"):
             break
-        told.append(line.lstrip("# ").rstrip())
-    return told
+        head.append(line.lstrip("# ").rstrip())
+    return head
 
 
 def without_head(program: str) -> str:
@@ -315,8 +310,8 @@ def main() -> None:
     parser.add_argument(
         "--laboratory", type=Path, metavar="DIR", help="results of a run, in place of a quick one"
     )
-    asked = parser.parse_args()
-    out = asked.out.resolve()
+    arguments = parser.parse_args()
+    out = arguments.out.resolve()
     if out.exists() and not (out / "objects.inv").exists() and any(out.iterdir()):
         raise SystemExit(f"{out}: is no site; give it another place")
     shutil.rmtree(out, ignore_errors=True)
@@ -328,7 +323,7 @@ def main() -> None:
 
     def part(name: str, make: Callable[[], object]) -> None:
         began = time.monotonic()
-        if name in asked.without:
+        if name in arguments.without:
             not_built(out, name)
             print(f"{name:12} NOT BUILT", flush=True)
             return
@@ -346,8 +341,8 @@ def main() -> None:
     part("notebooks", lambda: notebooks(source))
     part("sphinx", lambda: sphinx(source, out))
     part("rust", lambda: rust(out))
-    part("page", lambda: page(out, asked.page))
-    part("laboratory", lambda: laboratory(out, asked.laboratory))
+    part("page", lambda: page(out, arguments.page))
+    part("laboratory", lambda: laboratory(out, arguments.laboratory))
     wrong = links.wrong(out)
     print(f"links        {len(wrong)} that lead nowhere", flush=True)
     raise SystemExit("\n".join(wrong) if wrong else 0)

@@ -1,6 +1,6 @@
-"""Links of a folder of pages that lead nowhere, and what pages would fetch from elsewhere.
+"""Finds broken links in a folder of pages, and files that pages would fetch from other sites.
 
-``python site/links.py FOLDER``. Links to other sites are not followed: there is no network.
+``python site/links.py FOLDER``. Links to other sites are not followed, so no network is needed.
 """
 
 import re
@@ -13,16 +13,16 @@ from urllib.parse import unquote, urlsplit
 TAG = re.compile(r"<(a|link|script|img|iframe|source)\b([^>]*)>", re.IGNORECASE)
 TARGET = re.compile(r"""\b(?:href|src)\s*=\s*(?:"([^"]*)"|'([^']*)')""", re.IGNORECASE)
 NAME = re.compile(r"""\b(?:id|name)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
-#: Source code of Rust: its pages are led to, and lead to lines by scripts.
+#: Source code of Rust: its pages are not checked, because scripts handle their links to lines.
 SOURCES = re.compile(r"rust/src/")
-#: A page of Rust's documentation that leads on, by a script with the place that was asked for.
+#: A page of Rust's documentation that redirects, by a script that keeps the fragment.
 LEADS_ON = re.compile(
     r'<meta http-equiv="refresh" content="0;URL=([^"]+)">.*location\.hash', re.DOTALL
 )
 
 
 def wrong(folder: Path) -> list[str]:
-    """What is wrong, a line each: the page, and the link as it stands there."""
+    """Returns a line for each broken link: the page, the link and the fault."""
     folder = folder.resolve()
 
     @cache
@@ -30,7 +30,7 @@ def wrong(folder: Path) -> list[str]:
         found = NAME.finditer(file.read_text(errors="replace"))
         return {unescape(next(filter(None, match.groups()), "")) for match in found}
 
-    told = []
+    faults = []
     for file in sorted(folder.rglob("*.html")):
         page = file.relative_to(folder).as_posix()
         if SOURCES.match(page):
@@ -38,8 +38,8 @@ def wrong(folder: Path) -> list[str]:
         for kind, target in targets(file.read_text(errors="replace")):
             why = fault(folder, file, kind, target, names)
             if why is not None:
-                told.append(f"{page}: {target}: {why}")
-    return told
+                faults.append(f"{page}: {target}: {why}")
+    return faults
 
 
 def targets(text: str) -> set[tuple[str, str]]:
@@ -56,7 +56,7 @@ def targets(text: str) -> set[tuple[str, str]]:
 
 
 def fault(folder: Path, file: Path, kind: str, target: str, names) -> str | None:  # type: ignore[no-untyped-def]
-    """Why a link is wrong, if it is."""
+    """Returns the fault of a link, or None."""
     parts = urlsplit(target)
     if parts.scheme or parts.netloc:
         fetched = kind != "a" and parts.scheme in ("http", "https", "")
@@ -73,7 +73,7 @@ def fault(folder: Path, file: Path, kind: str, target: str, names) -> str | None
         return None
     if (on := LEADS_ON.search(led.read_text(errors="replace"))) is not None:
         led = Path(led.parent, unquote(on[1])).resolve()
-    # The page's addresses are what is asked, not places.
+    # Fragments of the interactive page are queries, not places.
     if "page/" in led.relative_to(folder).as_posix() or {fragment, parts.fragment} & names(led):
         return None
     return f"there is no place #{fragment}"

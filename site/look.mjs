@@ -1,7 +1,7 @@
-// The site in a browser, at the width of a desk and of a phone, by day and by night: no page scrolls sideways, nothing is
-// cut off, text stands out from what is behind it, nothing is fetched from elsewhere, no script complains.
+// Checks the site in a browser, at two widths, light and dark: no page scrolls sideways, nothing is cut off, text has
+// enough contrast, nothing is fetched from other sites, no script reports an error.
 //
-//   node site/look.mjs SITE [PICTURES]        pictures of some pages go there
+//   node site/look.mjs SITE [PICTURES]        writes pictures of some pages to the folder PICTURES
 
 import { mkdirSync, readdirSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
@@ -9,7 +9,7 @@ import { launchPlain, watch } from "../web/browser.mjs";
 import { serve } from "../web/serve.mjs";
 
 const [folder, pictures] = process.argv.slice(2).map((path) => resolve(path));
-/** Rust's documentation, the page and the laboratory's report are looked at by whoever makes them. */
+/** The documentation of Rust, the page and the report of the laboratory have checks of their own. */
 const OTHERS = /^(rust|page|laboratory|_static|_sources)\//;
 const PICTURED = ["index.html", "gallery.html", "docs/peers.html", "docs/reference/command-line.html", "notebooks/data.html", "python/api.html"];
 
@@ -17,7 +17,7 @@ const pages = readdirSync(folder, { recursive: true })
   .filter((file) => file.endsWith(".html") && !OTHERS.test(file))
   .sort();
 
-/** What is wrong with the page as it is laid out. */
+/** Returns the faults of the layout of the page. */
 function faults() {
   const told = [];
   const root = document.documentElement;
@@ -35,7 +35,7 @@ function faults() {
     }
     return "rgb(255, 255, 255)";
   };
-  for (const element of document.querySelectorAll("article :is(p, li, pre, td, th, dt, dd, h1, h2, h3, img, table, code, span, svg)")) {
+  for (const element of document.querySelectorAll("article :is(p, li, pre, td, th, dt, dd, h1, h2, h3, img, table, code, span, svg, math)")) {
     const box = element.getBoundingClientRect();
     if (box.width === 0 || getComputedStyle(element).visibility === "hidden") continue;
     let holder = element;

@@ -1,15 +1,17 @@
-//! Along which directions a body can leave another one ([`free`]), and in which moves ([`ways`]).
+//! Directions along which a solid can be removed from another one ([`free`]), and removal paths in several
+//! moves ([`ways`]).
 //!
-//! In `free`, `cone` is what two facets block, `cell` a square of directions, `rest` what cones leave of it, `inner` boxes
-//! inside, `window` which pairs of nodes miss one; `search` cuts the sphere, `proof` is what is said of each cell, `verify` checks it,
-//! `region` joins what is free, `thin` says what is so without an area, `blocker` asks about one cell. In `ways`, `openings`
-//! is where along one move another is possible, `pairs` what two bodies do by their displacement, `search` goes from place to
-//! place; `proof` certifies every leg by casts, `verify` checks them. `cells` are displacements in which two bodies overlap, with
-//! which `enclosed` proves that there is no way.
+//! - `free` decides for every direction of the sphere whether a translation along it is free. Its module head
+//!   lists the data flow.
+//! - `ways` searches a graph of placements. `pairs` classifies pairs of nodes by displacement, `openings`
+//!   finds where along one move another move becomes possible, `search` explores the placements, `proof` and
+//!   `verify` certify each leg by casts.
+//! - `cells` finds cells of displacements in which the bodies overlap. `enclosed` uses them to prove that no
+//!   path exists.
 
 #![allow(
     rustdoc::private_intra_doc_links,
-    reason = "hidden modules are read with their private parts"
+    reason = "the documentation of hidden modules is read together with private items"
 )]
 
 pub mod free;

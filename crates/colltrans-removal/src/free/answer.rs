@@ -1,4 +1,4 @@
-//! The answer: what is said of a direction, regions, and areas.
+//! Free directions as an answer: classification of a direction, regions and areas.
 
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -29,7 +29,7 @@ use colltrans_solid::cast::StartOverlap;
 use colltrans_solid::solve::overlap;
 use colltrans_solid::{SolidCast, SolidScene};
 
-/// What is said of a direction.
+/// Classification of a direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -37,41 +37,43 @@ use colltrans_solid::{SolidCast, SolidScene};
     serde(rename_all = "snake_case")
 )]
 pub enum Verdict {
-    /// Nothing blocks it, ever.
+    /// No translation along the direction is blocked.
     Free,
-    /// These two triangles block it: positions in [`Solid::triangles`] of the moving and of the fixed body.
+    /// This pair of triangles blocks the direction: indices into [`Solid::triangles`] of the moving and the
+    /// fixed body.
     Blocked([u32; 2]),
-    /// It was not found out.
+    /// The search did not decide the direction.
     Undecided,
 }
 
-/// A convex piece of the free directions, borders included.
+/// Convex piece of the free directions, including its boundary.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreePiece {
-    /// Its corners in order, directions with a largest component of 1 (or -1), exact but for their last roundings.
+    /// Corners in cyclic order, as directions with a largest component of 1 or -1. Only their last roundings
+    /// make them inexact.
     pub corners: Vec<DVec3>,
-    /// Its solid angle.
+    /// Solid angle in steradians.
     pub area: f64,
 }
 
-/// A cell of the sphere.
+/// Cell of directions on the sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeCell {
-    /// Its corners in order, exact: it is all that is between them.
+    /// Corners in cyclic order. They are exact, and the cell is their convex cone.
     pub corners: [DVec3; 4],
-    /// What is known of it.
+    /// Classification of the cell.
     pub kind: CellKind,
-    /// If one pair of facets blocks all of it, these, and if boxes inside the bodies do, a pair that blocks its
-    /// middle: positions in [`Solid::triangles`] of the moving and of the fixed
-    /// body.
+    /// For a blocked cell a pair of triangles, as indices into [`Solid::triangles`] of the moving and the
+    /// fixed body. If one pair of facets blocks the cell, this is that pair. If boxes inside the bodies block
+    /// it, this pair blocks the direction at its center.
     pub blocked_by: Option<[u32; 2]>,
-    /// Its solid angle.
+    /// Solid angle in steradians.
     pub area: f64,
 }
 
-/// What is known of a cell.
+/// Classification of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -79,58 +81,60 @@ pub struct FreeCell {
     serde(rename_all = "snake_case")
 )]
 pub enum CellKind {
-    /// All of it is free.
+    /// All directions of the cell are free.
     Free,
-    /// One pair of facets, or of boxes inside the bodies, blocks all of it.
+    /// One pair of facets, or of boxes inside the bodies, blocks the whole cell.
     Blocked,
-    /// Some pairs block all that is not free, which may be nothing.
+    /// A list of pairs blocks part of the cell, possibly all of it. All other directions are free.
     Both,
-    /// Not all of it is known.
+    /// Some directions of the cell may be undecided.
     Undecided,
 }
 
-/// Directions in undecided cells that are asked one by one, at most.
+/// Maximum number of directions in undecided cells that are tested by a cast.
 const MOST_ASKED: usize = 64;
 
-/// Solid angles, each enclosed: `[at least, at most]`, in steradians.
+/// Solid angles in steradians; `free` is an interval of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Areas {
     free: [f64; 2],
     undecided: f64,
 }
 
-/// All directions along which a solid can leave another one: see [`Self::of`].
+/// All directions along which a solid can leave another one. [`Self::of`] computes them.
 pub struct FreeDirections<'a> {
-    /// Along any direction.
+    /// The cast along an arbitrary direction.
     cast: Cast<'a, Solid>,
     bodies: Bodies<'a>,
     options: FreeOptions,
-    /// Boxes inside either body.
+    /// Boxes inside the moving and inside the fixed body.
     boxes: [Vec<InnerBox>; 2],
     fates: Vec<Fate>,
     looks: u64,
     areas: Areas,
-    /// What is free without an area, when first asked for.
+    /// Free arcs and isolated directions, computed at the first request.
     thin: OnceLock<Thin>,
 }
 
 impl<'a> FreeDirections<'a> {
-    /// Along which directions can the moving body leave the fixed one? Bodies of either kind; a convex one as the
-    /// solid that it is.
+    /// Computes the directions along which the moving body can leave the fixed one. A convex body is treated
+    /// as a solid.
     ///
-    /// A direction is free exactly where [`Cast::clearance`] along it, with the same tolerance and meaning of an
-    /// overlap, says that it is. All decisions are exact; what is not decided within the work allowed is called
-    /// undecided.
+    /// A direction is free if and only if [`Cast::clearance`] along it, with the same tolerance and start
+    /// overlap, reports a free translation. All decisions are exact. Directions that the allowed work does
+    /// not decide remain undecided.
     ///
     /// # Errors
-    /// Bodies that no cast can be asked about; open shells; an overlap that is not to be ignored.
+    /// Returns [`FreeError::Query`] for bodies or options that a cast rejects, [`FreeError::Open`] for an
+    /// open shell, and [`FreeError::Overlapping`] if the bodies overlap at the start and the overlap is not
+    /// ignored.
     ///
     /// ```
     /// use colltrans::free::{FreeDirections, FreeOptions, Verdict};
     /// use colltrans::glam::DVec3;
     /// use colltrans::{ConvexPolyhedron, Pose};
     ///
-    /// // A lid on a box: it can go up and aside, not down.
+    /// // A lid on a box can move up and sideways, but not down.
     /// let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let above = Pose::from_translation(DVec3::Z)?;
     /// let free =
@@ -151,10 +155,10 @@ impl<'a> FreeDirections<'a> {
         Self::search(moving, fixed, options, None)
     }
 
-    /// The same, which ends with [`FreeError::Cancelled`] soon after the flag is set.
+    /// Computes the free directions like [`Self::of`], and stops soon after the flag is set.
     ///
     /// # Errors
-    /// As [`Self::of`].
+    /// Returns the errors of [`Self::of`], and [`FreeError::Cancelled`] if the flag was set.
     pub fn of_unless<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
@@ -179,10 +183,10 @@ impl<'a> FreeDirections<'a> {
         Ok(all)
     }
 
-    /// What is said of a direction, of any length.
+    /// Returns the classification of a direction of any length.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// Returns an error for a direction that is zero, not finite or out of range.
     pub fn says(&self, direction: DVec3) -> Result<Verdict, QueryError> {
         check_direction(direction)?;
         let mut at = Cell::root_of(direction);
@@ -207,18 +211,18 @@ impl<'a> FreeDirections<'a> {
         })
     }
 
-    /// The solid angle that is free, from below and from above, in steradians: of all directions `4 PI`. What is
-    /// undecided may be free besides.
+    /// Returns a lower and an upper bound of the solid angle of the free directions, in steradians. The whole
+    /// sphere has `4 PI`. Undecided directions are not included and may also be free.
     pub fn free_area(&self) -> [f64; 2] {
         self.areas.free
     }
 
-    /// At most so much is undecided, in steradians.
+    /// Returns an upper bound of the solid angle of the undecided directions, in steradians.
     pub fn undecided_area(&self) -> f64 {
         self.areas.undecided
     }
 
-    /// Whether no direction is free, for certain.
+    /// Checks whether it is certain that no direction is free.
     pub fn is_blocked(&self) -> bool {
         self.leaves().all(|(cell, fate)| match fate {
             Fate::Cut(_) | Fate::Blocked(_) | Fate::Inner(_) => true,
@@ -229,12 +233,13 @@ impl<'a> FreeDirections<'a> {
         })
     }
 
-    /// Whether nothing is undecided.
+    /// Checks whether no cell is undecided.
     pub fn is_complete(&self) -> bool {
         self.leaves().all(|(_, fate)| !matches!(fate, Fate::Undecided(_)))
     }
 
-    /// Convex pieces that together are all that is free with an area, by cells: neighbours share borders.
+    /// Returns convex pieces whose union is the set of free directions with an area. Pieces do not extend
+    /// across cells, and neighbours share boundaries.
     pub fn pieces(&self) -> Vec<FreePiece> {
         let piece = |(cell, piece): (Cell, Piece)| {
             piece
@@ -244,32 +249,33 @@ impl<'a> FreeDirections<'a> {
         self.parts().filter_map(piece).collect()
     }
 
-    /// The connected regions of what is free with an area, the largest first.
+    /// Returns the connected regions of free directions with an area, the largest first.
     pub fn regions(&self) -> Vec<FreeRegion> {
         regions(&self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
     }
 
-    /// Arcs of free directions beside which there is no region.
+    /// Returns the arcs of free directions that border no region of free or undecided directions.
     pub fn arcs(&self) -> &[FreeArc] {
         &self.thin().arcs
     }
 
-    /// Free directions with no other beside them.
+    /// Returns the free directions that have no free or undecided direction next to them.
     pub fn points(&self) -> &[FreePoint] {
         &self.thin().points
     }
 
-    /// Whether a direction, of any length, is that of a point, exactly; not if there are no such planes.
+    /// Checks exactly whether a direction, of any length, is the direction of a free point. Returns `false`
+    /// if the planes of the point name vertices that do not exist.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// Returns an error for a direction that is zero, not finite or out of range.
     ///
     /// ```
     /// use colltrans::free::{FreeDirections, FreeOptions};
     /// use colltrans::glam::DVec3;
     /// use colltrans::{ConvexPolyhedron, Pose, Solid};
     ///
-    /// // A bar in a tube that is open at its ends.
+    /// // A bar in a tube that is open at both ends.
     /// let cuboid = |low: [f64; 3], high: [f64; 3]| ConvexPolyhedron::cuboid(low.into(), high.into());
     /// let walls = Solid::from_pieces(&[
     ///     cuboid([-1.0, -1.0, 0.0], [4.0, 0.0, 1.0])?,
@@ -291,10 +297,11 @@ impl<'a> FreeDirections<'a> {
         Ok(point.is(&self.bodies, direction))
     }
 
-    /// Whether a direction, of any length, is on an arc or at one of its ends, exactly; not if there are no such planes.
+    /// Checks exactly whether a direction, of any length, lies on an arc or at one of its ends. Returns
+    /// `false` if the planes of the arc name vertices that do not exist.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// Returns an error for a direction that is zero, not finite or out of range.
     pub fn is_on(&self, arc: &FreeArc, direction: DVec3) -> Result<bool, QueryError> {
         check_direction(direction)?;
         Ok(arc.has(&self.bodies, direction))
@@ -304,15 +311,16 @@ impl<'a> FreeDirections<'a> {
         self.thin.get_or_init(|| thin(&self.bodies, self.leaves()))
     }
 
-    /// The bodies, with a direction that plays no part.
+    /// Returns the cast between the bodies. Its direction is arbitrary.
     #[cfg(feature = "json")]
     #[doc(hidden)]
     pub fn cast(&self) -> &Cast<'a, Solid> {
         &self.cast
     }
 
-    /// Free directions in cells that are undecided: arcs and points on their borders, their corners and middles, each asked by an ordinary cast, some
-    /// of them if there are many.
+    /// Returns free directions in undecided cells. The candidates are corners of arcs and points that border
+    /// undecided directions, and corners and centers of undecided cells. At most 64 candidates are tested,
+    /// each by one cast.
     pub fn free_among_undecided(&self) -> Vec<DVec3> {
         let undecided = |(cell, fate): (Cell, &Fate)| match fate {
             Fate::Undecided(_) => {
@@ -324,7 +332,7 @@ impl<'a> FreeDirections<'a> {
         let mut asked: Vec<DVec3> = Vec::new();
         let corners = self.leaves().filter_map(undecided).flatten();
         for d in self.thin().unclear.iter().copied().chain(corners) {
-            // Of two sides of the cube the same direction.
+            // Two sides of the cube share the directions on their common edge.
             if !asked.contains(&d) {
                 asked.push(d);
             }
@@ -343,28 +351,28 @@ impl<'a> FreeDirections<'a> {
         asked
     }
 
-    /// The choices.
+    /// Returns the options.
     pub fn options(&self) -> FreeOptions {
         self.options
     }
 
-    /// How many cells the sphere was cut into, and how many pairs of nodes were looked at.
+    /// Returns the number of cells of the subdivision and the number of node visits.
     pub fn work(&self) -> [u64; 2] {
         [self.leaves().count() as u64, self.looks]
     }
 
-    /// The tolerance that is used, as a length.
+    /// Returns the tolerance in use, a length.
     pub fn tolerance(&self) -> f64 {
         self.cast.tolerance()
     }
 
-    /// Checks what is said of every cell by itself, without a search.
+    /// Checks the claim about every cell on its own, without a search.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns [`FreeError::NotProven`] for the first box or cell whose claim is not proven.
     pub fn verify(&self) -> Result<(), FreeError> {
         for (moving, boxes) in [(true, &self.boxes[0]), (false, &self.boxes[1])] {
-            // Bodies that overlap now, which is ignored, do not block by what is inside.
+            // Bodies whose present overlap is ignored are not blocked by boxes inside them.
             let counts = self.options.start_overlap == StartOverlap::Refuse;
             let inside = |one: &InnerBox| counts && one.is_inside(&self.bodies, moving);
             if !boxes.iter().all(inside) {
@@ -379,7 +387,8 @@ impl<'a> FreeDirections<'a> {
         Ok(())
     }
 
-    /// The cells of the proof. They are small beside borders and large elsewhere.
+    /// Returns the cells of the proof. Cells are small near boundaries of the free directions and large
+    /// elsewhere.
     pub fn cells(&self) -> impl Iterator<Item = FreeCell> {
         self.leaves().map(|(cell, fate)| FreeCell {
             corners: cell.corners(),
@@ -401,7 +410,7 @@ impl<'a> FreeDirections<'a> {
         })
     }
 
-    /// All that is said, with its proof.
+    /// Returns the claims about all cells, which prove the answer.
     pub fn proof(&self) -> FreeProof {
         FreeProof {
             tolerance: self.cast.tolerance(),
@@ -411,10 +420,11 @@ impl<'a> FreeDirections<'a> {
         }
     }
 
-    /// What a proof says of two bodies, if it holds: no search, whoever has made it.
+    /// Builds the answer from a proof after checking every claim. It runs no search, and the proof may have
+    /// any origin.
     ///
     /// # Errors
-    /// As [`Self::of`]; what is not proven, [`FreeError::NotProven`].
+    /// Returns the errors of [`Self::of`], and [`FreeError::NotProven`] if a claim is not proven.
     pub fn from_proof<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
@@ -429,10 +439,12 @@ impl<'a> FreeDirections<'a> {
         Ok(all)
     }
 
-    /// The same without a check, for who has made the proof: areas are told to be 0.
+    /// Builds the answer from a proof without checking its claims. It is meant for callers that computed the
+    /// proof themselves. Areas are 0.
     ///
     /// # Errors
-    /// As [`Self::of`]; cells that are not those of a sphere, facets that do not exist.
+    /// Returns the errors of [`Self::of`], and [`FreeError::NotProven`] if the cells do not partition the
+    /// sphere or name facets or boxes that do not exist.
     pub fn believing<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
@@ -464,7 +476,8 @@ impl<'a> FreeDirections<'a> {
         }
     }
 
-    /// The same with other choices for when it is asked once more; the tolerance and the meaning of an overlap stay.
+    /// Returns this answer with other options. The tolerance and the treatment of a start overlap do not
+    /// change.
     #[must_use]
     pub fn with_options(self, options: FreeOptions) -> Self {
         let FreeOptions { tolerance, start_overlap, .. } = self.options;
@@ -472,7 +485,7 @@ impl<'a> FreeDirections<'a> {
         Self { options, ..self }
     }
 
-    /// The cells that are not cut, in order.
+    /// Returns the cells that are not divided, in preorder.
     fn leaves(&self) -> impl Iterator<Item = (Cell, &Fate)> {
         let mut stack: Vec<(usize, Cell)> = Cell::roots().into_iter().enumerate().rev().collect();
         std::iter::from_fn(move || {
@@ -489,7 +502,7 @@ impl<'a> FreeDirections<'a> {
         })
     }
 
-    /// All that is free, in pieces of cells.
+    /// Returns all free pieces, each with its cell.
     fn parts(&self) -> impl Iterator<Item = (Cell, Piece)> {
         let rest = |(cell, fate): (Cell, &Fate)| {
             let rest = match fate {
@@ -524,12 +537,12 @@ impl<'a> FreeDirections<'a> {
     }
 }
 
-/// Directions of the corners of a piece.
+/// Returns the directions of the corners of a piece.
 fn directions(cell: &Cell, piece: &Piece) -> Vec<DVec3> {
     piece.places().into_iter().map(|place| cell.side.direction(place)).collect()
 }
 
-/// The bodies, checked.
+/// Checks the bodies and the options, and returns the cast and the bodies in the setting frame.
 pub(super) fn setting<'a, A: AsSolid, B: AsSolid>(
     moving: &Placed<'a, A>,
     fixed: &Placed<'a, B>,

@@ -1,4 +1,5 @@
-//! Whole cells of directions that one pair of facets, or of boxes inside, blocks: for proofs about many bodies at once.
+//! Cells of directions that one pair of facets, or of boxes inside the bodies, blocks entirely. Proofs about
+//! many bodies use them.
 
 use glam::DVec3;
 
@@ -13,34 +14,35 @@ use super::verify::{holds, names_exist};
 use colltrans_convex::body::Placed;
 use colltrans_solid::body::AsSolid;
 
-/// A square cell of directions on a side of the cube around the origin, borders included; its corners are exact.
+/// Square cell of directions on a side of the cube around the origin, including its boundary. Its corners are
+/// exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DirectionCell(Cell);
 
 impl DirectionCell {
-    /// The six sides of the cube, which are all directions: across `+x`, `-x`, `+y`, ...
+    /// Returns the six sides of the cube, which cover all directions, in the order `+x`, `-x`, `+y`, ...
     pub fn sphere() -> [Self; 6] {
         Cell::roots().map(Self)
     }
 
-    /// The four cells that it is made of.
+    /// Returns the four quarters of the cell.
     #[must_use]
     pub fn quarters(&self) -> [Self; 4] {
         [0, 1, 2, 3].map(|k| Self(self.0.quarter(k)))
     }
 
-    /// How often a side of the cube was halved to get it.
+    /// Returns the number of times that a side of the cube was halved to obtain the cell.
     pub const fn depth(&self) -> u32 {
         self.0.depth
     }
 
-    /// A direction in its middle, with a largest component of 1 (or -1).
+    /// Returns the direction at the center of the cell, with a largest component of 1 or -1.
     pub fn center(&self) -> DVec3 {
         self.0.side.direction(self.0.center())
     }
 }
 
-/// Which cells of directions one pair of facets of two solids blocks.
+/// Decides which cells of directions one pair of facets, or of inner boxes, of two solids blocks.
 pub struct CellBlocker<'a> {
     bodies: Bodies<'a>,
     options: FreeOptions,
@@ -48,10 +50,11 @@ pub struct CellBlocker<'a> {
 }
 
 impl<'a> CellBlocker<'a> {
-    /// Of two bodies where they are; of the choices the tolerance and the meaning of an overlap count.
+    /// Builds the blocker of two placed bodies. Of the options, only the tolerance and the start overlap are
+    /// used.
     ///
     /// # Errors
-    /// As [`FreeDirections::of`](super::FreeDirections::of).
+    /// Returns the errors of [`FreeDirections::of`](super::FreeDirections::of).
     pub fn new<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
@@ -61,21 +64,24 @@ impl<'a> CellBlocker<'a> {
         Ok(Self { bodies, options, memory: Memory::default() })
     }
 
-    /// Whether all directions of a cell are blocked, exactly, by a pair of facets or of boxes inside the bodies that is
-    /// found soon: by those of cells asked about before, first.
+    /// Checks whether one pair of facets, or of boxes inside the bodies, blocks all directions of a cell.
+    /// Pairs that blocked earlier cells are tried first, then a limited search runs. `true` is exact; `false`
+    /// means that the search found no such pair.
     pub fn covers(&mut self, cell: &DirectionCell) -> bool {
         Search::covers(&self.bodies, self.options, &cell.0, &mut self.memory)
     }
 
-    /// Whether a pair of facets blocks all directions of a cell, exactly; not if there are no such facets.
+    /// Checks exactly whether a pair of facets blocks all directions of a cell. Returns `false` if a facet
+    /// does not exist.
     pub fn blocks(&self, cell: &DirectionCell, pair: [u32; 2]) -> bool {
         let fate = Fate::Blocked(pair);
         let none = [const { Vec::new() }; 2];
         names_exist(&self.bodies, &none, &fate) && holds(&self.bodies, &none, &cell.0, &fate)
     }
 
-    /// A pair of facets that blocks all directions of a cell, exactly, if one is found soon: positions in
-    /// [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of the fixed body.
+    /// Returns a pair of facets that blocks all directions of a cell, exactly: indices into
+    /// [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and the fixed body. Returns
+    /// `None` if a limited search finds no such pair.
     pub fn covering(&self, cell: &DirectionCell) -> Option<[u32; 2]> {
         Search::new(&self.bodies, self.options, None).covering_pair(&cell.0)
     }

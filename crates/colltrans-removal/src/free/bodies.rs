@@ -1,5 +1,5 @@
-//! Two placed solids, as all directions see them: vertices in the setting frame, and one tree for each body that ends
-//! with single facets.
+//! Two placed solids for queries about all directions: vertices in the setting frame, and for each body a
+//! tree whose leaves are single facets.
 
 use glam::DVec3;
 
@@ -10,23 +10,24 @@ use colltrans_solid::body::tree::{self, ANY, Node};
 use colltrans_solid::solve::projected::Projected;
 use colltrans_solid::solve::scene::{Corner, ExactPoint, Scene, Side};
 
-/// What bounds some facets of one body, in the setting frame.
+/// Bounds of a set of facets of one body, in the setting frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
-    /// A unit vector, or 0.
+    /// Unit vector near the facet normals, or 0.
     pub(crate) axis: DVec3,
-    /// All facets' normals differ from the axis by at most this sine; any, from 1 on.
+    /// Upper bound on the sine of the angle between a facet normal and `axis`. A value of at least 1 bounds
+    /// nothing.
     pub(crate) spread: f64,
-    /// Along the axis.
+    /// Range of the facets' coordinates along `axis`.
     pub(super) slab: [f64; 2],
-    /// The first part, and how many there are: none of a facet.
+    /// Index of the first child, and the number of children; 0 for a facet.
     parts: [u32; 2],
 }
 
 impl View {
-    /// The parts, as numbers of views.
+    /// Returns the indices of the children.
     pub(crate) fn parts(&self) -> std::ops::Range<u32> {
         self.parts[0]..self.parts[0] + self.parts[1]
     }
@@ -42,16 +43,16 @@ impl View {
 
 /// Two solids, the moving one first.
 pub(crate) struct Bodies<'a> {
-    /// Along `z`: then its query frame is the setting frame.
+    /// Scene with direction `z`, so that its query frame is the setting frame.
     pub(super) scene: Scene<'a>,
     corners: [Vec<Corner>; 2],
     pub(crate) views: [Vec<View>; 2],
-    /// Whether a turned normal is exact.
+    /// Whether the pose of the body only permutes axes and changes signs, so that rotated normals are exact.
     pub(super) permutes: [bool; 2],
 }
 
 impl<'a> Bodies<'a> {
-    /// Of a scene along `z`.
+    /// Builds the bodies of a scene with direction `z`.
     pub(crate) fn new(scene: Scene<'a>) -> Self {
         let sides = [&scene.moving, &scene.fixed];
         let corners = sides.map(|side| {
@@ -63,12 +64,12 @@ impl<'a> Bodies<'a> {
         Self { scene, corners, views, permutes }
     }
 
-    /// The two views of a pair.
+    /// Returns the two nodes of a pair.
     pub(crate) fn views_of(&self, pair: [u32; 2]) -> [&View; 2] {
         [0, 1].map(|k| &self.views[k][pair[k] as usize])
     }
 
-    /// The pairs that a pair is made of, by the parts of the larger view that has some; none of two facets.
+    /// Replaces the larger node of a pair that has children by each of them. Returns `None` for two facets.
     pub(crate) fn parts(&self, pair: [u32; 2]) -> Option<impl Iterator<Item = [u32; 2]> + use<>> {
         let views = self.views_of(pair);
         let which = node_to_split(views.map(View::is_facet), |k| views[k].size())?;
@@ -79,19 +80,19 @@ impl<'a> Bodies<'a> {
         &self.corners[usize::from(!spot.moving)][spot.vertex as usize]
     }
 
-    /// Whether there is such a vertex.
+    /// Checks whether a vertex exists.
     pub(super) fn has(&self, spot: PlaneVertex) -> bool {
         (spot.vertex as usize) < self.corners[usize::from(!spot.moving)].len()
     }
 
-    /// Where a vertex is, in whole numbers.
+    /// Returns the position of a vertex in exact integers.
     pub(super) fn wide<const N: usize>(&self, spot: PlaneVertex) -> [Integer<N>; 3] {
         let corner = self.corner(spot);
         let world = corner.world(&self.scene);
         world.map_or_else(|| corner.wide(&self.scene), |at| at.to_array().map(Integer::number))
     }
 
-    /// From one vertex to another, and by how much a component may be off.
+    /// Returns the displacement from one vertex to another, and a bound on the error of a component.
     pub(super) fn way(&self, ends: [PlaneVertex; 2]) -> (DVec3, f64) {
         let [a, b] = ends.map(|spot| self.corner(spot));
         let noise = (f64::from(!a.exact) + f64::from(!b.exact)) * self.scene.noise;
@@ -99,24 +100,24 @@ impl<'a> Bodies<'a> {
         (way, noise + f64::EPSILON * way.abs().max_element())
     }
 
-    /// The same in whole numbers.
+    /// Returns the displacement from one vertex to another in exact integers.
     pub(super) fn wide_way<const N: usize>(&self, ends: [PlaneVertex; 2]) -> [Integer<N>; 3] {
         let [a, b] = ends.map(|spot| self.wide::<N>(spot));
         difference(&b, &a)
     }
 
-    /// The corners of a triangle.
+    /// Returns the vertices of a triangle.
     pub(crate) fn spots(&self, moving: bool, triangle: u32) -> [PlaneVertex; 3] {
         let solid = self.scene.side(moving).solid;
         solid.triangles()[triangle as usize].map(|vertex| PlaneVertex { moving, vertex })
     }
 
-    /// How many triangles a body has.
+    /// Returns the number of triangles of a body.
     pub(crate) fn count(&self, moving: bool) -> u32 {
         self.scene.side(moving).solid.triangles().len() as u32
     }
 
-    /// No coordinate is larger, and how far one may be off.
+    /// Returns an upper bound on the absolute value of a coordinate, and a bound on its error.
     pub(crate) fn reach(&self) -> [f64; 2] {
         let of = |corner: &Corner| corner.at.abs().max_element();
         let noise = self.scene.noise;
@@ -126,13 +127,13 @@ impl<'a> Bodies<'a> {
         [all.map(of).fold(0.0, f64::max) + most, most]
     }
 
-    /// The triangle of a view.
+    /// Returns the index of the triangle of a leaf.
     pub(crate) fn triangle(&self, moving: bool, view: u32) -> u32 {
         view - self.scene.side(moving).solid.nodes().len() as u32
     }
 }
 
-/// The tree's nodes, and behind them the facets.
+/// Builds the nodes of the tree, followed by one leaf for each facet.
 fn views(scene: &Scene, side: &Side, corners: &[Corner]) -> Vec<View> {
     let nodes = side.solid.nodes();
     let of_node = |(at, node): (usize, &Node)| {
@@ -149,14 +150,14 @@ fn views(scene: &Scene, side: &Side, corners: &[Corner]) -> Vec<View> {
     nodes.iter().enumerate().map(of_node).chain(facets).collect()
 }
 
-/// How far normals of a node's facets differ from its axis, a sine.
+/// Bounds the sine of the angle between facet normals of a node and its axis.
 fn spread(side: &Side, at: usize) -> f64 {
     let own = f64::from(side.solid.nodes()[at].spread);
     let moved = side.shrinking.map_or(0.0, |shrinking| {
         let motion = &shrinking.nodes[at];
         f64::from(motion.turn) * side.amount + f64::from(motion.rough)
     });
-    // The axis is turned with rounding, the facets exactly.
+    // The rotated axis is rounded, the rotated facets are not.
     let turned = if side.permutes { 0.0 } else { 16.0 * f64::EPSILON };
     own + moved + side.defect + turned
 }

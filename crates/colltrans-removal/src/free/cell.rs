@@ -1,8 +1,8 @@
-//! Cells of directions: squares on the six sides of a cube, halved again and again.
+//! Cells of directions: squares on the six sides of a cube, which are halved recursively.
 //!
-//! A direction of a side is `s e_k + u e_(k+1) + v e_(k+2)` with `s = 1` or `-1`. Corners of cells have dyadic `u` and
-//! `v`, so they are exact, and a cell is the convex cone of its four corners: what is linear in the direction is
-//! extreme at them.
+//! A direction on a side is `s e_k + u e_(k+1) + v e_(k+2)` with `s` = 1 or -1. The corners of cells have
+//! dyadic `u` and `v`, so they are exact. A cell is the convex cone of its four corners, therefore a linear
+//! function of the direction is extreme at a corner.
 
 use std::cmp::Ordering;
 
@@ -10,10 +10,10 @@ use glam::DVec3;
 
 use colltrans_kernel::integer::{Integer, SMALL};
 
-/// Cells are halved no more often: `u` and `v` are exact.
+/// Maximum number of halvings for which `u` and `v` are exact.
 pub(super) const DEEPEST: u32 = 50;
 
-/// One of the sides of the cube: an axis and its sign.
+/// Side of the cube: an axis and its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Side(u8);
 
@@ -22,7 +22,7 @@ impl Side {
         [0, 1, 2, 3, 4, 5].map(Self)
     }
 
-    /// The axis across, and the two along.
+    /// Returns the axis perpendicular to the side, and the two axes parallel to it.
     pub(super) fn axes(self) -> [usize; 3] {
         let main = usize::from(self.0 / 2);
         [main, (main + 1) % 3, (main + 2) % 3]
@@ -39,14 +39,14 @@ impl Side {
         d
     }
 
-    /// The side that a direction goes through.
+    /// Returns the side that a direction passes through.
     fn of(d: DVec3) -> Self {
         let main = d.abs().max_position() as u8;
         Self(2 * main + u8::from(d[usize::from(main)] < 0.0))
     }
 }
 
-/// A square on a side.
+/// Square cell on a side of the cube.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
     pub(super) side: Side,
@@ -64,7 +64,7 @@ impl Cell {
         [self.low[axis], self.low[axis] + self.size]
     }
 
-    /// Its corners, round the square.
+    /// Returns the corners on the side, in cyclic order.
     pub(super) fn places(&self) -> [[f64; 2]; 4] {
         let ([a, b], [c, d]) = (self.range(0), self.range(1));
         [[a, c], [b, c], [b, d], [a, d]]
@@ -78,14 +78,15 @@ impl Cell {
         self.low.map(|low| low + self.size / 2.0)
     }
 
-    /// A quarter of it: bit 0 of the number is for the upper half along `u`, bit 1 along `v`.
+    /// Returns a quarter. Bit 0 of the number selects the upper half along `u`, bit 1 the upper half along
+    /// `v`.
     pub(super) fn quarter(&self, number: usize) -> Self {
         let (half, upper) = (self.size / 2.0, [number & 1, number >> 1 & 1]);
         let low = [0, 1].map(|axis| self.low[axis] + half * upper[axis] as f64);
         Self { side: self.side, low, size: half, depth: self.depth + 1 }
     }
 
-    /// Whether another cell is this one or within it.
+    /// Checks whether another cell is equal to this one or inside it.
     pub(super) fn contains(&self, other: &Self) -> bool {
         let within = |axis: usize| {
             let ([low, high], [least, most]) = (self.range(axis), other.range(axis));
@@ -94,12 +95,12 @@ impl Cell {
         self.side == other.side && within(0) && within(1)
     }
 
-    /// The number of the root that holds a direction.
+    /// Returns the index of the side that contains a direction.
     pub(super) fn root_of(d: DVec3) -> usize {
         usize::from(Side::of(d).0)
     }
 
-    /// The number of a quarter that holds a direction of this cell, exactly.
+    /// Returns the number of the quarter that contains a direction of this cell. The comparison is exact.
     pub(super) fn quarter_of(&self, d: DVec3) -> usize {
         let [k, i, j] = self.side.axes();
         let middle = self.center();
@@ -111,20 +112,20 @@ impl Cell {
         upper(0, d[i]) + 2 * upper(1, d[j])
     }
 
-    /// The solid angle.
+    /// Returns the solid angle in steradians.
     pub(super) fn area(&self) -> f64 {
         solid_angle(&self.places())
     }
 }
 
-/// The solid angle of a convex polygon on a side.
+/// Computes the solid angle of a convex polygon on a side.
 pub(super) fn solid_angle(places: &[[f64; 2]]) -> f64 {
     let at = |[u, v]: [f64; 2]| DVec3::new(1.0, u, v);
     let way = |[a, b]: [f64; 2], [c, d]: [f64; 2]| DVec3::new(0.0, c - a, d - b);
     let triangle = |k: usize| {
         let (a, b, c) = (at(places[0]), at(places[k - 1]), at(places[k]));
         let (p, q, r) = (a.length(), b.length(), c.length());
-        // det[a, b, c] from the sides, which are known better than corners.
+        // det[a, b, c] from the edge vectors, whose relative errors are smaller than those of the corners.
         let volume = a.dot(way(places[0], places[k - 1]).cross(way(places[0], places[k])));
         2.0 * volume.abs().atan2(p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q)
     };

@@ -1,14 +1,14 @@
-//! The directions along which one facet runs into another.
+//! The cone of directions along which one facet runs into another one.
 //!
-//! With `f` of the moving body and `g` of the fixed one these are an open convex cone `C`: `n_f.d > 0`, `n_g.d < 0`,
-//! and `d` inside the cone over the differences `g - f`. The sides of that cone are spanned by a vertex of one and an
-//! edge of the other whose plane has all nine differences on one side: for vertex `f_i` and edge `g_j g_k` that is
-//! so if the plane has the third vertex of `g` on one side and the other two of `f` on the other, or on itself.
-//! Fifteen signs of four of the six vertices decide it for all 18 candidates.
+//! For facets `f` of the moving and `g` of the fixed body, the directions form an open convex cone: `n_f.d >
+//! 0`, `n_g.d < 0`, and `d` is inside the cone over the differences `g - f`. Each side of that cone is
+//! spanned by a vertex of one facet and an edge of the other. Fifteen exact orientation signs, each of four
+//! of the six vertices, select the sides among 18 candidates.
 //!
-//! Facets of one plane have a cone without an inside. If they look at each other and their interiors overlap,
-//! `C = { n_f.d > 0 }`: they touch and block. Facets that cross have no sides, and `C` is taken to be empty: they
-//! overlap where they are, which is the answer or ignored.
+//! - Coplanar facets with opposite normals whose interiors overlap block the half-space `n_f.d > 0`.
+//! - Facets that cross have no such sides, and their cone is empty: the bodies overlap at the start.
+//!
+//! Derivation: `docs/theory/free-directions.md`.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -19,7 +19,8 @@ use super::bodies::Bodies;
 use super::line::{Line, PlaneVertex};
 use colltrans_solid::solve::scene::Corner;
 
-/// What a pair of facets blocks: directions on the positive side of all lines. Of none, nothing.
+/// Open cone that a pair of facets blocks: the directions on the positive side of all lines. Without lines it
+/// is empty.
 #[derive(Debug, Clone)]
 pub(super) struct Cone {
     pub(super) pair: [u32; 2],
@@ -27,7 +28,7 @@ pub(super) struct Cone {
 }
 
 impl Cone {
-    /// Of a triangle of the moving and one of the fixed body.
+    /// Computes the cone of a triangle of the moving body and one of the fixed body.
     pub(super) fn new(bodies: &Bodies, pair: [u32; 2]) -> Self {
         let (f, g) = (bodies.spots(true, pair[0]), bodies.spots(false, pair[1]));
         let signs = Signs::new(bodies, &f, &g);
@@ -52,32 +53,33 @@ impl Cone {
         Self { pair, lines: if crosses { Vec::new() } else { lines } }
     }
 
-    /// Whether it holds a direction.
+    /// Checks whether a direction is inside the cone.
     pub(super) fn holds(&self, bodies: &Bodies, d: DVec3) -> bool {
         !self.lines.is_empty() && self.lines.iter().all(|line| line.side(bodies, d) == Greater)
     }
 
-    /// Whether it holds the convex cone of some directions.
+    /// Checks whether the convex cone of four directions is inside the cone.
     pub(super) fn covers(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
         corners.iter().all(|&d| self.holds(bodies, d))
     }
 
-    /// Whether one of its sides has all of the directions behind.
+    /// Checks whether one side of the cone has all four directions on it or behind it.
     pub(super) fn misses(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
         let behind = |line: &Line| corners.iter().all(|&d| line.side(bodies, d) != Greater);
         self.lines.is_empty() || self.lines.iter().any(behind)
     }
 }
 
-/// Through a vertex of one body and an edge of the other.
+/// Builds the line through a vertex of one body and an edge of the other.
 fn line(bodies: &Bodies, corner: PlaneVertex, [a, b]: [PlaneVertex; 2], turned: bool) -> Line {
     Line::of(bodies, if turned { [corner, b, a] } else { [corner, a, b] })
 }
 
-/// On which sides of planes through three vertices of two facets a fourth one is.
+/// Orientation signs of four vertices of two facets.
 struct Signs {
-    /// `outside(f_i; g)` and `outside(g_i; f)`.
+    /// `outside(f_i; g)`.
     moving: [Ordering; 3],
+    /// `outside(g_i; f)`.
     fixed: [Ordering; 3],
     /// `outside(f_a, g_b, g_(b+1), f_(a+1))`.
     edges: [[Ordering; 3]; 3],
@@ -96,19 +98,22 @@ impl Signs {
         }
     }
 
-    /// Whether all vertices are in one plane.
+    /// Checks whether all vertices are coplanar.
     fn are_flat(&self) -> bool {
         self.moving.iter().chain(&self.fixed).all(|sign| *sign == Equal)
     }
 
-    /// Whether the plane through `f_k` and the edge of `g` from `b` has all differences on one side: the negative one
-    /// of `det[g_b - f_k, g_(b+1) - f_k, d]` if turned.
+    /// Checks whether the plane through `f_k` and the edge of `g` from `b` has all differences on one side.
+    /// Returns `Some(true)` if this is the negative side of `det[g_b - f_k, g_(b+1) - f_k, d]`, and `None` if
+    /// there are differences on both sides.
     fn of_moving_corner(&self, k: usize, b: usize) -> Option<bool> {
         let others = [self.edges[k][b], self.edges[(k + 2) % 3][b].reverse()];
         supports(self.moving[k], others.map(Ordering::reverse))
     }
 
-    /// The same of `g_k` and the edge of `f` from `a`, of `det[f_a - g_k, f_(a+1) - g_k, d]`.
+    /// Checks whether the plane through `g_k` and the edge of `f` from `a` has all differences on one side.
+    /// Returns `Some(true)` if this is the negative side of `det[f_a - g_k, f_(a+1) - g_k, d]`, and `None` if
+    /// there are differences on both sides.
     fn of_fixed_corner(&self, k: usize, a: usize) -> Option<bool> {
         // outside(g_k, f_a, f_(a+1), g_l), an even permutation of outside(f_a, g_k, g_l, f_(a+1)).
         let others = [self.edges[a][k], self.edges[a][(k + 2) % 3].reverse()];
@@ -116,7 +121,8 @@ impl Signs {
     }
 }
 
-/// Whether signs are not on both sides, nor all on none; and on which.
+/// Returns the common side of three signs, `Some(true)` for the negative one. Returns `None` for signs on
+/// both sides or for three zeros.
 fn supports(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
     let all = [one, others[0], others[1]];
     match (all.contains(&Greater), all.contains(&Less)) {
@@ -126,7 +132,7 @@ fn supports(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
     }
 }
 
-/// Whether two triangles of one plane look at each other, and their interiors overlap.
+/// Checks whether two coplanar triangles have opposite normals and overlapping interiors.
 fn push_in_one_plane(bodies: &Bodies, f: [PlaneVertex; 3], g: [PlaneVertex; 3]) -> bool {
     let scene = &bodies.scene;
     let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));

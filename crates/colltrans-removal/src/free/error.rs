@@ -1,4 +1,4 @@
-//! Why free directions cannot be told.
+//! Errors of queries about free directions.
 
 use thiserror::Error;
 
@@ -6,29 +6,33 @@ use colltrans_convex::answer::CertificateError;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::solve::overlap::Overlap;
 
-/// Why free directions cannot be told.
+/// Reason why free directions cannot be computed or proven.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FreeError {
-    /// The bodies cannot be asked about.
+    /// The bodies or options are rejected by a cast.
     #[error(transparent)]
     Query(#[from] QueryError),
-    /// A body has an open shell: what is on edge blocks arcs of directions, which are no cells.
-    #[error("the {which} body has an open shell: free directions are told of closed bodies")]
+    /// A body has an open shell. A facet edge-on to the direction blocks arcs of directions, which cells
+    /// cannot represent.
+    #[error("the {which} body has an open shell; free directions need closed bodies")]
     Open {
         /// `"moving"` or `"fixed"`.
         which: &'static str,
     },
-    /// The bodies, shrunk by half the tolerance each, overlap where they are, and that is not to be ignored.
-    #[error("the bodies overlap where they are, at {place:?}: no direction is free")]
+    /// The bodies, each offset inwards by half the tolerance, overlap at the start, and the overlap is not
+    /// ignored.
+    #[error(
+        "the bodies overlap at the start, at {place:?}, so no direction is free; increase the tolerance or ignore the start overlap"
+    )]
     Overlapping {
-        /// Where.
+        /// A common point.
         place: Overlap,
     },
-    /// It was cancelled.
+    /// The search was cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// A proof that does not hold.
+    /// A claim of a proof does not hold.
     #[error("not proven: {0}")]
     NotProven(#[from] CertificateError),
 }

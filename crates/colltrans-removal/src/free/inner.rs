@@ -1,23 +1,25 @@
-//! Boxes inside a body: a pair of them may block a whole cell where no single pair of facets does.
+//! Boxes inside a body. A pair of them can block a whole cell where no single pair of facets does.
 //!
-//! With a box `K` inside `A` and a box `L` inside `B`, the interiors meet along every direction that has a positive
-//! multiple in the open box `L - K`. So what finely tessellated surfaces block piece by piece, two boxes block at
-//! once. That a box is inside is shown once: no facet meets it, as a plane along the facet or across an axis parts
-//! them, and a ray from a point of it leaves the body once more often than it enters.
+//! With a box `K` inside `A` and a box `L` inside `B`, the interiors meet along every direction that has a
+//! positive multiple in the open box `L - K`. Therefore two boxes can block at once what finely tessellated
+//! surfaces block piece by piece.
 //!
-//! All is decided in rounded numbers with bounds of their errors: what is not certain is no box.
+//! A box is inside if no facet intersects its interior and a ray from one of its points leaves the body more
+//! often than it enters it. A plane along the facet or perpendicular to an axis separates the box from each
+//! facet. All decisions use rounded numbers with error bounds. A box whose position is uncertain is rejected.
 
 use glam::{DVec2, DVec3};
 
 use super::bodies::{Bodies, View};
 
-/// Ratios and heights are off by less.
+/// Upper bound on the relative error of ratios and of coordinates along an axis.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// How often a side is moved outwards by so much, or by half as much from then on.
+/// Number of step lengths that are tried, each half of the previous one.
 const HALVINGS: u32 = 10;
+/// Number of attempts to move a side outwards after which no further round of attempts begins.
 const MOVES: u32 = 64;
 
-/// A box inside a body, along the axes of the world, from the moving body's translation.
+/// Box inside a body. Its axes are those of the world, its origin is the moving body's translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -25,14 +27,14 @@ const MOVES: u32 = 64;
     serde(deny_unknown_fields)
 )]
 pub struct InnerBox {
-    /// Its least coordinates.
+    /// Smallest coordinates.
     pub low: DVec3,
-    /// Its greatest ones.
+    /// Largest coordinates.
     pub high: DVec3,
 }
 
 impl InnerBox {
-    /// Whether it is a box inside a body.
+    /// Checks whether the box is finite, not empty, and inside a body.
     pub(super) fn is_inside(&self, bodies: &Bodies, moving: bool) -> bool {
         let (low, high) = (self.low, self.high);
         low.is_finite()
@@ -42,7 +44,7 @@ impl InnerBox {
             && PLACES.iter().any(|&place| winds(bodies, moving, low + (high - low) * place))
     }
 
-    /// Whether no facet meets its inside.
+    /// Checks whether no facet intersects the interior of the box.
     fn is_clear(&self, bodies: &Bodies, moving: bool) -> bool {
         let views = &bodies.views[usize::from(!moving)];
         let mut stack = vec![0];
@@ -59,7 +61,7 @@ impl InnerBox {
         true
     }
 
-    /// Whether a plane parts it from all facets of a view.
+    /// Checks whether a plane separates the box from all facets of a node.
     fn is_beside(&self, view: &View) -> bool {
         if view.low.cmpge(self.high).any() || view.high.cmple(self.low).any() {
             return true;
@@ -71,7 +73,8 @@ impl InnerBox {
         center + reach < view.slab[0] || center - reach > view.slab[1]
     }
 
-    /// A box that is grown around a place until facets are in its way on all sides.
+    /// Grows a box around a place until facets block all of its sides or the limit of attempts is reached. Returns `None` if the initial box
+    /// intersects a facet, or the result is not certainly inside the body.
     pub(super) fn around(bodies: &Bodies, moving: bool, place: DVec3, step: f64) -> Option<Self> {
         let mut step = step;
         let mut grown = Self { low: place - step / 1024.0, high: place + step / 1024.0 };
@@ -101,8 +104,8 @@ impl InnerBox {
         grown.is_inside(bodies, moving).then_some(grown)
     }
 
-    /// Boxes inside the moving and the fixed body behind the places where two facets meet along a direction, from
-    /// shallow to deep ones.
+    /// Grows boxes inside the moving and the fixed body behind the points where two facets meet along a
+    /// direction, in order of increasing depth.
     pub(super) fn behind(bodies: &Bodies, pair: [u32; 2], d: DVec3) -> [Vec<Self>; 2] {
         let facets = [true, false].map(|moving| {
             let triangle = pair[usize::from(!moving)];
@@ -126,8 +129,9 @@ impl InnerBox {
     }
 }
 
-/// Where on a facet of the moving and one of the fixed body their shadows along a unit vector overlap, nearly in the
-/// middle; the middles of facets whose shadows do not.
+/// Returns a point on a facet of the moving body and one on a facet of the fixed body whose shadows along the
+/// unit vector `d` coincide, near the center of the overlap of both shadows. If the shadows do not overlap,
+/// returns the centroids.
 fn meeting(facets: &[[DVec3; 3]; 2], d: DVec3) -> [DVec3; 2] {
     let x = d.any_orthonormal_vector();
     let y = d.cross(x);
@@ -160,16 +164,17 @@ fn meeting(facets: &[[DVec3; 3]; 2], d: DVec3) -> [DVec3; 2] {
     })
 }
 
-/// Places within a box from which rays are sent, as shares of its sides.
+/// Starting points of rays inside a box, as fractions of its sides.
 const PLACES: [DVec3; 3] =
     [DVec3::splat(0.5), DVec3::new(0.375, 0.4375, 0.5625), DVec3::new(0.625, 0.28125, 0.40625)];
-/// How deep under facets boxes begin, as shares of the size of the body.
+/// Depths below facets at which boxes start, as fractions of the size of the body.
 const DEPTHS: [f64; 4] = [1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0];
 
-/// Whether boxes inside the moving and the fixed body block all of a cell, by its corners.
+/// Checks whether boxes inside the moving and the fixed body block all directions of a cell, given by its
+/// corners.
 pub(super) fn cover([moving, fixed]: [&InnerBox; 2], corners: &[DVec3; 4]) -> bool {
     let (low, high) = (fixed.low - moving.high, fixed.high - moving.low);
-    // Rounded inwards.
+    // Round the difference inwards.
     let (low, high) = (low + low.abs() * ROUNDING, high - high.abs() * ROUNDING);
     corners.iter().all(|&d| {
         let mut range = [0.0, f64::INFINITY];
@@ -186,7 +191,7 @@ pub(super) fn cover([moving, fixed]: [&InnerBox; 2], corners: &[DVec3; 4]) -> bo
     })
 }
 
-/// Whether a ray along `x` from a place leaves a body more often than it enters it, for certain.
+/// Checks whether a ray along `x` certainly leaves a body more often than it enters it.
 fn winds(bodies: &Bodies, moving: bool, place: DVec3) -> bool {
     let views = &bodies.views[usize::from(!moving)];
     let (mut stack, mut count) = (vec![0], 0);
@@ -209,14 +214,14 @@ fn winds(bodies: &Bodies, moving: bool, place: DVec3) -> bool {
     count > 0
 }
 
-/// 1 if the ray from a place along `x` leaves through a facet, -1 if it enters, 0 if it misses it; `None` if that is
-/// not certain.
+/// Returns 1 if the ray from a place along `x` leaves through a facet, -1 if it enters, and 0 if it misses
+/// the facet. Returns `None` if this is uncertain.
 fn crossing(bodies: &Bodies, moving: bool, triangle: u32, place: DVec3) -> Option<i32> {
     let corners = bodies.spots(moving, triangle).map(|spot| bodies.corner(spot));
     let exact = corners.iter().all(|corner| corner.exact);
     let noise = if exact { 0.0 } else { bodies.scene.noise };
     let ways = corners.map(|corner| corner.at - place);
-    // What the difference rounds off is less than this.
+    // Add a bound on the rounding errors of the differences.
     let noise = noise + f64::EPSILON * ways.iter().map(|way| way.abs().max_element()).sum::<f64>();
     let flat = ways.map(|way| DVec2::new(way.y, way.z));
     let mut turns = [0; 3];
@@ -233,7 +238,8 @@ fn crossing(bodies: &Bodies, moving: bool, triangle: u32, place: DVec3) -> Optio
     if turns != [turns[0]; 3] {
         return Some(0);
     }
-    // Whether the facet is ahead: along its normal, whose part along `x` has the sign of the turns.
+    // The facet is ahead if `value`, the offset of its plane along the normal, has the sign of the normal's `x`
+    // component. That is the sign of the turns.
     let [a, b, c] = ways;
     let (x, y) = (b - a, c - a);
     let [l, m, n] = [x, y, a].map(|way| way.abs().max_element() + 2.0 * noise);
@@ -258,7 +264,7 @@ mod tests {
             cube(-1.0, 1.0),
             InnerBox { low: DVec3::new(3.0, -1.0, -1.0), high: DVec3::new(5.0, 1.0, 1.0) },
         );
-        // The difference is from 2 to 6 along x, and 2 aside.
+        // The difference extends from 2 to 6 along x, and from -2 to 2 along the other axes.
         let square = |reach: f64| {
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
                 .map(|[u, v]| DVec3::new(1.0, u * reach, v * reach))

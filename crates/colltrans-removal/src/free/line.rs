@@ -1,12 +1,13 @@
-//! Great circles: planes through the origin, as linear forms that are positive on one side.
+//! Great circles of directions: planes through the origin, as linear forms that are positive on one side.
 //!
-//! The form of three points `a, b, c` is `det[b - a, c - a, d]`: on which side of the line through the shadows of
-//! `a` and `b` along `d` that of `c` lies. Forms are kept rounded with a bound of their error; signs are exact, from
-//! the rounded form where its error allows and from whole numbers otherwise. Of forms that rounding has taken nothing
-//! from these are numbers of one limb or two.
-//!
-//! Lines that share two vertices cross along the difference of these: what is asked of such a crossing is a form of
-//! one difference, not of vector products, and a third line through both vertices has it on itself.
+//! - The form of three points `a, b, c` is `det[b - a, c - a, d]`. Its sign is the side of the line through
+//!   the shadows of `a` and `b` along `d` on which the shadow of `c` lies.
+//! - Forms are stored rounded with an error bound. Signs are exact: they come from the rounded form if its
+//!   error permits, and otherwise from exact integers. If the form was computed without rounding, integers of
+//!   one or two limbs suffice.
+//! - Lines that share two vertices intersect along the difference of these. A query about such an
+//!   intersection uses this difference instead of cross products. A third line through both vertices contains
+//!   the intersection.
 
 use std::cmp::Ordering;
 
@@ -19,38 +20,38 @@ use colltrans_kernel::predicates::sign;
 
 const U: f64 = f64::EPSILON / 2.0;
 
-/// A vertex of one of two bodies.
+/// Vertex of one of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneVertex {
-    /// Whether it is the moving body's.
+    /// Whether the vertex belongs to the moving body.
     pub moving: bool,
-    /// Its position in [`Solid::vertices`](colltrans_solid::Solid::vertices).
+    /// Index into [`Solid::vertices`](colltrans_solid::Solid::vertices).
     pub vertex: u32,
 }
 
-/// A direction that is known exactly.
+/// Direction in an exact representation.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Ray {
     Exactly(DVec3),
     /// From one vertex to another.
     Toward([PlaneVertex; 2]),
-    /// Along the vector product of two forms.
+    /// The cross product of two forms.
     Crossing([Line; 2]),
 }
 
-/// A linear form on directions.
+/// Great circle, as a linear form on directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
-    /// Scaled by a power of two to components of at most 2.
+    /// Form, scaled by a power of two to components of at most 2.
     pub(super) form: DVec3,
-    /// A bound of the error of each component; the form is exact if it is 0.
+    /// Upper bound on the error of each component. The form is exact if the bound is 0.
     pub(super) error: f64,
-    /// The vertices that it is of.
+    /// Vertices that span the line, if any.
     spots: Option<[PlaneVertex; 3]>,
 }
 
-/// The vector product of differences, and whether it is exact.
+/// Computes the cross product of two differences. The flag states whether it is exact.
 fn cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
     let minor = |i: usize, j: usize| {
         let (p, q) = (x[i] * y[j], x[j] * y[i]);
@@ -63,7 +64,8 @@ fn cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
     (DVec3::new(a.0, b.0, c.0), a.1 && b.1 && c.1)
 }
 
-/// The power of two that brings a number between 1 and 2.
+/// Returns the power of two that scales a number to the range from 1 to 2. Returns 1 for zero, subnormal numbers
+/// and the largest exponents.
 fn scale(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52 & 0x7ff) as i32;
     if (1..2046).contains(&exponent) {
@@ -74,7 +76,7 @@ fn scale(x: f64) -> f64 {
 }
 
 impl Line {
-    /// Of three vertices.
+    /// Builds the line through three vertices.
     pub(super) fn of(bodies: &Bodies, spots: [PlaneVertex; 3]) -> Self {
         let [a, b, c] = spots.map(|spot| bodies.corner(spot));
         let (x, y) = (b.at - a.at, c.at - a.at);
@@ -94,12 +96,13 @@ impl Line {
         Self { form: form * factor, error: error * factor, spots }
     }
 
-    /// With components that are exact.
+    /// Builds a line with an exact form.
     pub(super) fn exactly(form: DVec3) -> Self {
         Self { form, error: 0.0, spots: None }
     }
 
-    /// On which side a direction is, exactly.
+    /// Returns the exact side on which a direction lies. Returns `Equal` if numbers are too large for exact
+    /// arithmetic.
     pub(super) fn side(&self, bodies: &Bodies, d: DVec3) -> Ordering {
         let value = self.form.dot(d);
         let (size, terms) = (d.abs().element_sum(), (self.form * d).abs().element_sum());
@@ -117,7 +120,7 @@ impl Line {
         term(0).add(&term(1)).add(&term(2)).sign()
     }
 
-    /// The form in whole numbers, up to a positive factor.
+    /// Returns the form in exact integers, up to a positive factor.
     pub(super) fn wide<const N: usize>(&self, bodies: &Bodies) -> [Integer<N>; 3] {
         let Some(spots) = self.spots.filter(|_| self.error > 0.0) else {
             return self.form.to_array().map(Integer::number);
@@ -127,18 +130,19 @@ impl Line {
         wide_cross(&x, &y)
     }
 
-    /// The vertices that it is of, if it is of some.
+    /// Returns the vertices that span the line; `None` for a line with an exact form.
     pub(super) fn vertices(&self) -> Option<[PlaneVertex; 3]> {
         self.spots
     }
 
-    /// With its positive side where the negative one was.
+    /// Returns the line with both sides exchanged.
     pub(super) fn reversed(&self) -> Self {
         let spots = self.spots.map(|[a, b, c]| [a, c, b]);
         Self { form: -self.form, error: self.error, spots }
     }
 
-    /// On which side a direction is, exactly; if numbers are too large for that, as if it were on the line.
+    /// Returns the exact side on which a direction lies. Returns `Equal` if numbers are too large for exact
+    /// arithmetic.
     pub(super) fn side_of_ray(&self, bodies: &Bodies, ray: &Ray) -> Ordering {
         match ray {
             Ray::Exactly(d) => self.side(bodies, *d),
@@ -147,7 +151,7 @@ impl Line {
         }
     }
 
-    /// Whether it is the same great circle as another, either way round, exactly.
+    /// Checks exactly whether another line is the same great circle, in either orientation.
     pub(super) fn is_along(&self, bodies: &Bodies, other: &Self) -> bool {
         let way = self.form.cross(other.form).abs().max_element();
         // Components are at most 2.
@@ -165,7 +169,8 @@ impl Line {
         signs.iter().all(Option::is_some).then(|| signs == [Some(Ordering::Equal); 3])
     }
 
-    /// Two vertices that two lines share: they cross along the difference of these.
+    /// Returns two vertices that two lines share, in whose difference they intersect. Returns `None` if they
+    /// do not share exactly two.
     pub(super) fn shared(&self, other: &Self) -> Option<[PlaneVertex; 2]> {
         let (own, others) = (self.spots?, other.spots?);
         let mut both = own.into_iter().filter(|spot| others.contains(spot));
@@ -173,7 +178,7 @@ impl Line {
         both.next().is_none().then_some(found)
     }
 
-    /// On which side the direction from one vertex to another is, exactly.
+    /// Returns the exact side on which the direction from one vertex to another lies.
     pub(super) fn side_of(&self, bodies: &Bodies, [from, to]: [PlaneVertex; 2]) -> Ordering {
         if self.spots.is_some_and(|own| own.contains(&from) && own.contains(&to)) {
             return Ordering::Equal;
@@ -202,7 +207,7 @@ impl Line {
     }
 }
 
-/// The vector product.
+/// Returns the cross product in exact integers.
 pub(super) fn wide_cross<const N: usize>(
     x: &[Integer<N>; 3],
     y: &[Integer<N>; 3],
@@ -210,7 +215,8 @@ pub(super) fn wide_cross<const N: usize>(
     [[1, 2], [2, 0], [0, 1]].map(|[i, j]| x[i].multiply(&y[j]).subtract(&x[j].multiply(&y[i])))
 }
 
-/// The sign of the determinant of three forms; `None` if its numbers are too large.
+/// Returns the sign of the determinant of three forms. Returns `None` if numbers are too large for exact
+/// arithmetic.
 pub(super) fn orientation(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
     let [a, b, c] = lines.map(|line| line.form);
     let value = a.cross(b).dot(c);

@@ -1,15 +1,15 @@
-//! All directions along which a solid can leave another one, proven.
+//! All directions along which a solid can leave another one, with a proof.
 //!
-//! `A` moves, `B` is fixed. What [`Cast::clearance`](colltrans_convex::Cast::clearance) calls blocked is a union of open convex
-//! cones, one for each pair of facets (`cone`). So four directions that one pair blocks block all between them, and
-//! six pairs may prove that no direction is free. The sphere is cut into `cell`s until each is blocked, free, or cut
-//! by few cones into exact convex pieces (`rest`). Where facets are too small for that, two boxes inside the bodies may
-//! block a cell (`inner`).
+//! `A` moves, `B` is fixed. The directions that [`Cast::clearance`](colltrans_convex::Cast::clearance)
+//! reports as blocked are a union of open convex cones, one for each pair of facets (`cone`). The search
+//! divides the sphere into `cell`s until each one is blocked, is free, or is divided by a few cones into
+//! exact convex pieces (`rest`). Two boxes inside the bodies can block a cell whose facets are too small for
+//! this (`inner`). Derivation: `docs/theory/free-directions.md`.
 //!
-//! Data flow: `bodies` (vertices, and trees down to single facets) -> `line` (great circles and exact signs) ->
-//! `cone`, `window` (which pairs of nodes miss a rectangle of directions), `rest`, `inner` -> `proof` (what is said of a
-//! cell), `verify` (its check) -> `search` -> [`FreeDirections`]; `region` joins what is free in
-//! pieces, `thin` what is so without an area; `blocker` tells of single cells.
+//! Data flow: `bodies` (vertices, trees down to facets) -> `line` (great circles, exact signs) -> `cone`,
+//! `window` (pairs of nodes that block no direction of a rectangle), `rest`, `inner` -> `proof` (claims about
+//! cells), `verify` (their check) -> `search` -> [`FreeDirections`]. `region` joins free pieces, `thin` finds
+//! free arcs and isolated directions, `blocker` decides single cells.
 
 mod answer;
 mod blocker;

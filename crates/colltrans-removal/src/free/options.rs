@@ -1,24 +1,26 @@
-//! Choices.
+//! Options of a search for free directions.
 
 use super::cell::DEEPEST;
 use colltrans_solid::cast::{SolidOptions, StartOverlap};
 
-/// Choices of [`FreeDirections`](super::FreeDirections). More may be added: begin with the default ones.
+/// Options of [`FreeDirections`](super::FreeDirections). Fields may be added, therefore start from
+/// [`Self::DEFAULT`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct FreeOptions {
-    /// As of a [`Cast`](colltrans_convex::Cast): both bodies are shrunk by half of this length; `None` stands for 0 where both
-    /// poses turn by quarter turns, and else for what rounding can do to a fit.
+    /// Both bodies are offset inwards by half of this length. `None` selects the tolerance of a
+    /// [`Cast`](colltrans_convex::Cast): 0 if both poses are quarter turns, otherwise a bound on the effect
+    /// of rounding on a fit.
     pub tolerance: Option<f64>,
-    /// As of a [`Cast`](colltrans_convex::Cast): whether facets that cross now count.
+    /// Whether facets that cross at the start count as an overlap, as in a [`Cast`](colltrans_convex::Cast).
     pub start_overlap: StartOverlap,
-    /// The sides of a cube are halved at most so often (and never more than 50 times).
+    /// Maximum number of halvings of a side of the cube, at most 50.
     pub depth: u32,
-    /// Pairs of nodes that are looked at, at most, all in all; a little more, as a cell is ended once it is begun.
-    /// What is not decided by then stays undecided.
+    /// Limit of node visits of the whole search. A cell that has been started is finished, so the limit can
+    /// be exceeded slightly. Directions that are not decided at the limit remain undecided.
     pub looks: u64,
-    /// Cones that a cell may be cut by before it is cut in four.
+    /// Maximum number of cones that divide a cell before it is divided into quarters.
     pub cones: usize,
 }
 
@@ -29,7 +31,7 @@ impl Default for FreeOptions {
 }
 
 impl FreeOptions {
-    /// The default ones.
+    /// Default options.
     pub const DEFAULT: Self = Self {
         tolerance: None,
         start_overlap: StartOverlap::Refuse,
@@ -38,43 +40,44 @@ impl FreeOptions {
         cones: 40,
     };
 
-    /// With the bodies as they are.
+    /// Returns the options with a tolerance of 0.
     #[must_use]
     pub const fn with_no_tolerance(self) -> Self {
         Self { tolerance: Some(0.0), ..self }
     }
 
-    /// With a tolerance, a length, or the default one. It is checked where it is used.
+    /// Returns the options with a tolerance, a length, or with the default tolerance for `None`. The value is
+    /// checked when it is used.
     #[must_use]
     pub fn with_tolerance(self, tolerance: impl Into<Option<f64>>) -> Self {
         Self { tolerance: tolerance.into(), ..self }
     }
 
-    /// With a meaning of an overlap at the start.
+    /// Returns the options with a treatment of an overlap at the start.
     #[must_use]
     pub const fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
         Self { start_overlap, ..self }
     }
 
-    /// With a greatest depth.
+    /// Returns the options with a maximum depth, at most 50.
     #[must_use]
     pub fn with_depth(self, depth: u32) -> Self {
         Self { depth: depth.min(DEEPEST), ..self }
     }
 
-    /// With an amount of work.
+    /// Returns the options with a limit of node visits.
     #[must_use]
     pub const fn with_looks(self, looks: u64) -> Self {
         Self { looks, ..self }
     }
 
-    /// With a number of cones for a cell.
+    /// Returns the options with a maximum number of cones for a cell.
     #[must_use]
     pub const fn with_cones(self, cones: usize) -> Self {
         Self { cones, ..self }
     }
 
-    /// The choices of a cast along one of the directions.
+    /// Returns the options of a cast along one direction.
     pub(super) fn of_cast(&self) -> SolidOptions {
         SolidOptions::default()
             .with_tolerance(self.tolerance)

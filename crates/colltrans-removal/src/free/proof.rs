@@ -1,51 +1,52 @@
-//! What is proven of each cell, and how it is listed.
+//! Claims about the cells of the sphere, and their order in a list.
 
 use super::cell::DEEPEST;
 use super::inner::InnerBox;
 use colltrans_solid::cast::StartOverlap;
 
-/// What became of a cell; pairs are positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of
-/// the fixed body.
+/// State of a cell. Pairs are indices into [`Solid::triangles`](colltrans_solid::Solid::triangles) of the
+/// moving and the fixed body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Fate {
-    /// Cut in four: the number of the first quarter.
+    /// Divided into quarters. The number is the index of the first one.
     Cut(u32),
-    /// Blocked by one pair.
+    /// One pair blocks all directions.
     Blocked([u32; 2]),
-    /// Blocked by a pair of boxes inside, by their numbers.
+    /// A pair of inner boxes, given by their indices, blocks all directions.
     Inner([u32; 2]),
-    /// Blocked by these pairs where they block, and free elsewhere.
+    /// The listed pairs block some directions. All other directions are free.
     Open(Vec<[u32; 2]>),
-    /// Blocked by these pairs where they block, and not known elsewhere.
+    /// The listed pairs block some directions. All other directions are undecided.
     Undecided(Vec<[u32; 2]>),
 }
 
 impl Fate {
-    /// Nothing is known.
+    /// Undecided, with no blocking pair.
     pub(super) const UNKNOWN: Self = Self::Undecided(Vec::new());
 }
 
-/// What is said of all directions, with its proof: the cells in preorder, from the six sides of a cube, `+x`, `-x`,
-/// `+y`, ..., each followed by its quarters if it is cut.
+/// Claims about all directions, which form a proof. The list of cells is in preorder, from the six sides of a
+/// cube, `+x`, `-x`, `+y`, ... The quarters of a divided cell follow it.
 ///
-/// On the side across axis `k` a direction is `s e_k + u e_(k+1) + v e_(k+2)` with `u` and `v` from -1 to 1; quarters
-/// are those of low `u` and low `v`, high `u` and low `v`, low `u` and high `v`, high and high.
+/// On the side perpendicular to axis `k` a direction is `s e_k + u e_(k+1) + v e_(k+2)` with `u` and `v` from
+/// -1 to 1. The order of quarters is: low `u` and low `v`, high `u` and low `v`, low `u` and high `v`, high
+/// `u` and high `v`.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeProof {
-    /// The tolerance: both bodies are shrunk by half of it.
+    /// Tolerance. Both bodies are offset inwards by half of it.
     pub tolerance: f64,
-    /// Whether facets that cross now count.
+    /// Whether facets that cross at the start count as an overlap.
     pub start_overlap: StartOverlap,
-    /// Boxes inside the moving and inside the fixed body, which cells name.
+    /// Boxes inside the moving and inside the fixed body, to which cells refer.
     #[cfg_attr(feature = "serde", serde(default))]
     pub boxes: [Vec<InnerBox>; 2],
-    /// What is said of each cell.
+    /// Claims about the cells.
     pub cells: Vec<CellProof>,
 }
 
-/// What is said of a cell. Pairs are positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of
-/// the fixed body.
+/// Claim about a cell. Pairs are indices into [`Solid::triangles`](colltrans_solid::Solid::triangles) of the
+/// moving and the fixed body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -53,19 +54,20 @@ pub struct FreeProof {
     serde(rename_all = "snake_case")
 )]
 pub enum CellProof {
-    /// It is cut in four, which follow.
+    /// The cell is divided into the four cells that follow.
     Cut,
-    /// This pair blocks all of it.
+    /// This pair blocks all directions of the cell.
     Blocked([u32; 2]),
-    /// This pair of [`FreeProof::boxes`] blocks all of it.
+    /// This pair of [`FreeProof::boxes`] blocks all directions of the cell.
     Inner([u32; 2]),
-    /// These pairs block some of it; all that they leave is free.
+    /// These pairs block part of the cell. All other directions of the cell are free.
     Open(Vec<[u32; 2]>),
-    /// These pairs block some of it; nothing is said of the rest.
+    /// These pairs block part of the cell. Nothing is claimed about its other directions.
     Undecided(Vec<[u32; 2]>),
 }
 
-/// The cells of a proof, by their numbers; `None` if they are not those of a sphere.
+/// Converts the list of a proof to cells with indices. Returns `None` if the list does not partition the
+/// sphere, or a cell is deeper than [`DEEPEST`].
 pub(super) fn fates(cells: &[CellProof]) -> Option<Vec<Fate>> {
     let mut fates = vec![Fate::UNKNOWN; 6];
     let mut stack: Vec<(usize, u32)> = (0..6).rev().map(|at| (at, 0)).collect();
@@ -90,7 +92,7 @@ pub(super) fn fates(cells: &[CellProof]) -> Option<Vec<Fate>> {
     stack.is_empty().then_some(fates)
 }
 
-/// The other way round.
+/// Converts cells with indices to the list of a proof.
 pub(super) fn cells(fates: &[Fate]) -> Vec<CellProof> {
     let mut cells = Vec::with_capacity(fates.len());
     let mut stack: Vec<usize> = (0..6).rev().collect();

@@ -1,9 +1,9 @@
-//! Connected regions of convex pieces, for people: where they are, how large, and their corners.
+//! Connected regions of convex pieces, for display: a direction inside, the area and the corners.
 //!
-//! Pieces of neighbouring cells share a part of a border, which is a side of a cell: their forms are exact there, from
-//! differences of corners. Pieces narrower than roundings, which cuts leave along a border, are passed over where they
-//! lie beside another: of each two of their sides it could not be told which one is outside. Nothing here decides what
-//! is free.
+//! Pieces of neighbouring cells share part of a cell's side. The forms of such sides are exact, because they
+//! are computed from differences of corners. Cuts can leave pieces that are narrower than rounding along a
+//! boundary. Such a sliver is ignored if it touches another piece, because its outer side cannot be
+//! distinguished from its inner one. No decision about a direction depends on this module.
 
 use std::f64::consts::PI;
 
@@ -11,40 +11,43 @@ use glam::DVec3;
 
 use super::answer::FreePiece;
 
-/// Directions of the cube that differ by less are taken for one.
+/// Directions on the cube that differ by less are identified.
 const BESIDE: f64 = 1e-12;
-/// Borders that turn by less, in radians, have no corner.
+/// Angle in radians. A boundary that turns by less has no corner.
 const TURN: f64 = 1e-6;
-/// Regions of at least this area have no border.
+/// Area from which on a region is the whole sphere and has no boundary.
 const WHOLE: f64 = 4.0 * PI * (1.0 - 1e-9);
-/// Parts of a side that are shorter than this share of it are nothing.
+/// Parts of a side that are shorter than this fraction of it are ignored.
 const PART: f64 = 1e-9;
-/// Pieces whose middles are tried for the direction farthest from a border; steps from there, and how short these get
-/// against the angle to the border.
+/// Maximum number of pieces whose centers are starting points of the search for the direction farthest from
+/// the boundary.
 const MIDDLES: usize = 32;
+/// Maximum number of steps of this search.
 const STEPS: usize = 60;
+/// Step length at which this search ends, relative to the angle to the boundary.
 const FINEST: f64 = 1e-3;
 
-/// A connected region of free directions, borders included.
+/// Connected region of free directions, including its boundary.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeRegion {
-    /// A free direction of it, of length 1, nearly the farthest from its border.
+    /// Free direction of length 1 in the region, approximately the farthest one from the boundary.
     pub center: DVec3,
-    /// The angle between that and the border, in radians; `PI` if there is none.
+    /// Angle between `center` and the boundary in radians; `PI` if there is no boundary.
     pub margin: f64,
-    /// Where its border turns, by more than a millionth of a radian: directions with a largest component of 1 (or
-    /// -1), exact but for their last roundings, in no order.
+    /// Corners of the boundary, where it turns by more than a millionth of a radian, in no particular order.
+    /// They are directions with a largest component of 1 or -1. Only their last roundings make them inexact.
     pub corners: Vec<DVec3>,
-    /// Arcs that together are its border, by their ends, in no order.
+    /// Arcs that form the boundary, each given by its ends, in no particular order.
     pub border: Vec<[DVec3; 2]>,
-    /// Its solid angle.
+    /// Solid angle in steradians.
     pub area: f64,
-    /// Convex pieces that together are it, but for some that are narrower than `1e-12` and lie beside another.
+    /// Convex pieces whose union is the region, except for some that are narrower than `1e-12` and touch
+    /// another piece.
     pub pieces: Vec<FreePiece>,
 }
 
-/// Pieces joined where they touch, the largest region first; `is_free` tells of a direction.
+/// Joins pieces that touch to regions, sorted by decreasing area. `is_free` classifies a direction exactly.
 pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> Vec<FreeRegion> {
     let pieces = &without_slivers(pieces)[..];
     let touching = touching(pieces);
@@ -72,7 +75,7 @@ pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> 
     regions
 }
 
-/// All pieces but slivers that touch a piece that is none.
+/// Removes slivers that touch another piece which is not a sliver.
 fn without_slivers(pieces: &[FreePiece]) -> Vec<FreePiece> {
     let slivers: Vec<bool> = pieces.iter().map(is_sliver).collect();
     if !slivers.contains(&true) {
@@ -83,7 +86,7 @@ fn without_slivers(pieces: &[FreePiece]) -> Vec<FreePiece> {
     (0..pieces.len()).filter(|&k| !beside(k)).map(|k| pieces[k].clone()).collect()
 }
 
-/// Whether all corners lie on one line, but for roundings.
+/// Checks whether all corners lie on one line, up to rounding.
 fn is_sliver(piece: &FreePiece) -> bool {
     let length = |k: usize| piece.corners[k].distance(piece.corners[(k + 1) % piece.corners.len()]);
     let longest = (0..piece.corners.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
@@ -115,32 +118,32 @@ fn region(
     let mut border: Vec<[DVec3; 2]> =
         members.iter().flat_map(|&at| outer_sides(pieces, at, &touching[at])).collect();
     if border.is_empty() && area < WHOLE {
-        // Narrower than roundings, so its sides lie on each other: all of them are its border.
+        // The region is narrower than rounding, and its sides coincide. All of them form its boundary.
         border = own.iter().flat_map(sides).collect();
         corners = own.iter().flat_map(|piece| piece.corners.iter().copied()).collect();
     }
     let inside = mean.try_normalize().filter(|d| is_free(*d));
     let (center, margin) = farthest(&border, inside.into_iter().chain(middles(&own)));
-    // The middle of a piece is free whatever the border is.
+    // The center of a piece is free, independently of the boundary.
     let middle = || middles(&own).next().unwrap_or(DVec3::Z);
     let (center, margin) = if is_free(center) { (center, margin) } else { (middle(), 0.0) };
     FreeRegion { center, margin, corners, border, area, pieces: own }
 }
 
-/// The middles of the largest pieces.
+/// Returns the centers of the largest pieces.
 fn middles(pieces: &[FreePiece]) -> impl Iterator<Item = DVec3> {
     let mut order: Vec<&FreePiece> = pieces.iter().collect();
     order.sort_by(|a, b| b.area.total_cmp(&a.area));
     order.into_iter().take(MIDDLES).map(center)
 }
 
-/// The sides of a piece.
+/// Returns the sides of a piece.
 fn sides(piece: &FreePiece) -> impl Iterator<Item = [DVec3; 2]> + '_ {
     let next = piece.corners.iter().cycle().skip(1);
     piece.corners.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-/// What other pieces leave of the sides of one.
+/// Returns the parts of a piece's sides that no other piece shares.
 fn outer_sides(pieces: &[FreePiece], at: usize, touching: &[usize]) -> Vec<[DVec3; 2]> {
     let piece = &pieces[at];
     let mut found = Vec::new();
@@ -170,13 +173,14 @@ fn outer_sides(pieces: &[FreePiece], at: usize, touching: &[usize]) -> Vec<[DVec
     found
 }
 
-/// A direction inside a border, nearly the farthest from it, from some to begin with, and how far it is.
+/// Maximises the angle to a boundary by a pattern search from several starting directions inside. Returns the
+/// direction and its angle.
 fn farthest(border: &[[DVec3; 2]], inside: impl Iterator<Item = DVec3>) -> (DVec3, f64) {
     let sides: Vec<Side> = border.iter().map(Side::new).collect();
     let margin = |d: DVec3| sides.iter().map(|side| side.angle(d)).fold(PI, f64::min);
     let starts = inside.map(|d| (d, margin(d)));
     let Some(mut best) = starts.max_by(|a, b| a.1.total_cmp(&b.1)) else { return (DVec3::Z, 0.0) };
-    // Whatever is nearer than the border is inside.
+    // Directions that are nearer than the boundary are inside.
     let mut step = best.1 / 2.0;
     for _ in 0..STEPS {
         let (u, v) = best.0.any_orthonormal_pair();
@@ -194,10 +198,10 @@ fn farthest(border: &[[DVec3; 2]], inside: impl Iterator<Item = DVec3>) -> (DVec
     best
 }
 
-/// A side of a border, to be measured from.
+/// Side of a boundary, prepared for angles.
 struct Side {
     ends: [DVec3; 2],
-    /// Across it, and from each end along it.
+    /// Normal of the side's plane, and the directions from each end along the side.
     across: DVec3,
     along: [DVec3; 2],
 }
@@ -209,7 +213,7 @@ impl Side {
         Self { ends, across, along: [across.cross(ends[0]), ends[1].cross(across)] }
     }
 
-    /// The angle between it and a direction of length 1.
+    /// Returns the angle between the side and a direction of length 1.
     fn angle(&self, d: DVec3) -> f64 {
         if self.along.iter().all(|along| along.dot(d) >= 0.0) {
             let sine = self.across.dot(d - self.ends[0]).abs();
@@ -220,12 +224,12 @@ impl Side {
     }
 }
 
-/// The middle of a piece, of length 1.
+/// Returns the center of a piece, of length 1.
 fn center(piece: &FreePiece) -> DVec3 {
     piece.corners.iter().sum::<DVec3>().normalize_or(DVec3::Z)
 }
 
-/// For each piece the others that have a direction of it.
+/// Returns for each piece the other pieces that share a direction with it.
 fn touching(pieces: &[FreePiece]) -> Vec<Vec<usize>> {
     let bounds = |piece: &FreePiece| {
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -251,7 +255,7 @@ fn touching(pieces: &[FreePiece]) -> Vec<Vec<usize>> {
     touching
 }
 
-/// Whether a side of one piece has all of another behind it.
+/// Checks whether a side of one piece separates it from another one.
 fn is_apart(piece: &FreePiece, other: &FreePiece) -> bool {
     let inner: DVec3 = piece.corners.iter().sum();
     (0..piece.corners.len()).any(|k| {
@@ -261,14 +265,14 @@ fn is_apart(piece: &FreePiece, other: &FreePiece) -> bool {
     })
 }
 
-/// The plane through the origin and a side, from the corner of that number, of length 1.
+/// Returns the unit normal of the plane through the origin and the side from corner `k`.
 fn side(piece: &FreePiece, k: usize) -> DVec3 {
     let (a, b) = (piece.corners[k], piece.corners[(k + 1) % piece.corners.len()]);
-    // Exact along the sides of cells.
+    // Exact for sides of cells.
     a.cross(b - a).normalize_or_zero()
 }
 
-/// The angle under which a direction on the border of a piece sees it, 0 from elsewhere.
+/// Returns the interior angle of a piece at a direction on its boundary, and 0 for other directions.
 fn angle(piece: &FreePiece, at: DVec3) -> f64 {
     let count = piece.corners.len();
     if let Some(k) = (0..count).find(|&k| piece.corners[k].distance(at) < BESIDE) {

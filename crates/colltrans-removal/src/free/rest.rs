@@ -1,8 +1,8 @@
-//! What cones leave of a cell: convex pieces with exact corners.
+//! The remainder of a cell outside some cones: convex pieces with exact corners.
 //!
-//! A corner is one of the cell, or where two lines cross; on which side of a third one it is, is the sign of a
-//! determinant of three forms. Cones are open, so pieces are closed, and what is left between two cones may be an arc
-//! or a point: pieces of two corners or one.
+//! A corner is a corner of the cell or the intersection of two lines. Its side of a third line is the sign of
+//! a determinant of three forms. Cones are open, therefore pieces are closed. Between two cones an arc or a
+//! point may remain: a piece with two corners or with one.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -16,40 +16,41 @@ use super::line::{Line, PlaneVertex, Ray, orientation, wide_cross};
 use super::window::Window;
 use colltrans_kernel::integer::{Integer, LARGE, SMALL};
 
-/// Places known less well are computed in whole numbers.
+/// Error of a place above which it is computed from exact integers.
 const ROUGH: f64 = 1e-14;
 
-/// A number is too large, or the pieces are too many.
+/// Error: a number is too large for the exact arithmetic, or there are too many pieces.
 pub(super) struct TooMuch;
 
-/// A corner of a piece.
+/// Corner of a piece.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     at: At,
-    /// Two lines that cross there.
+    /// Two lines that intersect in the corner.
     lines: [u32; 2],
     place: [f64; 2],
-    /// Each of the two is off by at most this.
+    /// Upper bound on the error of each coordinate of `place`.
     error: f64,
 }
 
-/// Which direction it is, exactly.
+/// Exact direction of a corner.
 #[derive(Debug, Clone, Copy)]
 enum At {
     OfCell(DVec3),
-    /// Along the vector product of the forms of its lines, or against it.
+    /// The cross product of the forms of its lines, or its opposite.
     Crossing {
         against: bool,
     },
-    /// Where lines cross that share two vertices: from the first to the second.
+    /// The direction from the first vertex to the second one, in which lines intersect that share both
+    /// vertices.
     Toward([PlaneVertex; 2]),
 }
 
-/// A convex part of a cell.
+/// Convex part of a cell.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     corners: Vec<Corner>,
-    /// The lines from each corner to the next.
+    /// Line from each corner to the next one.
     edges: Vec<u32>,
 }
 
@@ -58,7 +59,7 @@ impl Piece {
         self.corners.iter().map(|corner| corner.place).collect()
     }
 
-    /// Whether it has an area: of an arc there are two corners, of a point one.
+    /// Checks whether the piece has an area. An arc has two corners, a point has one.
     pub(super) fn is_region(&self) -> bool {
         self.corners.len() >= 3
     }
@@ -67,7 +68,7 @@ impl Piece {
         if self.is_region() { solid_angle(&self.places()) } else { 0.0 }
     }
 
-    /// By how much the area may be off.
+    /// Returns an upper bound on the error of the area.
     pub(super) fn area_error(&self) -> f64 {
         let places = self.places();
         let [mut around, mut error] = [0.0_f64; 2];
@@ -76,11 +77,11 @@ impl Piece {
             around += (u - s).abs() + (v - t).abs();
             error = error.max(self.corners[k].error);
         }
-        // A border that is moved by so much, and the roundings of a sum of angles.
+        // A boundary displaced by the error, and the rounding of a sum of angles.
         if self.is_region() { (2.0 * error + 32.0 * f64::EPSILON) * around } else { 0.0 }
     }
 
-    /// Somewhere inside.
+    /// Returns the mean of the corners.
     pub(super) fn center(&self) -> [f64; 2] {
         let count = self.corners.len() as f64;
         let mean = |axis: usize| self.corners.iter().map(|c| c.place[axis]).sum::<f64>() / count;
@@ -88,24 +89,24 @@ impl Piece {
     }
 }
 
-/// A piece with what it takes to ask about it exactly.
+/// Piece with its lines, which later exact tests need.
 pub(super) struct Outline {
     pub(super) corners: Vec<Turn>,
-    /// The lines from each corner to the next; of an arc the same one twice.
+    /// Line from each corner to the next one; an arc has the same line twice.
     pub(super) edges: Vec<Line>,
 }
 
-/// A corner of an outline.
+/// Corner of an outline.
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
     pub(super) ray: Ray,
-    /// Two lines that cross there.
+    /// Two lines that intersect in the corner.
     pub(super) lines: [Line; 2],
-    /// Rounded, with a largest component of 1 (or -1).
+    /// Rounded direction with a largest component of 1 or -1.
     pub(super) direction: DVec3,
 }
 
-/// A cell without some cones.
+/// Remainder of a cell outside some cones.
 #[derive(Debug)]
 pub(super) struct Rest {
     cell: Cell,
@@ -114,12 +115,12 @@ pub(super) struct Rest {
 }
 
 impl Rest {
-    /// All of a cell.
+    /// Returns a remainder that consists of the whole cell.
     pub(super) fn whole(cell: Cell) -> Self {
         let [_, i, j] = cell.side.axes();
         let across = DVec3::AXES[cell.side.axes()[0]] * cell.side.sign();
         let [u, v] = [cell.range(0), cell.range(1)];
-        // From corner to corner: the lower v, the upper u, the upper v, the lower u.
+        // The edges in cyclic order: lower v, upper u, upper v, lower u.
         let bounds = [(j, v[0]), (i, u[1]), (j, v[1]), (i, u[0])];
         let lines =
             bounds.map(|(axis, at)| Line::exactly(DVec3::AXES[axis] - across * at)).to_vec();
@@ -134,12 +135,12 @@ impl Rest {
         Self { cell, lines, pieces: vec![Piece { corners, edges: vec![0, 1, 2, 3] }] }
     }
 
-    /// With one of its pieces alone.
+    /// Returns a remainder with one of the pieces alone.
     pub(super) fn only(&self, piece: &Piece) -> Self {
         Self { cell: self.cell, lines: self.lines.clone(), pieces: vec![piece.clone()] }
     }
 
-    /// The rectangle around a piece.
+    /// Returns the bounding rectangle of a piece.
     pub(super) fn window(&self, piece: &Piece) -> Window {
         let around = |axis: usize| {
             let ends =
@@ -152,7 +153,7 @@ impl Rest {
         Window::new(self.cell.side, around(0), around(1))
     }
 
-    /// A piece by itself.
+    /// Returns a piece with its lines.
     pub(super) fn outline(&self, piece: &Piece) -> Outline {
         let form = |k: u32| self.lines[k as usize];
         let turn = |corner: &Corner| Turn {
@@ -173,7 +174,8 @@ impl Rest {
         }
     }
 
-    /// Takes a cone away; whether there was something to take.
+    /// Subtracts a cone. Returns `true` if the cone contains a direction of a piece. Returns an error for
+    /// more than `most` pieces.
     pub(super) fn cut(
         &mut self,
         bodies: &Bodies,
@@ -197,8 +199,8 @@ impl Rest {
         if self.pieces.len() > most { Err(TooMuch) } else { Ok(changed) }
     }
 
-    /// Whether a cone has no direction of a piece, as one of its sides has all of it behind, or as nothing is left
-    /// of the piece on the inner sides of all.
+    /// Checks whether a cone contains no direction of a piece: one of its sides has the whole piece on it or
+    /// behind it, or nothing of the piece is left on the inner sides of all.
     fn misses(&mut self, bodies: &Bodies, at: usize, cone: &Cone) -> Result<bool, TooMuch> {
         let first = self.lines.len();
         self.lines.extend_from_slice(&cone.lines);
@@ -238,8 +240,9 @@ impl Rest {
         Ok(false)
     }
 
-    /// A piece without a cone, by the numbers of its lines: of what is inside the lines before, what is not inside the
-    /// next one. A face on a line that is in the part behind an earlier line is no piece of its own.
+    /// Subtracts a cone, given by the indices of its lines, from a piece. Each step splits off the part
+    /// outside the next line. An arc or a point that lies on an earlier line is not kept, because an earlier
+    /// part contains it.
     fn subtract(&mut self, bodies: &Bodies, piece: Piece, lines: &[u32]) -> Result<(), TooMuch> {
         let mut inner = piece;
         for (k, &line) in lines.iter().enumerate() {
@@ -263,7 +266,7 @@ impl Rest {
         Ok(())
     }
 
-    /// Whether one of the lines has all of a piece on it.
+    /// Checks whether all corners of a piece lie on one of the lines.
     fn is_on_one_of(&self, bodies: &Bodies, piece: &Piece, lines: &[u32]) -> Result<bool, TooMuch> {
         for &line in lines {
             if self.sides(bodies, piece, line)?.iter().all(|side| *side == Equal) {
@@ -273,7 +276,7 @@ impl Rest {
         Ok(false)
     }
 
-    /// On which side of a line the corners of a piece are.
+    /// Returns the side of a line for each corner of a piece.
     fn sides(&self, bodies: &Bodies, piece: &Piece, line: u32) -> Result<Vec<Ordering>, TooMuch> {
         piece.corners.iter().map(|corner| self.side(bodies, corner, line)).collect()
     }
@@ -292,7 +295,8 @@ impl Rest {
         }
     }
 
-    /// The part of a piece on the inner side of a line, or on it, from the sides of its corners.
+    /// Returns the part of a piece on the inner side of a line or on it. `sides` holds the sides of the
+    /// corners.
     fn part(
         &self,
         bodies: &Bodies,
@@ -309,7 +313,7 @@ impl Rest {
                 corners.push(piece.corners[k]);
                 edges.push(if own == Equal && next == Less { line } else { edge });
             }
-            // An arc has one edge, there and back.
+            // An arc has one edge, traversed in both directions.
             let crosses = own != Equal && next == own.reverse() && (count != 2 || k == 0);
             if crosses {
                 corners.push(self.crossing(bodies, edge, line)?);
@@ -322,7 +326,7 @@ impl Rest {
         Ok(Piece { corners, edges })
     }
 
-    /// Where two lines cross within the cell.
+    /// Returns the intersection of two lines within the cell.
     fn crossing(&self, bodies: &Bodies, a: u32, b: u32) -> Result<Corner, TooMuch> {
         let (p, q) = (&self.lines[a as usize], &self.lines[b as usize]);
         if let Some(ends) = p.shared(q) {
@@ -335,7 +339,7 @@ impl Rest {
         let side = self.cell.side;
         let [k, i, j] = side.axes();
         let main = way[k] * side.sign();
-        // A place is at most 1 from the middle of the side.
+        // A place is at most 1 from the center of the side.
         let off = 2.02 * error / (main.abs() - error) + 4.0 * f64::EPSILON;
         if main.abs() > error && off <= ROUGH {
             let (at, place) =
@@ -346,7 +350,8 @@ impl Rest {
         small.or_else(|| self.crossing_exactly::<LARGE>(bodies, [a, b], side)).ok_or(TooMuch)
     }
 
-    /// Along the difference of two vertices, one way or the other, within the cell.
+    /// Returns the intersection of two lines that share two vertices: the difference of these, with the sign
+    /// that lies within the cell.
     fn toward(
         &self,
         bodies: &Bodies,
@@ -387,8 +392,9 @@ impl Rest {
     }
 }
 
-/// Whether a direction goes away from a side, and its place there or that of its opposite; `None` if numbers are too
-/// large, or the direction is along the side.
+/// Computes the place where the line along a direction intersects a side of the cube, and whether the
+/// direction points away from this side. Returns `None` if a number is too large, or the direction is
+/// parallel to the side.
 fn placed<const N: usize>(way: &[Integer<N>; 3], side: Side) -> Option<(bool, [f64; 2])> {
     let [k, i, j] = side.axes();
     let main: Integer<N> = if side.sign() > 0.0 { way[k] } else { Integer::ZERO.subtract(&way[k]) };

@@ -1,15 +1,15 @@
-//! The search: cells from the largest to the smallest, each decided or cut in four.
+//! Breadth-first search over cells, in which each cell is decided or divided into quarters.
 //!
-//! A cell comes with the pairs of nodes that may block some of it. It is
+//! A cell has a list of the pairs of nodes that may block some of its directions. The steps for a cell are:
 //!
-//! 1. *blocked* by one pair of facets whose cone holds its corners: one of those that its parent has seen, or what a
-//!    search finds that drops all pairs which miss a corner;
-//! 2. *open*, as nothing is left of its pairs of nodes; or, cut by the cones that are found at the middle of what is
-//!    left of it, as no other pair meets the rest. If there is no rest, several pairs block it together;
-//! 3. *inner*, as a box inside the moving and one inside the fixed body block it, grown behind the places where facets
-//!    meet along its middle;
-//! 4. cut in four, or *undecided* at the greatest depth, or when as many pairs have been looked at as were allowed:
-//!    then it is blocked where the cones are that have been found.
+//! 1. *Blocked*, if the cone of one pair of facets contains its corners. Candidates are cones of the parent,
+//!    and the result of a best-first search that dismisses pairs which miss a corner.
+//! 2. *Open*, if its list is empty, or if no further pair blocks a direction outside the cones found at
+//!    centers of its remainder. An empty remainder is blocked by several pairs together.
+//! 3. *Inner*, if a box inside the moving and one inside the fixed body block it. Boxes are grown behind the
+//!    points where facets meet along the center of the cell.
+//! 4. Otherwise it is divided. It is *undecided* at the maximum depth, or when the limit of node visits is
+//!    reached.
 
 use std::collections::{BinaryHeap, HashMap, VecDeque};
 use std::ops::Range;
@@ -28,76 +28,79 @@ use super::window::Window;
 use colltrans_kernel::descent::Entry;
 use colltrans_solid::cast::StartOverlap;
 
-/// Pairs of nodes that a cell hands on, at most.
+/// Number of pairs in the list of a cell from which on no pair is replaced by its children.
 const LIST: usize = 192;
-/// Pairs of nodes that each search for one pair of facets looks at, at most.
+/// Maximum number of node visits of one search for a pair of facets.
 const LOOKS: usize = 400;
-/// Cones that are taken from a cell one by one before it is cut.
+/// Maximum number of cones that are subtracted one by one before a cell is divided.
 const TARGETS: usize = 12;
-/// Cones that a cell hands on, at most.
+/// Maximum number of cones that a cell passes to its quarters.
 const WITNESSES: usize = 12;
-/// Pairs of nodes that are looked at to see that nothing else meets what is left of a cell; so many times as many
-/// where its middle is free.
+/// Maximum number of node visits of the check that nothing else blocks the remainder of a cell.
 const REST_LOOKS: usize = 2_000;
+/// Factor on this limit if the center of a piece is free.
 const FREE_FACTOR: usize = 10;
-/// Pairs of nodes that are looked at for the facets that meet along the middle of a cell, at most; pairs of facets
-/// behind which boxes are grown; what that counts for; and pairs of boxes that are tried again.
+/// Maximum number of node visits of the search for the facets that meet along the center of a cell.
 const HIT_LOOKS: usize = 10 * LOOKS;
+/// Maximum number of pairs of facets behind which boxes are grown.
 const GROWN: usize = 400;
+/// Node visits that growing these boxes counts for.
 const GROWTH: u64 = 4_000;
+/// Maximum number of pairs of boxes that are tried again.
 const SEEN: usize = 24;
-/// Cones that are tried again of cells that are asked about alone.
+/// Maximum number of cones that are tried again for the next single cell.
 const KNOWN: usize = 8;
-/// Pieces that a cell may be cut into.
+/// Maximum number of pieces of a cell.
 pub(super) const PIECES: usize = 64;
 
-/// A pair of views.
+/// Pair of nodes, or of facets.
 type Pair = [u32; 2];
 
-/// The cells of the sphere, by their numbers: first the six sides of the cube.
+/// Result of a search: the cells by index, the six sides of the cube first.
 pub(super) struct Found {
     pub(super) fates: Vec<Fate>,
     pub(super) boxes: [Vec<InnerBox>; 2],
     pub(super) looks: u64,
 }
 
-/// A cell to be decided.
+/// Cell that is still to be decided.
 struct Task {
     at: usize,
     cell: Cell,
     pairs: Vec<Pair>,
-    /// Cones that meet the cell around it.
+    /// Cones that meet the parent cell.
     witnesses: Vec<u32>,
 }
 
-/// What has become of a cell.
+/// Result of an attempt to decide a cell.
 enum Decided {
     Fate(Fate),
-    /// To be cut in four, with these witnesses; or undecided, with what these cones leave.
+    /// The cell is to be divided, and these cones are passed to its quarters. At a limit it is undecided
+    /// outside these cones.
     Open(Vec<u32>),
 }
 
-/// What is found on the way.
+/// Results that later cells use again.
 #[derive(Default)]
 pub(super) struct Memory {
     cones: Vec<Cone>,
     known: HashMap<Pair, u32>,
     inner: Inner,
-    /// Cones that have covered a cell that was asked about alone, the last ones first.
+    /// Cones that blocked a single cell, the most recent first.
     covering: VecDeque<u32>,
-    /// What may block some of cells that were asked about alone and are not known to be blocked, each within the one
-    /// before it.
+    /// Lists of pairs that may block some directions of single cells that are not known to be blocked. Each
+    /// of these cells contains the next one.
     around: Vec<(Cell, Vec<Pair>)>,
     looks: u64,
 }
 
-/// Boxes inside either body.
+/// Boxes inside the moving and inside the fixed body.
 #[derive(Default)]
 struct Inner {
     boxes: [Vec<InnerBox>; 2],
-    /// Those behind the places where two facets meet.
+    /// Index ranges of the boxes behind the points where two facets meet.
     behind: HashMap<Pair, [Range<u32>; 2]>,
-    /// Pairs that have blocked a cell, the last ones first.
+    /// Pairs of boxes that blocked a cell, the most recent first.
     seen: VecDeque<Pair>,
 }
 
@@ -117,7 +120,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Self { bodies, options, cancel, memory: Memory::default() }
     }
 
-    /// Decides all cells; `None` if it was cancelled.
+    /// Decides all cells. Returns `None` if the search was cancelled.
     pub(super) fn run(mut self) -> Option<Found> {
         let mut fates = vec![Fate::UNKNOWN; 6];
         let task = |(at, cell)| Task { at, cell, pairs: vec![[0, 0]], witnesses: Vec::new() };
@@ -142,7 +145,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Some(Found { fates, boxes, looks: self.memory.looks })
     }
 
-    /// Cuts a cell in four.
+    /// Divides a cell into quarters.
     fn cut(&self, task: &Task, cones: &[u32], fates: &mut Vec<Fate>, tasks: &mut VecDeque<Task>) {
         let first = fates.len();
         fates[task.at] = Fate::Cut(first as u32);
@@ -163,7 +166,8 @@ impl<'s, 'a> Search<'s, 'a> {
         cones.iter().map(|k| self.memory.cones[*k as usize].pair).collect()
     }
 
-    /// A pair of facets that blocks all of a cell, if one is found soon.
+    /// Searches for a pair of facets that blocks all directions of a cell. Returns `None` if the limited
+    /// search finds none.
     pub(super) fn covering_pair(mut self, cell: &Cell) -> Option<Pair> {
         let mut pairs = vec![[0, 0]];
         self.refine(&mut pairs, cell);
@@ -174,8 +178,8 @@ impl<'s, 'a> Search<'s, 'a> {
         [false, true].into_iter().find_map(|aside| self.covering(pairs, cell, aside))
     }
 
-    /// Whether a pair of facets, or of boxes inside, blocks all of a cell, if one is found soon; with what is known
-    /// from cells before, and what is known after.
+    /// Checks whether one pair of facets, or of inner boxes, blocks all directions of a cell, within limited
+    /// work. `memory` holds results of earlier cells and receives those of this one.
     pub(super) fn covers(
         bodies: &Bodies,
         options: FreeOptions,
@@ -244,7 +248,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// A pair of boxes that has blocked a cell before and blocks this one.
+    /// Returns a pair of boxes that blocks this cell, among those that blocked an earlier cell.
     fn seen_boxes(&mut self, corners: &[DVec3; 4]) -> Option<Pair> {
         let Inner { boxes, seen, .. } = &mut self.memory.inner;
         let found = seen
@@ -254,8 +258,9 @@ impl<'s, 'a> Search<'s, 'a> {
         seen.front().copied()
     }
 
-    /// A pair of boxes that blocks a cell, behind the places where two facets meet along its middle: facets of one of
-    /// these cones, or of one that is looked for.
+    /// Searches for a pair of boxes that blocks a cell, behind the points where two facets meet along its
+    /// center. The facets are those of one of the given cones, or result from a search. Returns `None` if
+    /// there are no such boxes, or a start overlap is ignored.
     fn boxes(&mut self, task: &Task, cones: &[u32]) -> Option<Pair> {
         if self.options.start_overlap == StartOverlap::Ignore {
             return None;
@@ -278,7 +283,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Some(found)
     }
 
-    /// The boxes behind the places where two facets meet, grown when first asked for.
+    /// Returns the boxes behind the points where two facets meet. They are grown at the first request.
     fn behind(&mut self, pair: Pair, d: DVec3) -> [Range<u32>; 2] {
         let Inner { boxes, behind, .. } = &mut self.memory.inner;
         if let Some(found) = behind.get(&pair) {
@@ -297,14 +302,14 @@ impl<'s, 'a> Search<'s, 'a> {
         found
     }
 
-    /// Whether a pair of views blocks none of the directions.
+    /// Checks whether a pair of nodes blocks no direction of a rectangle.
     fn misses(&mut self, [a, b]: Pair, window: &Window) -> bool {
         self.memory.looks += 1;
         let [p, q] = &self.bodies.views;
         window.is_missed(self.bodies, &p[a as usize], &q[b as usize])
     }
 
-    /// The parts of a pair, of the larger view that has some; none of two facets.
+    /// Replaces the larger node of a pair by its children. The result is empty for two facets.
     fn parts(&self, pair: Pair) -> impl Iterator<Item = Pair> + use<> {
         self.bodies.parts(pair).into_iter().flatten()
     }
@@ -317,7 +322,7 @@ impl<'s, 'a> Search<'s, 'a> {
         self.views(pair).iter().all(|view| view.is_facet())
     }
 
-    /// The number of the cone of two facets.
+    /// Returns the index of the cone of two facets.
     fn cone(&mut self, [a, b]: Pair) -> u32 {
         let pair = [self.bodies.triangle(true, a), self.bodies.triangle(false, b)];
         let next = self.memory.cones.len() as u32;
@@ -329,7 +334,8 @@ impl<'s, 'a> Search<'s, 'a> {
         number
     }
 
-    /// Drops pairs that miss the cell, and splits what is wide against it, down to a number of pairs.
+    /// Removes pairs that miss the cell, and replaces pairs that appear wide compared with it by their
+    /// children, up to a maximum number of pairs.
     fn refine(&mut self, pairs: &mut Vec<Pair>, cell: &Cell) {
         let (window, corners) = (Window::of(cell), cell.corners());
         let mut todo = std::mem::take(pairs);
@@ -353,7 +359,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// Whether differences of a pair are seen at a larger angle than a cell.
+    /// Checks whether the differences of a pair span a larger angle than a cell.
     fn is_wide(&self, pair: Pair, size: f64) -> bool {
         let [a, b] = self.views(pair);
         let (low, high) = (b.low - a.high, b.high - a.low);
@@ -361,8 +367,8 @@ impl<'s, 'a> Search<'s, 'a> {
         (high - low).max_element() > size * near
     }
 
-    /// How far the middle of a pair's differences is off a ray, against their size; and how little its facets look
-    /// along it, if so asked.
+    /// Returns the distance of the center of a pair's differences from a ray, relative to their size. If
+    /// `aside` is set, adds a penalty for facets that do not face along the ray.
     fn key(&self, pair: Pair, d: DVec3, aside: bool) -> f64 {
         let [a, b] = self.views(pair);
         let (low, high) = (b.low - a.high, b.high - a.low);
@@ -376,7 +382,8 @@ impl<'s, 'a> Search<'s, 'a> {
         if aside { off + faces(a, d) + faces(b, -d) } else { off }
     }
 
-    /// A pair whose cone holds all of a cell, if one is found soon: best first, without what misses a corner.
+    /// Searches best-first for a pair whose cone contains the whole cell, and dismisses pairs that miss a
+    /// corner. Returns `None` if the limited search finds none.
     fn covering(&mut self, pairs: &[Pair], cell: &Cell, aside: bool) -> Option<u32> {
         let corners = cell.corners();
         let windows = cell.places().map(|place| Window::at(cell.side, place));
@@ -389,8 +396,9 @@ impl<'s, 'a> Search<'s, 'a> {
         self.best_first(pairs, LOOKS, key, hits, judge)?
     }
 
-    /// A pair that blocks a direction, if there is one; nothing if that is not known soon.
-    #[expect(clippy::option_option, reason = "none at all, or none so far")]
+    /// Searches for a pair that blocks a direction. Returns `Some(None)` if there is none, and `None` if the
+    /// limit is reached.
+    #[expect(clippy::option_option, reason = "`Some(None)`: there is none; `None`: limit reached")]
     fn blocking(
         &mut self,
         pairs: &[Pair],
@@ -406,9 +414,9 @@ impl<'s, 'a> Search<'s, 'a> {
         self.best_first(pairs, looks, |search, pair| search.key(pair, d, false), hits, judge)
     }
 
-    /// The first pair of facets that is judged to be one, going down from pairs of nodes, the least key first.
-    /// `Some(None)` if there is none, `None` if none was found soon.
-    #[expect(clippy::option_option, reason = "none at all, or none so far")]
+    /// Searches both trees best-first, in order of increasing key, for a pair of facets that `judge` accepts.
+    /// Returns `Some(None)` if there is none, and `None` if the limit is reached.
+    #[expect(clippy::option_option, reason = "`Some(None)`: there is none; `None`: limit reached")]
     fn best_first(
         &mut self,
         pairs: &[Pair],
@@ -442,7 +450,8 @@ impl<'s, 'a> Search<'s, 'a> {
         queue.is_empty().then_some(None)
     }
 
-    /// Takes cones from a cell until nothing is left of it, or nothing meets what is left.
+    /// Subtracts cones from a cell until nothing is left, or until no pair blocks a direction of the
+    /// remainder.
     fn resolve(&mut self, task: &Task) -> Decided {
         let mut rest = Rest::whole(task.cell);
         let mut used = Vec::new();
@@ -452,7 +461,8 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// The same, with the numbers of the cones; whether it is done.
+    /// Subtracts cones from a remainder and collects their indices. Returns `true` if all remaining
+    /// directions are free.
     fn take(&mut self, task: &Task, rest: &mut Rest, used: &mut Vec<u32>) -> Result<bool, TooMuch> {
         let mut found_free = false;
         for _ in 0..TARGETS {
@@ -462,7 +472,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 Some(Some(k)) => {
                     let cone = &self.memory.cones[k as usize];
                     if !rest.cut(self.bodies, cone, PIECES)? {
-                        // The middle of an arc, or a point, is beside it by roundings.
+                        // The center of an arc or a point is rounded and therefore lies next to it.
                         found_free = true;
                         break;
                     }
@@ -486,7 +496,8 @@ impl<'s, 'a> Search<'s, 'a> {
         )
     }
 
-    /// Takes all that meets what is left, if it is little enough.
+    /// Subtracts all cones that meet a remainder, if they are few enough. Returns an error if a limit is
+    /// exceeded.
     fn take_all(
         &mut self,
         task: &Task,
@@ -519,7 +530,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
-/// The boxes that cells name, which get their numbers.
+/// Returns the boxes that cells refer to, and renumbers them in the cells.
 fn named(fates: &mut [Fate], boxes: &[Vec<InnerBox>; 2]) -> [Vec<InnerBox>; 2] {
     let mut numbers = [HashMap::new(), HashMap::new()];
     let mut used = [Vec::new(), Vec::new()];
@@ -535,7 +546,7 @@ fn named(fates: &mut [Fate], boxes: &[Vec<InnerBox>; 2]) -> [Vec<InnerBox>; 2] {
     used
 }
 
-/// The rectangles around what is left.
+/// Returns the bounding rectangles of the pieces.
 pub(super) fn windows(rest: &Rest) -> Vec<Window> {
     rest.pieces.iter().map(|piece| rest.window(piece)).collect()
 }

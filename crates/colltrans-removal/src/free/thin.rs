@@ -1,14 +1,14 @@
-//! Arcs and single directions that are free with no region beside them, exactly.
+//! Arcs and single directions that are free while no region next to them is. All decisions are exact.
 //!
-//! What cones leave of cells has pieces of two corners, and of one. On the great circle of each arc the ends of all
-//! arcs, and of what regions have of it, are put in order; between two neighbours all is alike. So arcs that cells have
-//! cut are one again, and end where they do. A direction is alone if no other piece has it. What is not known counts as
-//! a region: nothing is said of what is beside it.
+//! The remainder of a cell has pieces with two corners and with one. On the great circle of each arc, the
+//! ends of all arcs and of the regions' sides are sorted. Each stretch between two neighbours is free or not
+//! as a whole. This joins arcs that cells have divided. A single direction is reported if no other piece
+//! contains it. Undecided pieces count as regions.
 //!
-//! On a circle with the form `n` an end is `n x m`, `m` the form of a line across. Then `det[n, e, f]`, which tells
-//! whether `f` comes within half a turn after `e`, is `-|n|^2 m.f`: the side of one line.
-//!
-//! Lines are named by a pair of facets whose cone has the direction on its border, and by the vertices that span them.
+//! A direction on a circle with the form `n` is `n x m`, where `m` is the form of a transversal line. Then
+//! `det[n, e, f]`, which is positive if `f` is within half a turn after `e`, equals `-|n|^2 m.f`: the side of
+//! one line. Each line is identified by the vertices that span it, and by a pair of facets with the direction
+//! on the boundary of its cone.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
@@ -23,76 +23,76 @@ use super::proof::Fate;
 use super::rest::{Outline, Turn};
 use super::verify::rest_of;
 
-/// By how much boxes of directions are made larger, as corners are rounded.
+/// Enlargement of boxes of directions, because corners are rounded.
 const SLACK: f64 = 1e-9;
 
-/// Pairs of pieces that are held against each other, at most; nothing is said of more.
+/// Maximum number of pairs of pieces that are compared. For more pairs no arcs or points are reported.
 const MOST: usize = 20_000_000;
 
-/// A plane of directions, that where the directions end which a pair of facets blocks.
+/// Plane of directions that bounds the cone of a pair of facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreePlane {
-    /// Across it. Of facets it is rounded, of length 1; else exact.
+    /// Normal of the plane. For a plane of facets it is rounded and has length 1, otherwise it is exact.
     pub normal: DVec3,
-    /// What makes it; nothing if it is where a cell begins that is undecided.
+    /// Facets and vertices that define the plane; `None` for the boundary of an undecided cell.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub of: Option<PlaneFacets>,
 }
 
-/// What makes a plane of directions.
+/// Definition of a plane of directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneFacets {
-    /// Positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of the fixed body.
+    /// Indices into [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and the fixed body.
     pub triangles: [u32; 2],
-    /// Vertices `a, b, c` of these, where they are, made smaller by the tolerance: `(b - a) x (c - a)` is exactly along
-    /// the normal.
+    /// Vertices `a, b, c` of these triangles, in their placed positions, offset by the tolerance. `(b - a) x
+    /// (c - a)` is exactly parallel to the normal.
     pub vertices: [PlaneVertex; 3],
 }
 
-/// A free direction with no other around it, or an end of an arc of them.
+/// Isolated free direction, or an end of an arc of free directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreePoint {
-    /// The direction, with a largest component of 1 (or -1), exact but for its last roundings: as it is it may lie just
-    /// beside the free one, and be blocked.
+    /// The direction, with a largest component of 1 or -1. Because it is rounded, the stored direction may
+    /// lie slightly outside the free set and be blocked.
     pub direction: DVec3,
-    /// It is, exactly, along the vector product of the normals of these.
+    /// The exact direction is the cross product of the normals of these planes.
     pub planes: [FreePlane; 2],
 }
 
-/// An arc of free directions with no region beside it.
+/// Arc of free directions that no region borders.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeArc {
-    /// It goes counterclockwise around the normal of this plane.
+    /// Plane of the arc, which runs counterclockwise around the normal.
     pub plane: FreePlane,
-    /// Where it begins and ends, each of this plane and another one; nothing of a whole circle.
+    /// Start and end. Each lies in this plane and in another one. `None` for a whole circle.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub ends: Option<[FreePoint; 2]>,
-    /// Directions of it in order, from end to end, each less than half a turn after the one before it; rounded as those
-    /// of points are. Of a circle the first one is the last one, too.
+    /// Directions of the arc in order, from end to end. Each is less than half a turn after the previous one,
+    /// and rounded like that of a point. For a circle the first direction is also the last one.
     pub along: Vec<DVec3>,
 }
 
-/// All that is free without an area.
+/// All arcs and isolated directions.
 #[derive(Debug, Default)]
 pub(super) struct Thin {
     pub(super) arcs: Vec<FreeArc>,
     pub(super) points: Vec<FreePoint>,
-    /// Corners of arcs and points of which it is not known whether there is more beside them.
+    /// Corners of arcs and points for which a neighbouring region is undecided.
     pub(super) unclear: Vec<DVec3>,
 }
 
-/// A part of the sphere that cones leave of a cell.
+/// Piece of the remainder of a cell.
 struct Part {
     corners: Vec<Turn>,
-    /// Lines, and on which side of each it is: all of these say what it is.
+    /// Lines, each with the side on which the piece lies. Together they define the piece.
     sides: Vec<(Line, Ordering)>,
-    /// The line from each corner to the next.
+    /// Line from each corner to the next one.
     edges: Vec<Line>,
-    /// Around its corners.
+    /// Box around the corners, slightly enlarged.
     around: [DVec3; 2],
     known: bool,
 }
@@ -135,7 +135,7 @@ impl Part {
     }
 }
 
-/// A box around directions on the cube, a little larger.
+/// Returns a bounding box of directions on the cube, slightly enlarged.
 fn around(directions: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let [low, high] = directions.fold(none, |[low, high], d| [low.min(d), high.max(d)]);
@@ -146,14 +146,14 @@ fn is_around([low, high]: &[DVec3; 2], d: DVec3) -> bool {
     low.cmple(d).all() && high.cmpge(d).all()
 }
 
-/// A direction on a circle: along the vector product of its form and that of a line across.
+/// Direction on a circle: the cross product of the form of the circle and that of the line `across`.
 #[derive(Clone, Copy)]
 struct Mark {
     at: Turn,
     across: Line,
 }
 
-/// A cell that is not blocked, and pairs that block some of it.
+/// Cell that is not blocked, and the pairs that block some of its directions.
 struct Around<'f> {
     bounds: [DVec3; 2],
     pairs: &'f [[u32; 2]],
@@ -165,7 +165,7 @@ struct Thinning<'s, 'a> {
     parts: Vec<Part>,
 }
 
-/// Arcs and points of what is said of all cells.
+/// Finds the arcs and points of all cells.
 pub(super) fn thin<'s>(
     bodies: &'s Bodies<'_>,
     leaves: impl Iterator<Item = (Cell, &'s Fate)>,
@@ -217,7 +217,8 @@ impl Thinning<'_, '_> {
         }
     }
 
-    /// A direction that is alone: of two planes through it.
+    /// Builds an isolated direction from two planes through it. Returns `None` if two such planes are not
+    /// found.
     fn point(&self, at: &Turn) -> Option<FreePoint> {
         let mut planes = self.lines_through(at).into_iter();
         let (first, triangles) = planes.next()?;
@@ -229,8 +230,8 @@ impl Thinning<'_, '_> {
         })
     }
 
-    /// Lines through a direction of cones of cells that have it, with their pairs; those of cones with the direction on
-    /// their border first.
+    /// Returns lines through a direction, with the pairs whose cones they bound, over all cells whose box
+    /// contains the direction. Lines of cones with the direction on their boundary come first.
     fn lines_through(&self, at: &Turn) -> Vec<(Line, [u32; 2])> {
         let (mut touching, mut others) = (Vec::new(), Vec::new());
         let cells = self.cells.iter().filter(|cell| is_around(&cell.bounds, at.direction));
@@ -252,7 +253,7 @@ impl Thinning<'_, '_> {
             let circle = first.edges[0];
             let (own, others): (Vec<_>, Vec<_>) =
                 todo.iter().partition(|part| self.are_on(&circle, &part.corners));
-            // The first one is on its own circle; whatever roundings say, one less is left.
+            // The first arc is on its own circle. In any case at least one arc is removed.
             todo = if own.is_empty() { todo[1..].to_vec() } else { others };
             self.arcs_of(&circle, &own, thin);
         }
@@ -262,7 +263,7 @@ impl Thinning<'_, '_> {
         corners.iter().all(|corner| circle.side_of_ray(self.bodies, &corner.ray) == Equal)
     }
 
-    /// The arcs of one circle, of some parts.
+    /// Finds the arcs on one circle.
     fn arcs_of(&self, circle: &Line, own: &[&Part], thin: &mut Thin) {
         let span = |a: &Turn, b: &Turn| {
             let [a, b] = [self.mark(circle, a)?, self.mark(circle, b)?];
@@ -317,7 +318,7 @@ impl Thinning<'_, '_> {
         }
     }
 
-    /// So many stretches between marks from one on.
+    /// Builds the arc of `length` consecutive stretches between marks.
     fn arc(&self, circle: &Line, marks: &[Mark], start: usize, length: usize) -> Option<FreeArc> {
         let mark = |k: usize| &marks[(start + k) % marks.len()];
         let own = self.lines_through(&mark(0).at);
@@ -333,7 +334,7 @@ impl Thinning<'_, '_> {
         Some(FreeArc { plane, ends, along: (0..=length).map(|k| mark(k).at.direction).collect() })
     }
 
-    /// The plane across a circle at an end.
+    /// Returns the plane that crosses a circle at an end.
     fn across(&self, circle: &Line, mark: &Mark) -> FreePlane {
         let lines = self.lines_through(&mark.at).into_iter();
         let mut others = lines.filter(|(line, _)| !line.is_along(self.bodies, circle));
@@ -348,7 +349,8 @@ impl Thinning<'_, '_> {
         Some(Mark { at: *at, across: turned(self.bodies, circle, across, at)? })
     }
 
-    /// Whether a mark comes within half a turn after another, or before it.
+    /// Returns `Greater` if mark `b` is within half a turn after mark `a`, and `Less` if it is within half a
+    /// turn before it.
     fn after(&self, a: &Mark, b: &Mark) -> Ordering {
         a.across.side_of_ray(self.bodies, &b.at.ray).reverse()
     }
@@ -357,7 +359,7 @@ impl Thinning<'_, '_> {
         self.after(a, b) == Equal && a.at.direction.dot(b.at.direction) > 0.0
     }
 
-    /// Marks around a circle from the first one on, each once.
+    /// Sorts marks around a circle, starting with the first one, and removes duplicates.
     fn in_order(&self, mut marks: Vec<Mark>) -> Vec<Mark> {
         let Some(&first) = marks.first() else { return marks };
         let is_late = |mark: &Mark| match self.after(&first, mark) {
@@ -375,8 +377,8 @@ fn overlap([a, b]: &[DVec3; 2], [c, d]: &[DVec3; 2]) -> bool {
     a.cmple(*d).all() && c.cmple(*b).all()
 }
 
-/// A line, or the same one reversed, so that the vector product of a circle's form and its own is along a direction
-/// and not against it.
+/// Returns a line, possibly reversed, so that the cross product of the circle's form and its own form has the
+/// given direction. Returns `None` if the sign of the product is zero or cannot be computed.
 fn turned(bodies: &Bodies, circle: &Line, across: &Line, at: &Turn) -> Option<Line> {
     let main = at.direction.abs().max_position();
     let axis = Line::exactly(DVec3::AXES[main] * at.direction[main].signum());
@@ -398,7 +400,7 @@ impl FreePlane {
         }
     }
 
-    /// Of vertices that exist.
+    /// Returns the line of the plane. Returns `None` if a vertex does not exist or the normal is not finite.
     fn line(&self, bodies: &Bodies) -> Option<Line> {
         let Some(PlaneFacets { vertices, .. }) = self.of else {
             return Some(Line::exactly(self.normal)).filter(|_| self.normal.is_finite());
@@ -409,7 +411,7 @@ impl FreePlane {
 }
 
 impl FreePoint {
-    /// Whether a direction is this one, exactly.
+    /// Checks exactly whether a direction is this one.
     pub(super) fn is(&self, bodies: &Bodies, d: DVec3) -> bool {
         let on = |plane: &FreePlane| {
             plane.line(bodies).is_some_and(|line| line.side(bodies, d) == Equal)
@@ -419,7 +421,7 @@ impl FreePoint {
 }
 
 impl FreeArc {
-    /// Whether it has a direction, exactly.
+    /// Checks exactly whether a direction is on the arc.
     pub(super) fn has(&self, bodies: &Bodies, d: DVec3) -> bool {
         let Some(circle) = self.plane.line(bodies) else { return false };
         if circle.side(bodies, d) != Equal {

@@ -1,10 +1,12 @@
-//! Checks of what is proven of each cell, without a search.
+//! Checks of the claims about cells, without a search.
 //!
-//! *Blocked*: the cone of one pair of facets holds the four corners of the cell. *Open*: it is blocked where the cones
-//! of some pairs are, and no other pair meets what they leave. The cones are taken from the cell again, and both trees are gone down
-//! for each piece that is left: a pair of nodes ends there, or its parts are looked at, down to single facets.
-//! *Inner*: a box inside the moving and one inside the fixed body block all of it; that they are inside is checked
-//! once for each box. *Undecided*: it is blocked where the cones are, and nothing is said of the rest.
+//! - *Blocked*: the cone of one pair of facets contains the four corners of the cell.
+//! - *Open*: the cones of the listed pairs are subtracted from the cell. Then both trees are traversed once
+//!   for all pieces of the remainder, and no other pair may block a direction of a piece. A pair of nodes is
+//!   dismissed or replaced by its children, down to facets.
+//! - *Inner*: a box inside the moving and one inside the fixed body block the cell. That the boxes are inside
+//!   is checked once for each box.
+//! - *Undecided*: nothing is claimed outside the cones of the listed pairs.
 
 use glam::DVec3;
 
@@ -17,7 +19,8 @@ use super::rest::{Piece, Rest, TooMuch};
 use super::search::PIECES;
 use super::window::Window;
 
-/// What pairs of facets leave of a cell.
+/// Subtracts the cones of pairs of facets from a cell. Returns an error if the remainder has too many pieces
+/// or a number is too large.
 pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result<Rest, TooMuch> {
     let mut rest = Rest::whole(cell);
     for &pair in pairs {
@@ -26,7 +29,8 @@ pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result
     Ok(rest)
 }
 
-/// Whether what is said of a cell holds; its facets and boxes [exist](names_exist), and the boxes are inside.
+/// Checks the claim about a cell. The facets and boxes that it names must [exist](names_exist), and the boxes
+/// must be inside.
 pub(super) fn holds(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], cell: &Cell, fate: &Fate) -> bool {
     match fate {
         Fate::Cut(_) | Fate::Undecided(_) => true,
@@ -38,7 +42,7 @@ pub(super) fn holds(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], cell: &Cell, fa
     }
 }
 
-/// Whether all facets and boxes that are named exist.
+/// Checks whether all facets and boxes that a claim names exist.
 pub(super) fn names_exist(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], fate: &Fate) -> bool {
     match fate {
         Fate::Cut(_) => true,
@@ -55,7 +59,8 @@ fn exists(bodies: &Bodies, pair: [u32; 2]) -> bool {
     pair[0] < count(true) && pair[1] < count(false)
 }
 
-/// A pair of facets that blocks a direction of a cell, exactly, if there is one: over all pairs of nodes.
+/// Returns a pair of facets that blocks a direction of a cell, found by an exhaustive traversal of both
+/// trees. The test of each pair is exact. Returns `None` if there is no such pair.
 pub(super) fn blocking_pair(bodies: &Bodies, cell: &Cell, d: DVec3) -> Option<[u32; 2]> {
     let [k, i, j] = cell.side.axes();
     let around = |axis: usize| {
@@ -81,7 +86,8 @@ pub(super) fn blocking_pair(bodies: &Bodies, cell: &Cell, d: DVec3) -> Option<[u
     None
 }
 
-/// Whether no pair of facets meets any piece of what is left of a cell: each pair is looked at once, for all of them.
+/// Checks whether no pair of facets blocks a direction of a remainder. Each pair is visited once for all
+/// pieces.
 fn is_free(bodies: &Bodies, rest: &Rest) -> bool {
     let alone = |piece: &Piece| (rest.window(piece), rest.only(piece));
     let mut pieces: Vec<(Window, Rest)> = rest.pieces.iter().map(alone).collect();

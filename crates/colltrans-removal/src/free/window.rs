@@ -1,28 +1,29 @@
-//! Rectangles of directions, and which pairs of nodes block none of them.
+//! Rectangles of directions, and a test which pairs of nodes block no direction of a rectangle.
 //!
-//! A pair of facets blocks an open cone: if it blocks a direction of a rectangle that has an inside, it blocks one of
-//! that inside. So whatever reaches a border only does not count there; of rectangles without an inside it does.
-//! Facets that block do so at differences `g - f = t d` with `t > 0`, or lie in one plane with a common point.
+//! A pair of facets blocks an open cone. If the cone contains a direction of a rectangle with a non-empty
+//! interior, it contains one of the interior, too. Therefore contacts with the boundary alone are ignored for
+//! such rectangles. They count for rectangles that are a segment or a point. Facets block at differences `g -
+//! f = t d` with `t > 0`, or they are coplanar and share a point.
 
 use glam::DVec3;
 
 use super::bodies::{Bodies, View};
 use super::cell::{Cell, Side};
 
-/// Ratios of differences are off by less.
+/// Upper bound on the relative error of ratios of differences.
 const RATIO: f64 = 8.0 * f64::EPSILON;
 
-/// A rectangle on a side of the cube.
+/// Rectangle on a side of the cube.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     side: Side,
     pub(super) u: [f64; 2],
     pub(super) v: [f64; 2],
-    /// Whether it has an inside.
+    /// Whether the rectangle has a non-empty interior.
     solid: bool,
     corners: [DVec3; 4],
     lengths: [f64; 4],
-    /// How many of the corners differ.
+    /// Number of corners that are tested: 1 for a single direction, otherwise 4.
     count: usize,
 }
 
@@ -43,7 +44,8 @@ impl Window {
         Self::new(side, [u; 2], [v; 2])
     }
 
-    /// Whether no facet of `a`, of the moving body, blocks one of `b`, of the fixed one, along any of the directions.
+    /// Checks whether no facet of `a`, of the moving body, blocks a facet of `b`, of the fixed body, along
+    /// any direction of the rectangle.
     pub(super) fn is_missed(&self, bodies: &Bodies, a: &View, b: &View) -> bool {
         let (low, high) = (b.low - a.high, b.high - a.low);
         self.boxes_miss(low, high)
@@ -53,7 +55,8 @@ impl Window {
             || self.is_behind(b.axis, b.slab, [a.low, a.high], true)
     }
 
-    /// Whether no difference of a box is a positive multiple of one of the directions, and none is zero.
+    /// Checks whether a box of differences contains neither zero nor a positive multiple of a direction of
+    /// the rectangle.
     fn boxes_miss(&self, low: DVec3, high: DVec3) -> bool {
         if low.max_element() <= 0.0 && high.min_element() >= 0.0 {
             return false;
@@ -72,7 +75,8 @@ impl Window {
             || range[0] > range[1]
     }
 
-    /// Narrows a range of positive `t` to where `t slope > limit`, or `>=` without an inside; whether nothing is left.
+    /// Restricts a range of positive `t` to `t slope > limit`, or to `t slope >= limit` for a rectangle
+    /// without interior. Returns `true` if the condition excludes all positive `t`.
     fn bound(&self, range: &mut [f64; 2], slope: f64, limit: f64) -> bool {
         if slope > 0.0 {
             if limit > 0.0 {
@@ -89,18 +93,19 @@ impl Window {
         false
     }
 
-    /// Whether no facet near an axis looks along any of the directions.
+    /// Checks whether no facet with a normal near `axis` faces along any of the directions.
     fn looks_away(&self, axis: DVec3, spread: f64, permutes: bool) -> bool {
         let away = |k: usize| {
             let terms = axis * self.corners[k];
-            // What vanishes in quarter turns vanishes exactly.
+            // Terms that vanish after a quarter turn vanish exactly.
             let size = if permutes { terms.abs().element_sum() } else { self.lengths[k] };
             terms.element_sum() <= -(spread * self.lengths[k] * (1.0 + RATIO) + RATIO * size)
         };
         spread < 1.0 && (0..self.count).all(away)
     }
 
-    /// Whether a box is behind a slab, as seen along all of the directions; `turned` if the slab is of the fixed body.
+    /// Checks whether a box lies behind a slab along all of the directions. `turned` selects a slab of the
+    /// fixed body.
     fn is_behind(&self, axis: DVec3, slab: [f64; 2], bounds: [DVec3; 2], turned: bool) -> bool {
         if slab[1] == f64::INFINITY {
             return false;

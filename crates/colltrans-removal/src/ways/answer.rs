@@ -1,4 +1,4 @@
-//! The answer: legs with their proofs.
+//! Removal paths as an answer: legs with their proofs.
 
 use std::sync::atomic::AtomicBool;
 
@@ -17,65 +17,68 @@ use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidCast;
 use colltrans_solid::body::{AsSolid, Solid};
 
-/// The share of the tolerance that is planned with.
+/// Fraction of the tolerance by which the bodies of the search are offset.
 const SLACK: f64 = 0.8;
-/// Bodies that are searched together, at most.
+/// Maximum number of bodies of a search.
 pub(super) const MOST_BODIES: usize = Group::BITS as usize - 1;
 
-/// Moves one after another, the last without an end.
+/// Moves one after another. The last one has no end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WayOut {
-    /// What to do, in order.
+    /// Moves in order.
     pub legs: Vec<Leg>,
-    /// The tolerance: all bodies are shrunk by half of it.
+    /// Tolerance. All bodies are offset inwards by half of it.
     pub tolerance: f64,
-    /// What was searched.
+    /// Amounts of work of the search.
     pub searched: Searched,
 }
 
-/// A move: some of the bodies, as one, along a line.
+/// Move of some bodies together along a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leg {
-    /// Who moves, positions in increasing order. With the last leg they are gone.
+    /// Indices of the bodies that move, in increasing order. The last leg removes them.
     pub bodies: Vec<usize>,
-    /// Where to, of length 1 but for rounding.
+    /// Direction, of length 1 up to rounding.
     pub direction: DVec3,
-    /// How far; infinite for the last leg.
+    /// Length of the move, infinite for the last leg.
     pub travel: f64,
-    /// By which vector, exactly; for the last leg the direction.
+    /// Exact vector of the move, or the direction of the last leg.
     pub motion: DVec3,
-    /// For each body that moves and each that stays.
+    /// One proof for each pair of a moving body and a body at rest.
     pub proofs: Vec<LegProof>,
 }
 
-/// Is there a way out in several moves?
+/// Answer whether a removal path in several moves exists.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WaysOut {
-    /// This one.
+    /// A removal path.
     Found(WayOut),
-    /// There is none by translations, of two bodies, which is proven.
+    /// It is proven that no sequence of translations separates the two bodies.
     Proven(NoWay),
-    /// None was found. That is no proof that there is none.
+    /// The search found no path. One may exist.
     NotFound {
-        /// What was searched.
+        /// Amounts of work of the search.
         searched: Searched,
     },
 }
 
 impl WaysOut {
-    /// How can a body leave another one by translations? Bodies of either kind; a convex one as the solid that it is.
+    /// Searches for a sequence of translations that removes one body from another. A convex body is treated
+    /// as a solid.
     ///
-    /// The first body is 0 and moves; the second one, 1, is fixed.
+    /// The first body has the index 0 and moves. The second one has the index 1 and is fixed.
     ///
     /// # Errors
-    /// Bodies that no cast can be asked about; open shells; an overlap where they are (with 0.8 of the tolerance).
+    /// Returns [`FreeError::Query`] for bodies or options that a cast rejects, [`FreeError::Open`] for an
+    /// open shell, and [`FreeError::Overlapping`] if the bodies overlap at the start with 0.8 of the
+    /// tolerance.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
     /// use colltrans::ways::{WayOptions, WaysOut};
     /// use colltrans::{ConvexPolyhedron, Pose, Solid};
     ///
-    /// // A bar in a channel that is closed at the top but for a window at its end.
+    /// // A bar in a channel whose top is closed except for a window at one end.
     /// let block = |low: [f64; 3], high: [f64; 3]| {
     ///     ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high))
     /// };
@@ -92,7 +95,7 @@ impl WaysOut {
     /// let at = Pose::IDENTITY;
     /// let WaysOut::Found(way) = WaysOut::of(&bar.at(at), &channel.at(at), &WayOptions::default())?
     /// else {
-    ///     unreachable!("along x, then up")
+    ///     unreachable!("the bar leaves along x, then up")
     /// };
     /// assert_eq!(way.legs.len(), 2);
     /// assert_eq!(way.legs[1].travel, f64::INFINITY);
@@ -110,15 +113,16 @@ impl WaysOut {
         Self::among(&[a, b], &[1], options, None)
     }
 
-    /// How do some of several bodies leave the others? Those that are fixed stay; of the others, any may move, alone
-    /// or several as one, before some of them leave. Ends with [`FreeError::Cancelled`] once the flag is set.
+    /// Searches for a removal path of some of several bodies. Bodies in `fixed` do not move. All others may
+    /// move, alone or together, before some of them are removed.
     ///
-    /// Legs are told as moves against a *base* that stays: what is fixed, or else the largest body. Of more than two,
-    /// bodies that overlap where they are move as one. There is nothing to be found of fewer than two bodies, and more
-    /// than 63 are not searched.
+    /// Motions are relative to a *base*, which is the first fixed body, or otherwise the largest one. Among
+    /// more than two bodies, those that overlap at the start move together. For fewer than two or more than
+    /// 63 bodies the answer is [`Self::NotFound`] without a search.
     ///
     /// # Errors
-    /// As [`Self::of`]; of more than two bodies none for overlaps.
+    /// Returns the errors of [`Self::of`], and [`FreeError::Cancelled`] after the flag is set. Overlaps of
+    /// more than two bodies are not errors.
     pub fn among(
         bodies: &[Placed<'_, Solid>],
         fixed: &[usize],
@@ -177,7 +181,7 @@ impl WaysOut {
                     None => (),
                 }
             }
-            // A way through cells may have more legs than are needed.
+            // A path through cells may have more legs than necessary.
             if let Some(through) = through.take_if(|_| ended || !fewest) {
                 let way = (&through[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
                 if let Some(legs) = search.shortened(1 - base, way, certified)? {
@@ -189,7 +193,7 @@ impl WaysOut {
             }
             places *= 2;
         };
-        // Of many bodies there are too many pairs.
+        // More than two bodies have too many pairs.
         if legs.is_none() && bodies.len() == 2 && search.searched.complete {
             legs = search.askew(certified)?;
         }
@@ -201,14 +205,14 @@ impl WaysOut {
     }
 }
 
-/// That of all casts: the one given, or the largest default one.
+/// Returns the tolerance of all casts: the given one, or the largest default of all pairs.
 fn tolerance(bodies: &[Placed<'_, Solid>], options: &WayOptions) -> Result<f64, QueryError> {
     let mut most = 0.0_f64;
     for j in 1..bodies.len() {
         for i in 0..j {
             let cast = Cast::new(bodies[i], bodies[j], DVec3::Z)?;
             most = most.max(match options.tolerance {
-                // It is refused as it was given, not as it is planned with.
+                // An error shows the given tolerance, not the one of the search.
                 Some(given) => cast.with_tolerance(given)?.tolerance(),
                 None => cast.tolerance(),
             });
@@ -226,7 +230,7 @@ fn largest(bodies: &[Placed<'_, Solid>]) -> usize {
     (0..bodies.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0)
 }
 
-/// The middle of a body's box, in the world.
+/// Returns the center of a body's bounding box, in the world frame.
 fn middle(body: &Placed<'_, Solid>) -> DVec3 {
     body.pose.transform_point(body.body.bounds().center())
 }
@@ -235,13 +239,13 @@ fn scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> Scale {
     let size = |body: &Placed<'_, Solid>| body.body.bounds().size().max_element();
     let far = bodies.iter().map(size).sum::<f64>() * 2.0;
     let step = step * bodies.iter().map(size).fold(0.0, f64::max);
-    // With no tolerance there is no slack: then only the sums have to be exact.
+    // Without a tolerance there is no slack. The grid only has to keep sums exact.
     let off = if tolerance > 0.0 { (0.1 * tolerance).min(0.1 * step) } else { 1e-6 * step };
     let fine = if tolerance > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };
     Scale { far, step, grain: step, off, grid: power_of_two(fine) }
 }
 
-/// The largest power of two up to a number.
+/// Returns the largest power of two that does not exceed a number.
 fn power_of_two(x: f64) -> f64 {
     f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52))
 }

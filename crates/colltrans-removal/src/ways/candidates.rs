@@ -1,20 +1,21 @@
-//! Which directions are tried: normals of large facets, and what is across two of them, as along a channel.
+//! Directions of moves: normals of large facets, and cross products of two of them, for example along a
+//! channel.
 
 use glam::DVec3;
 
 use colltrans_convex::body::Placed;
 use colltrans_solid::body::Solid;
 
-/// Axes of the largest facets of each body.
+/// Maximum number of axes of each body's largest facets.
 const AXES: usize = 3;
-/// Axes of walls around a place.
+/// Maximum number of axes of walls around a place.
 const MOST_WALLS: usize = 8;
-/// Axes in all, each of which is two directions.
+/// Maximum number of axes. Each stands for two directions.
 const MOST: usize = 13;
-/// Axes whose cross product is shorter than this are one.
+/// Length of the cross product of two axes below which they are identified.
 const ALIKE: f64 = 1e-6;
 
-/// Directions of length 1, each with its opposite: those given, or of large facets.
+/// Returns directions of length 1, each followed by its opposite: the given ones, or those of large facets.
 pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<DVec3> {
     let mut axes = Vec::new();
     for &d in given {
@@ -24,7 +25,8 @@ pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<D
     axes.iter().flat_map(|&axis| [axis, DVec3::ZERO - axis]).collect()
 }
 
-/// Axes of length 1: normals of the largest facets of each body, and what is across two of them; 13 at most.
+/// Returns at most 13 axes of length 1: normals of the largest facets of each body, and cross products of two
+/// of them.
 pub fn of_large_facets(bodies: &[Placed<'_, Solid>]) -> Vec<DVec3> {
     let mut axes = Vec::new();
     for body in bodies {
@@ -42,7 +44,8 @@ pub fn of_large_facets(bodies: &[Placed<'_, Solid>]) -> Vec<DVec3> {
     axes
 }
 
-/// Axes of the walls around a place: of facets of a body that face it, the largest first, and across the first two.
+/// Returns the axes of the walls around a place: normals of facets that face it, those with the largest area
+/// first, and the cross product of the first two.
 pub(super) fn of_walls(body: &Placed<'_, Solid>, place: DVec3) -> Vec<DVec3> {
     let within = body.pose.matrix().transpose() * (place - body.pose.translation());
     let mut axes = large(body, |[a, b, c]| (b - a).cross(c - a).dot(within - a) > 0.0);
@@ -53,7 +56,8 @@ pub(super) fn of_walls(body: &Placed<'_, Solid>, place: DVec3) -> Vec<DVec3> {
     axes
 }
 
-/// The axes that most of the area of some facets of a body faces, in the world, the largest first.
+/// Returns the normals of the facets that `among` accepts, in the world frame, sorted by decreasing total
+/// area. Opposite normals are one axis.
 fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DVec3> {
     let mut found: Vec<(DVec3, f64)> = Vec::new();
     let vertices = body.body.vertices();
@@ -68,7 +72,7 @@ fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DV
         let known = found.iter().position(|(axis, _)| axis.cross(unit).length() < ALIKE);
         match known {
             Some(k) => found[k].1 += area,
-            // Of a finely tessellated body the first ones are as good as any.
+            // For a finely tessellated body the first 256 axes suffice.
             None if found.len() < 256 => found.push((unit, area)),
             None => (),
         }
@@ -79,7 +83,7 @@ fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DV
 
 fn put(axes: &mut Vec<DVec3>, d: DVec3) {
     let Some(unit) = (d.length() > ALIKE).then(|| d.try_normalize()).flatten() else { return };
-    // Rounding of a product must not make 1e-17 of a component.
+    // Rounding of a cross product must not leave components such as 1e-17.
     let unit = unit.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
     if !axes.iter().any(|axis| axis.cross(unit).length() < ALIKE) {
         axes.push(unit);

@@ -1,41 +1,31 @@
-//! Displacements of one body against another, in cells: parts of an octree, cubes along axes that may be any three.
+//! Cells of displacements of one body against another: cubes of an octree along three axes.
 //!
-//! A cell is where `x, y, z` are between two corners, and the displacements in it are `t = x u + y v + z w`. The axes `u`,
-//! `v` and `w` are those that walls have, so that cells lie along them. Nothing but that they are independent is asked of them:
-//! displacements and `(x, y, z)` then are one to one, and cells lie side by side in space as they do in the octree.
+//! A cell contains the displacements `t = x u + y v + z w` with `x, y, z` between two corners. The axes `u`,
+//! `v` and `w` follow the walls. They only have to be independent, so that `t` and `(x, y, z)` correspond one
+//! to one.
 //!
-//! `A` is displaced by `t`, `B` is fixed. An edge `p q` of one of them that passes through a facet `g` of the other from
-//! front to back has points of its body right behind `g`, inside of the other: **they overlap**. With the facet's
-//! normal `n`, both ends strictly on either side of its plane and
-//!
-//! ```text
-//! s_k = (q - p) . ((g_k - p) x (g_k+1 - p)),   k = 0, 1, 2, all of one sign
-//! ```
-//!
-//! say so. Each is linear in `t`, so its range over a cell is its value at the middle and a half width: one edge and
-//! one facet block a whole cell, borders included.
-//!
-//! *Rounding.* Coordinates are at most `S` and off by at most `h` (what shrinking leaves of exactness), and so is `t`, but
-//! for its own `4 u S`; differences of three of them are at most `3 S` and off by `8 u S + 3 h`. A product of three is
-//! off by `3 . 9 S^2 (8 u S + 3 h)` and its own two roundings, a sum of six of them by `2430 u S^3 + 486 h S^2`. The slope's
-//! components are at most `18 S^2` and off by `132 u S^2 + 36 h S`, half a cell is at most `S / 2`: all that and the range
-//! come to less than `4096 u S^3 + 1024 h S^2`.
+//! `A` is displaced by `t`, `B` is fixed. If an edge `p q` of one body passes through a facet `g` of the
+//! other, points of the edge directly behind `g` are inside both bodies. The edge passes through `g` if its
+//! ends are strictly on different sides of the plane of `g`, and `s_k = (q - p) . ((g_k - p) x (g_k+1 - p))`
+//! has the same sign for `k = 0, 1, 2`. Each of these values is linear in `t`. Therefore one edge and one
+//! facet can block a whole cell, including its boundary. Rounding errors are less than `4096 u S^3 + 1024 h
+//! S^2`: `docs/theory/displacement-cells.md`.
 
 use glam::{DMat3, DVec3};
 
 use crate::free::Bodies;
 
-/// A cell: its side is that of all cells, halved `depth` times.
+/// Cell of an octree. Its side is that of the octree, halved `depth` times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RoomCell {
-    /// How often the sides are halved.
+    /// Number of halvings.
     pub depth: u32,
-    /// Its place, in multiples of its side from the lowest corner.
+    /// Position in multiples of its side, from the lowest corner of the octree.
     pub at: [u32; 3],
 }
 
-/// Sides are halved no more often.
+/// Maximum number of halvings.
 pub(super) const DEEPEST: u32 = 20;
 
 impl RoomCell {
@@ -53,67 +43,67 @@ impl RoomCell {
         Some(Self { depth: self.depth.checked_sub(1)?, at: self.at.map(|x| x / 2) })
     }
 
-    /// The cell of the same size on a side (the lower one of an axis, or the upper one), if it is one of all.
+    /// Returns the cell of the same size adjacent to a side. Returns `None` outside the octree.
     pub(super) fn beside(self, (axis, upper): Side) -> Option<Self> {
         let mut at = self.at;
         at[axis] = if upper { at[axis] + 1 } else { at[axis].checked_sub(1)? };
         (at[axis] < 1 << self.depth).then_some(Self { at, ..self })
     }
 
-    /// How far it is from the border of all cells, in sides of the smallest.
+    /// Returns the distance from the boundary of the octree, in sides of the smallest cells.
     pub(super) fn to_border(self) -> u32 {
         let last = (1 << self.depth) - 1;
         let nearest = self.at.iter().map(|&x| x.min(last - x)).min().unwrap_or(0);
         nearest << (DEEPEST - self.depth)
     }
 
-    /// The parts that touch a side.
+    /// Returns the children that touch a side.
     pub(super) fn parts_at(self, (axis, upper): Side) -> impl Iterator<Item = Self> {
         let touches = move |part: &Self| (part.at[axis] & 1 == 1) == upper;
         self.parts().into_iter().filter(touches)
     }
 }
 
-/// An axis, and whether the upper end of it.
+/// Axis, and whether its upper side.
 pub(super) type Side = (usize, bool);
 
 pub(super) const SIDES: [Side; 6] =
     [(0, false), (0, true), (1, false), (1, true), (2, false), (2, true)];
 
-/// Where cells are.
+/// Frame of the octree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Room {
-    /// The lowest corner of all cells, in multiples of the axes.
+    /// Lowest corner of the octree, in multiples of the axes.
     pub low: DVec3,
-    /// The side of all of them together, in multiples of the axes.
+    /// Side of the octree, in multiples of the axes.
     pub side: f64,
-    /// The axes, of length 1 but for rounding, as columns. They need not be orthogonal.
+    /// Axes as columns, of length 1 up to rounding. They need not be orthogonal.
     pub axes: DMat3,
 }
 
 impl Room {
-    /// So much around the place where a body is, which is on no border of a cell.
+    /// Returns an octree around the initial placement. The placement is not on the boundary of a cell.
     pub(super) fn around(reach: f64, axes: DMat3) -> Self {
         let low = DVec3::splat(-reach) + reach * DVec3::new(0.17, 0.23, 0.29) / 3.0;
         Self { low, side: 2.0 * reach, axes }
     }
 
-    /// Whether it is finite and its axes are as long as they should be and independent.
+    /// Checks whether the frame is finite, and its axes have length 1 and are independent.
     pub(super) fn is_proper(&self) -> bool {
         let Self { low, side, axes } = self;
         low.is_finite() && side.is_finite() && *side > 0.0 && are_independent(*axes)
     }
 
-    /// The corners of a cell, in multiples of the axes. A power of two times a side is exact, so cells that touch have
-    /// the same ones.
+    /// Returns the corners of a cell, in multiples of the axes. The product of a power of two and a side is
+    /// exact, therefore adjacent cells have the same corners.
     pub fn corners(&self, cell: RoomCell) -> [DVec3; 2] {
         let side = self.side / f64::from(1_u32 << cell.depth.min(31));
         let corner = |by: u32| self.low + DVec3::from(cell.at.map(|x| f64::from(x + by))) * side;
         [corner(0), corner(1)]
     }
 
-    /// The displacements in a cell.
+    /// Returns the displacements in a cell.
     pub(super) fn displacements(&self, cell: RoomCell) -> Displacements {
         let [low, high] = self.corners(cell);
         let half = (high - low) / 2.0;
@@ -125,13 +115,13 @@ impl Room {
     }
 }
 
-/// Whether three columns are of length 1, but for rounding, and far from lying in one plane.
+/// Checks whether three columns have length 1, up to rounding, and a determinant of at least 0.5.
 pub(super) fn are_independent(axes: DMat3) -> bool {
     let columns = [axes.x_axis, axes.y_axis, axes.z_axis];
     columns.iter().all(|axis| (axis.length() - 1.0).abs() < 1e-9) && axes.determinant().abs() >= 0.5
 }
 
-/// A middle, and as far to either side as three vectors lead.
+/// Parallelepiped of displacements: its center and three half edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Displacements {
     pub(super) middle: DVec3,
@@ -139,35 +129,35 @@ pub(super) struct Displacements {
 }
 
 impl Displacements {
-    /// How far the product with a vector goes to either side of that of the middle.
+    /// Returns the half width of the scalar product with a vector.
     pub(super) fn width(&self, along: DVec3) -> f64 {
         self.half.iter().map(|half| along.dot(*half).abs()).sum()
     }
 
-    /// The other body's against this one.
+    /// Returns the opposite displacements: those of the other body against this one.
     fn turned(&self) -> Self {
         Self { middle: DVec3::ZERO - self.middle, half: self.half }
     }
 }
 
-/// An edge of one body that passes through a facet of the other.
+/// Edge of one body that passes through a facet of the other one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Crossing {
-    /// Whether the edge is the moving body's, and the facet the fixed one's.
+    /// Whether the edge belongs to the moving body and the facet to the fixed one.
     pub moving: bool,
-    /// The triangle whose edge it is, and which: from its corner of this number to the next.
+    /// Triangle with the edge, and the number of the corner at which the edge starts.
     pub edge: (u32, u8),
-    /// The triangle it passes through.
+    /// Triangle that the edge passes through.
     pub facet: u32,
 }
 
-/// Two bodies, ready to be looked at.
+/// Two bodies with bounds on their displaced coordinates.
 pub(super) struct Displaced<'a> {
     pub(super) bodies: Bodies<'a>,
-    /// No coordinate is larger, displaced or not.
+    /// Upper bound on the absolute value of a coordinate, displaced or not.
     size: f64,
-    /// How far corners may be from where they are.
+    /// Upper bound on the error of a coordinate of a vertex.
     noise: f64,
 }
 
@@ -180,12 +170,13 @@ impl<'a> Displaced<'a> {
         Self { bodies, size: reach + displaced, noise }
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub(super) fn triangle(&self, moving: bool, triangle: u32) -> [DVec3; 3] {
         self.bodies.spots(moving, triangle).map(|spot| self.bodies.corner(spot).at)
     }
 
-    /// Whether an edge passes through a facet in all of a cell; false for numbers of none.
+    /// Checks whether an edge passes through a facet for all displacements of a cell. Returns `false` if the
+    /// edge or the facet does not exist.
     pub(super) fn blocks(&self, crossing: Crossing, by: &Displacements) -> bool {
         let Crossing { moving, edge: (triangle, first), facet } = crossing;
         let counts = [moving, !moving].map(|moving| self.bodies.count(moving));
@@ -194,18 +185,18 @@ impl<'a> Displaced<'a> {
         }
         let own = self.triangle(moving, triangle);
         let g = self.triangle(!moving, facet);
-        // Of the moving body's edge against the facet; or of the facet, which moves, against the edge.
+        // Displacing the fixed body's edge against the facet is the opposite displacement.
         let by = if moving { *by } else { by.turned() };
         let ends = [own[usize::from(first)], own[(usize::from(first) + 1) % 3]];
         self.passes(ends, g, &by)
     }
 
-    /// Whether an edge, displaced by whatever is in a cell, passes through a facet.
+    /// Checks whether an edge, displaced by any displacement of a cell, passes through a facet.
     fn passes(&self, [p, q]: [DVec3; 2], g: [DVec3; 3], by: &Displacements) -> bool {
         const U: f64 = f64::EPSILON / 2.0;
         let size = self.size;
         let error = 4096.0 * U * size.powi(3) + 1024.0 * self.noise * size.powi(2);
-        // The sign all over the cell, 0 if there is none.
+        // The sign for all displacements of the cell, or 0.
         let sign = |value: f64, slope: DVec3| {
             let width = by.width(slope) + error;
             if value > width {

@@ -1,12 +1,14 @@
-//! That there is no way out by translations: cells of displacements that wall a body in, and their check.
+//! Proof that translations cannot separate two bodies, by cells of displacements that enclose a body, and its
+//! check.
 //!
-//! Cells are *room*, of which nothing is known, or *wall*, in all of which the bodies overlap. The place where the
-//! body is lies in a room; beside each room, on each side, there are rooms or walls all over; no room is at the border
-//! of all cells. A way out would have to leave the rooms, through a point that is on the border of one and in a wall.
+//! A cell is *open*, or *blocked* if the bodies overlap for all of its displacements. The proof consists of
+//! open cells that contain the initial placement, and of blocked cells. Every side of an open cell is covered
+//! by open or blocked cells, and no open cell is at the boundary of the octree. Therefore a path out of the
+//! open cells passes through a point of a blocked cell.
 //!
-//! The search begins with one cell. As long as rooms lead from the body's place to the border of all cells, the
-//! largest ones on the way in which surfaces may meet are cut in eight. Is there none, the way is one through space
-//! that is wide: a proposal of legs, which casts have to prove.
+//! The search starts with one cell. While open cells lead from the initial placement to the boundary, it
+//! divides the largest of them in which surfaces may meet. If there is no such cell, the open cells propose a
+//! path, which casts have to prove. Derivation: `docs/theory/displacement-cells.md`.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};
@@ -25,37 +27,38 @@ use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidScene;
 use colltrans_solid::body::{AsSolid, Solid};
 
-/// Crossings that are tried first in a new cell, at most.
+/// Maximum number of crossings that are tried first in a new cell.
 const MOST_SEEN: usize = 48;
-/// Pairs of nodes looked at for one cell, at most.
+/// Maximum number of node visits of a cell.
 const MOST_LOOKS: usize = 4_000;
-/// Pairs of facets tried for one cell, at most.
+/// Maximum number of pairs of facets that are tried for a cell.
 const MOST_TRIED: usize = 400;
 
-/// A proof that translations do not take one body out of another: [`verify`](Self::verify).
+/// Proof that no sequence of translations separates two bodies. [`verify`](Self::verify) checks it.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoWay {
-    /// The tolerance: both bodies are shrunk by half of it.
+    /// Tolerance. Both bodies are offset inwards by half of it.
     pub tolerance: f64,
-    /// Where cells are: displacements of the moving body.
+    /// Frame of the cells, which are sets of displacements of the moving body.
     pub room: Room,
-    /// Where it may be.
+    /// Open cells, in which the moving body may be.
     pub rooms: Vec<RoomCell>,
-    /// Where it overlaps the other one, all over each cell, and what proves that.
+    /// Blocked cells, each with a crossing that proves an overlap for all of its displacements.
     pub walls: Vec<(RoomCell, Crossing)>,
 }
 
 impl NoWay {
-    /// How many cells prove it.
+    /// Returns the number of cells of the proof.
     pub fn cells(&self) -> usize {
         self.rooms.len() + self.walls.len()
     }
 
-    /// Checks it against the bodies, placed as they were asked about; no search plays a part.
+    /// Checks the proof against the bodies in their initial poses, without a search.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns [`FreeError::NotProven`] for a cell that violates the conditions of the proof. Returns
+    /// [`FreeError::Query`] or [`FreeError::Open`] for bodies that are rejected.
     pub fn verify<A: AsSolid, B: AsSolid>(
         &self,
         moving: &Placed<'_, A>,
@@ -96,7 +99,7 @@ impl NoWay {
     }
 }
 
-/// Whether known cells are all over a side of a cell, on its inside.
+/// Checks whether known cells cover one side of a cell from within.
 fn is_covered(known: &HashSet<RoomCell>, cell: RoomCell, side: Side) -> bool {
     let above = std::iter::successors(Some(cell), |cell| cell.parent());
     above.into_iter().any(|cell| known.contains(&cell)) || is_covered_below(known, cell, side)
@@ -108,8 +111,9 @@ fn is_covered_below(known: &HashSet<RoomCell>, cell: RoomCell, side: Side) -> bo
             && cell.parts_at(side).all(|part| is_covered_below(known, part, side))
 }
 
-/// Columns along which cells of displacements lie best: across the normals of three that are independent and among
-/// which are the earlier ones, as far as may be; of orthogonal ones along themselves. Those of the world if there are none.
+/// Returns axes for the cells: cross products of the normals of three independent walls, preferably the first
+/// ones. For orthogonal walls these are the normals. Returns the axes of the world if no three are
+/// independent.
 pub(super) fn axes_of(normals: &[DVec3]) -> DMat3 {
     for (k, &w) in normals.iter().enumerate() {
         for (l, &v) in normals[..k].iter().enumerate() {
@@ -125,7 +129,7 @@ pub(super) fn axes_of(normals: &[DVec3]) -> DMat3 {
     DMat3::IDENTITY
 }
 
-/// The same columns in an order and with signs so that each is near the world's axis of its number.
+/// Permutes and reverses the columns so that each is close to the axis of the world with the same index.
 fn along_the_world(axes: DMat3) -> DMat3 {
     let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis];
     let orders = [[x, y, z], [x, z, y], [y, x, z], [y, z, x], [z, x, y], [z, y, x]];
@@ -137,12 +141,12 @@ fn along_the_world(axes: DMat3) -> DMat3 {
     DMat3::from_cols(toward(x, x.x), toward(y, y.y), toward(z, z.z))
 }
 
-/// Boxes of all views of a body, its vertices seen by a matrix.
+/// Computes the bounding boxes of all nodes of a body, with its vertices transformed by a matrix.
 fn boxes(displaced: &Displaced, moving: bool, seen: DMat3) -> Vec<Aabb> {
     let bodies = &displaced.bodies;
     let views = &bodies.views[usize::from(!moving)];
     let mut boxes: Vec<Aabb> = vec![Aabb::EMPTY; views.len()];
-    // Parts come after what they are parts of.
+    // Children have larger indices than their parent.
     for (k, view) in views.iter().enumerate().rev() {
         boxes[k] = if view.is_facet() {
             let corners = displaced.triangle(moving, bodies.triangle(moving, k as u32));
@@ -155,7 +159,7 @@ fn boxes(displaced: &Displaced, moving: bool, seen: DMat3) -> Vec<Aabb> {
     boxes
 }
 
-/// Both bodies, shrunk.
+/// Checks that both bodies are closed, and offsets them.
 fn bodies(placed: [Placed<'_, Solid>; 2], tolerance: f64) -> Result<Bodies<'_>, FreeError> {
     for (which, body) in [("moving", &placed[0]), ("fixed", &placed[1])] {
         if !body.body.is_closed() {
@@ -165,38 +169,39 @@ fn bodies(placed: [Placed<'_, Solid>; 2], tolerance: f64) -> Result<Bodies<'_>, 
     Ok(Bodies::new(standing(placed, tolerance)?.asked_of_something()?))
 }
 
-/// What is known of a cell.
+/// State of a cell.
 #[derive(Clone, Copy)]
 enum State {
-    /// It was cut in eight.
+    /// Divided into eight cells.
     Cut,
-    /// A room; whether surfaces may meet in it.
+    /// Open; the flag states whether surfaces may meet in the cell.
     Room(bool),
     Wall(Crossing),
 }
 
-/// A search for a proof that one body, of two, does not leave the other by translations, or for a way that is wide.
+/// Search for a proof that two bodies cannot be separated by translations, or for a wide path.
 pub(super) struct Enclosure<'a> {
     tolerance: f64,
     displaced: Displaced<'a>,
     room: Room,
-    /// Boxes of the views of either body, in multiples of the axes.
+    /// Bounding boxes of the nodes of each body, in multiples of the axes.
     boxes: [Vec<Aabb>; 2],
     states: HashMap<RoomCell, State>,
-    /// What blocked cells before, the last ones first.
+    /// Crossings that blocked earlier cells, the most recent first.
     seen: VecDeque<Crossing>,
 }
 
-/// What cells of displacements say.
+/// Result of a search with cells.
 pub(super) enum Cells {
-    /// There is no way out.
+    /// No removal path exists.
     Proven(NoWay),
-    /// There may be one, from displacement to displacement; the last is beyond everything.
+    /// Displacements of a possible removal path. The last one is beyond both bodies.
     Way(Vec<DVec3>),
 }
 
 impl<'a> Enclosure<'a> {
-    /// Of two bodies that are `far` away if one is displaced by that; cells lie along [axes](axes_of).
+    /// Starts a search for two bodies that are separated by a displacement of length `far`. Cells are aligned
+    /// with `axes`, see [`axes_of`].
     pub(super) fn new(
         placed: [Placed<'a, Solid>; 2],
         tolerance: f64,
@@ -212,7 +217,8 @@ impl<'a> Enclosure<'a> {
         Ok(search)
     }
 
-    /// Goes on until there are so many cells, or it ends: then they say nothing yet.
+    /// Continues the search until it has more than `most` cells or ends. Returns `None` in the first case, and
+    /// if the cells at the maximum depth decide nothing.
     pub(super) fn go_on(
         &mut self,
         most: usize,
@@ -251,7 +257,8 @@ impl<'a> Enclosure<'a> {
 type Walls = Vec<(RoomCell, Crossing)>;
 
 impl Enclosure<'_> {
-    /// All rooms that are reached from the body's place, and the walls around; or rooms from there to the border.
+    /// Explores all open cells that are connected with the initial placement. Returns them and the adjacent
+    /// blocked cells, or as an error the open cells of a path to the boundary.
     fn flood(&self) -> Result<(Vec<RoomCell>, Walls), Vec<RoomCell>> {
         let mut home = RoomCell::ALL;
         while let State::Cut = self.states[&home] {
@@ -262,8 +269,8 @@ impl Enclosure<'_> {
             home = home.parts().into_iter().find(inside).unwrap_or(home.parts()[0]);
         }
         let mut from = HashMap::from([(home, home)]);
-        // Where no surfaces meet first, then large ones: a way that is wide is found before narrow ones are cut. Of equal
-        // ones those nearest to the border, that it is soon found.
+        // Cells in which surfaces cannot meet come first, then large ones. So a wide path is found before narrow
+        // cells are divided. Among equal cells the one nearest to the boundary comes first.
         let mut queue = BinaryHeap::from([(Reverse((false, 0, 0)), home)]);
         let (mut walls, mut around) = (Vec::new(), HashSet::new());
         let (mut rooms, mut touching) = (Vec::new(), Vec::new());
@@ -298,13 +305,13 @@ impl Enclosure<'_> {
         Ok((rooms, walls))
     }
 
-    /// Displacements from that of now through cells, one after another, and on.
+    /// Returns the displacements of a path through adjacent cells, from the initial placement on.
     fn through(&self, way: &[RoomCell]) -> Vec<DVec3> {
         let (mut places, room) = (vec![DVec3::ZERO], self.room);
         let mut between = |low: DVec3, high: DVec3| places.push(room.axes * ((low + high) / 2.0));
         for pair in way.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|cell| room.corners(cell));
-            // From the middle of one through the middle of what they have in common.
+            // From the center of one cell through the center of the common side.
             between(a[0], a[1]);
             between(a[0].max(b[0]), a[1].min(b[1]));
         }
@@ -313,7 +320,8 @@ impl Enclosure<'_> {
         places
     }
 
-    /// The cells that are not cut and touch a side of a cell from inside, or the one that holds all of it.
+    /// Finds the cells that are not divided and touch a side of a cell from within, or the one that contains
+    /// the cell.
     fn leaves(&self, cell: RoomCell, side: Side, found: &mut Vec<RoomCell>) {
         match self.states.get(&cell) {
             None => found.extend(
@@ -325,7 +333,7 @@ impl Enclosure<'_> {
         }
     }
 
-    /// Finds out about a new cell.
+    /// Classifies a new cell.
     fn look(&mut self, cell: RoomCell) {
         let (by, corners) = (self.room.displacements(cell), self.room.corners(cell));
         let known = self.seen.iter().position(|&seen| self.displaced.blocks(seen, &by));
@@ -342,11 +350,12 @@ impl Enclosure<'_> {
         self.states.insert(cell, state);
     }
 
-    /// An edge and a facet that block all of a cell.
+    /// Searches for an edge and a facet that block a whole cell. Returns `None` if the limited search finds
+    /// none.
     fn crossing(&self, by: &Displacements, [low, high]: [DVec3; 2]) -> Option<Crossing> {
         let mut tried = 0;
         let mut found = None;
-        // Their boxes have to meet wherever in the cell the body is.
+        // The boxes of the nodes have to intersect for every displacement of the cell.
         let meets = |[a, b]: [&Aabb; 2]| {
             (a.low + high).cmple(b.high).all() && (a.high + low).cmpge(b.low).all()
         };
@@ -358,7 +367,7 @@ impl Enclosure<'_> {
         found
     }
 
-    /// Whether any facets may meet in a cell.
+    /// Checks whether facets may meet for some displacement of a cell. Returns `true` if a limit is reached.
     fn may_meet(&self, by: &Displacements, [low, high]: [DVec3; 2]) -> bool {
         let meets = |[a, b]: [&Aabb; 2]| {
             (a.low + low).cmple(b.high).all() && (a.high + high).cmpge(b.low).all()
@@ -366,7 +375,8 @@ impl Enclosure<'_> {
         self.pairs(meets, |triangles| self.facets_may_meet(triangles, by))
     }
 
-    /// Whether neither of two facets' normals parts them all over a cell, but for rounding.
+    /// Checks whether neither normal of two facets separates them, up to rounding, for all displacements of a
+    /// cell.
     fn facets_may_meet(&self, [a, b]: [u32; 2], by: &Displacements) -> bool {
         let [f, g] = [(true, a), (false, b)].map(|(moving, k)| self.displaced.triangle(moving, k));
         let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
@@ -382,7 +392,8 @@ impl Enclosure<'_> {
         ![normal(&f), normal(&g)].iter().any(parts)
     }
 
-    /// Hands on pairs of triangles in nodes that meet until it is told to end; whether it was, or there were too many.
+    /// Calls `end` for pairs of triangles in nodes that meet, until `end` returns `true`. Returns `true` if
+    /// it did, or if the limit of node visits was reached.
     fn pairs(
         &self,
         meets: impl Fn([&Aabb; 2]) -> bool,
@@ -412,7 +423,8 @@ impl Enclosure<'_> {
         false
     }
 
-    /// An edge of one of two facets that passes through the other in all of a cell.
+    /// Searches for an edge of one of two facets that passes through the other one for all displacements of a
+    /// cell.
     fn of_facets(&self, [a, b]: [u32; 2], by: &Displacements) -> Option<Crossing> {
         let both = [(true, a, b), (false, b, a)].into_iter();
         let edges = |(moving, own, facet)| {

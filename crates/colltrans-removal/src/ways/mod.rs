@@ -1,12 +1,15 @@
-//! Ways out in several moves: translations one after another, of one body or of several, until some of them are gone.
+//! Removal paths in several moves: translations of one body or several, one after another, until some bodies
+//! are removed.
 //!
-//! Bodies keep how they are turned. A *place* is a displacement of each of them; a *leg* moves some of them, as one,
-//! along a direction. Where a leg stops, another direction has to be possible: `openings` tells where along a first
-//! move a second one is, of two bodies. `search` goes from place to place, `candidates` are the directions it tries.
+//! Orientations do not change. A *placement* is a displacement of each body. A *leg* moves some bodies
+//! together along a direction. At the end of a leg another direction must be possible. For two bodies,
+//! `openings` finds where along a first move a second one is possible. `search` explores placements along the
+//! directions of `candidates`.
 //!
-//! What is searched with is rounded, and nothing rests on it: each leg of the answer is a [`Cast`](colltrans_convex::Cast) of
-//! each body that moves against each that stays, with its proof. The search has bodies that are a little larger
-//! (shrunk by 0.8 of what the tolerance asks for), so rounded places are no overlaps of those that are certified.
+//! The search uses rounded numbers, and the answer does not depend on them: each leg is certified by a
+//! [`Cast`](colltrans_convex::Cast) of each moving body against each one at rest. The bodies of the search
+//! are slightly larger, because they are offset by 0.8 of the tolerance. Therefore rounded placements are not
+//! overlaps of the certified bodies.
 
 mod answer;
 mod candidates;

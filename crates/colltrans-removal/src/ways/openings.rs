@@ -1,34 +1,38 @@
-//! Where along a first move a second one is possible.
+//! Positions along a first move at which a second move is possible.
 //!
-//! `A` has moved by `s` and goes along `d`. At `t` it turns and goes along `e`, as far as `far`. Facets `f` of `A` and
-//! `g` of `B` with `n_f.e > 0 > n_g.e` are in its way where `t d + tau e`, `0 < tau < far`, is inside of the convex
-//! `g - f - s`: a polygon in `(t, tau)`, whose shadow is an **open interval of `t`**. What all intervals leave is
-//! closed: openings, single values too. An interval is not cut to the range of `t`, for then its cut end would be an
-//! opening. Of nodes the box of differences is sliced likewise, and a pair whose interval is covered is dropped; the
-//! widest are looked at first.
+//! `A` is displaced by `s` and moves along `d`. At `t` it turns and moves along `e` by `far`. Facets `f` of
+//! `A` and `g` of `B` with `n_f.e > 0 > n_g.e` block it if `t d + tau e` with `0 < tau < far` is inside the
+//! convex set `g - f - s`. Its slice is a polygon in `(t, tau)`, whose projection is an **open interval of
+//! `t`**. The complement of all intervals is closed: it contains the openings, which may be single values.
+//!
+//! - An interval is not clipped to the range of `t`, because its clipped end would be an opening.
+//! - The box of differences of two nodes is sliced in the same way. A pair whose interval is already covered
+//!   is dismissed.
+//! - The pair with the widest interval is visited first.
 
 use glam::DVec3;
 
 use crate::free::{Bodies, View};
 use colltrans_convex::body::Aabb;
 
-/// An open interval.
+/// Open interval.
 type Span = [f64; 2];
 
-/// A question about two bodies.
+/// Query about two bodies.
 pub(super) struct Question {
-    /// The displacement of the moving body against the other.
+    /// Displacement of the moving body against the other one.
     pub(super) from: DVec3,
-    /// The first direction, and the second, of length 1 and not parallel.
+    /// First and second direction, of length 1 and not parallel.
     pub(super) along: [DVec3; 2],
-    /// How far along the first.
+    /// Length of the first move.
     pub(super) end: f64,
-    /// How far along the second.
+    /// Length of the second move.
     pub(super) far: f64,
 }
 
 impl Question {
-    /// The values of `t` where the second direction is blocked: disjoint open intervals, in order. Adds to `looks`.
+    /// Returns the values of `t` at which the second move is blocked, as sorted disjoint open intervals. Adds
+    /// the number of node visits to `looks`.
     pub(super) fn blocked(&self, bodies: &Bodies, looks: &mut u64) -> Vec<Span> {
         let mut blocked = Vec::new();
         let mut stack = vec![([0_u32, 0], [0.0, self.end])];
@@ -58,7 +62,7 @@ impl Question {
         blocked
     }
 
-    /// An interval that holds those of all facets of two nodes, cut to the range.
+    /// Returns an interval that contains those of all facets of two nodes, clipped to the range.
     fn of_nodes(&self, [a, b]: [&View; 2]) -> Option<Span> {
         let [_, e] = self.along;
         let looks_away = |axis: DVec3, spread: f64| spread < 1.0 && axis.dot(e) <= -spread;
@@ -68,16 +72,16 @@ impl Question {
         self.of_differences(b.low - a.high - self.from, b.high - a.low - self.from)
     }
 
-    /// An interval that holds those of all facets in two boxes, cut to the range.
+    /// Returns an interval that contains those of all facets in two boxes, clipped to the range.
     pub(super) fn of_boxes(&self, [a, b]: [&Aabb; 2]) -> Option<Span> {
         self.of_differences(b.low - a.high - self.from, b.high - a.low - self.from)
     }
 
-    /// The interval of a box of differences, cut to the range.
+    /// Returns the interval of a box of differences, clipped to the range.
     fn of_differences(&self, low: DVec3, high: DVec3) -> Option<Span> {
         let [d, e] = self.along;
         let mut range = Range { low: 0.0, high: self.end };
-        // Below and above which `tau` is: a value at 0 and a slope.
+        // Lower and upper bounds of `tau`, each as its value at 0 and its slope.
         let (mut floors, mut roofs) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
         roofs[0] = [self.far, 0.0];
         let mut count = 1;
@@ -103,7 +107,7 @@ impl Question {
         (range.low <= range.high).then_some([range.low, range.high])
     }
 
-    /// The interval of two facets, if it meets the range.
+    /// Returns the interval of two facets. Returns `None` if it does not meet the range.
     fn of_facets(&self, bodies: &Bodies, pair: [u32; 2]) -> Option<Span> {
         let [d, e] = self.along;
         let normal = |k: usize| bodies.views[k][pair[k] as usize].axis;
@@ -116,7 +120,7 @@ impl Question {
         });
         let across = d.cross(e);
         let scale = across.length_squared().recip();
-        // Differences: their height over the plane of both directions, and their place in it.
+        // Differences: their height above the plane of both directions, and their coordinates in it.
         let mut differences = [(0.0, [0.0; 2]); 9];
         for (k, difference) in differences.iter_mut().enumerate() {
             let v = corners[1][k % 3] - corners[0][k / 3] - self.from;
@@ -128,10 +132,11 @@ impl Question {
     }
 }
 
-/// Facets that a direction slides along to within this sine do not block it.
+/// Sine of the angle between a direction and a facet below which the facet does not block.
 const FLAT: f64 = 1e-12;
 
-/// Corners, and more, of the slice at height 0; nothing if all are on one side.
+/// Returns points whose hull is the slice at height 0. The result is empty if all differences are on one
+/// side.
 fn slice(differences: &[(f64, [f64; 2]); 9]) -> Vec<[f64; 2]> {
     let mut points = Vec::with_capacity(20);
     if !differences.iter().any(|x| x.0 > 0.0) {
@@ -146,7 +151,8 @@ fn slice(differences: &[(f64, [f64; 2]); 9]) -> Vec<[f64; 2]> {
     points
 }
 
-/// The range of the first coordinate over the part of a hull whose second one is between 0 and `far`.
+/// Returns the range of the first coordinate over the part of a hull whose second coordinate is between 0 and
+/// `far`.
 fn shadow(points: &[[f64; 2]], far: f64) -> Option<Span> {
     let mut span = [f64::INFINITY, f64::NEG_INFINITY];
     let mut put = |t: f64| span = [span[0].min(t), span[1].max(t)];
@@ -165,14 +171,15 @@ fn shadow(points: &[[f64; 2]], far: f64) -> Option<Span> {
     (span[0] < span[1]).then_some(span)
 }
 
-/// A range of `t`: empty if the lower end is above the upper one.
+/// Range of `t`. It is empty if the lower end is above the upper one.
 struct Range {
     low: f64,
     high: f64,
 }
 
 impl Range {
-    /// Keeps where a value at 0 and a slope are not negative.
+    /// Restricts the range to where a linear function, given by its value at 0 and its slope, is not
+    /// negative.
     fn keep(&mut self, [value, slope]: [f64; 2]) {
         let (at_low, at_high) = (value + slope * self.low, value + slope * self.high);
         match (at_low >= 0.0, at_high >= 0.0) {
@@ -188,7 +195,8 @@ fn covers(set: &[Span], span: Span) -> bool {
     set.iter().any(|s| s[0] <= span[0] && span[1] <= s[1])
 }
 
-/// Joins an open interval to disjoint ones. Those that touch stay apart: what is between them is an opening.
+/// Inserts an open interval into a set of disjoint ones, and joins those that overlap. Intervals that only
+/// touch remain separate, because the point between them is an opening.
 pub(super) fn add(set: &mut Vec<Span>, mut span: Span) {
     set.retain(|s| {
         let apart = s[1] <= span[0] || span[1] <= s[0];
@@ -201,7 +209,7 @@ pub(super) fn add(set: &mut Vec<Span>, mut span: Span) {
     set.insert(at, span);
 }
 
-/// What blocked intervals leave of `[0, end]`.
+/// Returns the complement of blocked intervals in `[0, end]`.
 pub(super) fn open(blocked: &[Span], end: f64) -> Vec<Span> {
     let (mut open, mut at) = (Vec::new(), 0.0_f64);
     for &[low, high] in blocked {
@@ -239,11 +247,11 @@ mod tests {
         };
         let across = question([DVec3::X, DVec3::Z], 4.0, 4.0);
         assert_eq!(of(&across, [0.5, -1.0, 1.0], [2.0, 1.0, 9.0]), Some([0.5, 2.0]));
-        // Beside, beyond the second move, before the first.
+        // To the side, beyond the second move, before the first one.
         assert_eq!(of(&across, [0.5, 1.0, 1.0], [2.0, 2.0, 9.0]), None);
         assert_eq!(of(&across, [0.5, -1.0, 5.0], [2.0, 1.0, 9.0]), None);
         assert_eq!(of(&across, [-2.0, -1.0, 1.0], [-1.0, 1.0, 9.0]), None);
-        // By many places where the slice is looked at, it is neither wider nor narrower.
+        // A sample of the slice confirms that the range is neither wider nor narrower.
         let mut random = colltrans_testkit::random::Random::new(3);
         let (mut met, mut missed) = (0, 0);
         for _ in 0..300 {

@@ -1,32 +1,36 @@
-//! Choices, and what was done.
+//! Options of a search for removal paths, and its amounts of work.
 
 use glam::DVec3;
 
-/// Choices of [`WaysOut`](super::WaysOut). More may be added: begin with the default ones.
+/// Options of [`WaysOut`](super::WaysOut). Fields may be added, therefore start from the default options.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct WayOptions {
-    /// As of a [`Cast`](colltrans_convex::Cast): bodies are shrunk by half of this length; `None`: the largest of the default
-    /// ones of their casts.
+    /// Bodies are offset inwards by half of this length. `None` selects the largest default tolerance of a
+    /// [`Cast`](colltrans_convex::Cast) between two of them.
     pub tolerance: Option<f64>,
-    /// At most so many legs, the last one included.
+    /// Maximum number of legs, including the last one.
     pub legs: usize,
-    /// In which order places are left; `None`: of two bodies those in new regions first, of more the fewest legs.
+    /// Order in which placements are explored. `None` selects [`Order::NewestFirst`] for two bodies and
+    /// [`Order::FewestLegs`] for more.
     pub order: Option<Order>,
-    /// At most so many places are left along all directions.
+    /// Maximum number of placements that are explored along all directions.
     pub places: usize,
-    /// At most so many casts of two bodies, all in all; a little more, as a place is ended once it is begun.
+    /// Limit of casts of the whole search. A placement that has been started is finished, so the limit can be
+    /// exceeded slightly.
     pub casts: usize,
-    /// Pairs of nodes that openings look at, at most, all in all; a little more, as one is ended once it is begun.
+    /// Limit of node visits of all searches for openings. A search that has been started is finished, so the
+    /// limit can be exceeded slightly.
     pub looks: u64,
-    /// Of two bodies: at most so many cells of displacements to prove that there is no way out, as many for each place that
-    /// was left as [`CELLS_FOR_A_PLACE`](Self::CELLS_FOR_A_PLACE), and all of them once there is none left; 0 for no such
-    /// proof.
+    /// Maximum number of displacement cells of a proof that two bodies have no removal path; 0 disables this
+    /// proof. The number grows by [`CELLS_FOR_A_PLACE`](Self::CELLS_FOR_A_PLACE) for each explored placement,
+    /// and the full number is used when no placement is left.
     pub cells: usize,
-    /// A move is worth making if it is this share of the size of the largest body.
+    /// Minimum length of a move, as a fraction of the size of the largest body.
     pub step: f64,
-    /// Directions to try, with their opposites; none: those of large facets of all bodies, and across two of these.
+    /// Directions of moves, also used with opposite sign. If empty, the search uses normals of large facets
+    /// of all bodies and cross products of two of them.
     pub directions: Vec<DVec3>,
 }
 
@@ -47,68 +51,71 @@ impl Default for WayOptions {
 }
 
 impl WayOptions {
-    /// Places that are left before it is first tried to prove that there is no way, and then at twice as many each time.
+    /// Number of explored placements after which the first attempt at a proof is made. It doubles for each
+    /// later attempt.
     pub const PLACES_FIRST: usize = 25;
-    /// Cells of displacements for each place that was left: so neither the search for a way nor that for a proof takes
-    /// much longer than it would alone.
+    /// Number of displacement cells for each explored placement. This balances the work of the search and of
+    /// the proof.
     pub const CELLS_FOR_A_PLACE: usize = 20;
 
-    /// With a tolerance, a length, or the default one. It is checked where it is used.
+    /// Returns the options with a tolerance, a length, or with the default tolerance for `None`. The value is
+    /// checked when it is used.
     #[must_use]
     pub fn with_tolerance(self, tolerance: impl Into<Option<f64>>) -> Self {
         Self { tolerance: tolerance.into(), ..self }
     }
 
-    /// With a number of legs.
+    /// Returns the options with a maximum number of legs.
     #[must_use]
     pub fn with_legs(self, legs: usize) -> Self {
         Self { legs, ..self }
     }
 
-    /// With an order, or that of the number of bodies.
+    /// Returns the options with an order of exploration, or with the default order for `None`.
     #[must_use]
     pub fn with_order(self, order: impl Into<Option<Order>>) -> Self {
         Self { order: order.into(), ..self }
     }
 
-    /// With a number of casts.
+    /// Returns the options with a limit of casts.
     #[must_use]
     pub fn with_casts(self, casts: usize) -> Self {
         Self { casts, ..self }
     }
 
-    /// With a number of places.
+    /// Returns the options with a maximum number of placements.
     #[must_use]
     pub fn with_places(self, places: usize) -> Self {
         Self { places, ..self }
     }
 
-    /// With an amount of work.
+    /// Returns the options with a limit of node visits.
     #[must_use]
     pub fn with_looks(self, looks: u64) -> Self {
         Self { looks, ..self }
     }
 
-    /// With a number of cells for a proof that there is no way; 0 for none.
+    /// Returns the options with a maximum number of cells for a proof that no path exists; 0 disables this
+    /// proof.
     #[must_use]
     pub fn with_cells(self, cells: usize) -> Self {
         Self { cells, ..self }
     }
 
-    /// With a least move, as a share of the largest body's size.
+    /// Returns the options with a minimum length of a move, as a fraction of the largest body's size.
     #[must_use]
     pub fn with_step(self, step: f64) -> Self {
         Self { step, ..self }
     }
 
-    /// With directions to try, none of length 0; they are checked where they are used.
+    /// Returns the options with directions of moves, none of length 0. They are checked when they are used.
     #[must_use]
     pub fn with_directions(self, directions: Vec<DVec3>) -> Self {
         Self { directions, ..self }
     }
 }
 
-/// In which order places are left.
+/// Order in which placements are explored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -116,30 +123,30 @@ impl WayOptions {
     serde(rename_all = "snake_case")
 )]
 pub enum Order {
-    /// The fewest legs first: breadth first. A way through the cells of a proof, which may have more, is taken only
-    /// where no other is found.
+    /// Fewest legs first (breadth first). A path through the cells of a proof, which may have more legs, is
+    /// used only if no other path is found.
     FewestLegs,
-    /// Those in regions where few places are, and with few legs: best first.
+    /// Best first: a placement with few legs in a region with few placements.
     NewestFirst,
 }
 
-/// What was searched.
+/// Amounts of work of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Searched {
-    /// Directions that were tried from each place.
+    /// Number of directions that were tried from each placement.
     pub directions: usize,
-    /// Places that were left along all directions.
+    /// Number of placements that were explored along all directions.
     pub places: usize,
-    /// Casts of two bodies.
+    /// Number of casts.
     pub casts: usize,
-    /// Pairs of directions of two bodies that were looked at for openings.
+    /// Number of pairs of directions of two bodies that were searched for openings.
     pub openings: usize,
-    /// Pairs of nodes looked at for them.
+    /// Number of node visits of these searches.
     pub looks: u64,
-    /// Pairs of bodies of which all free directions were asked for, for a skew last leg.
+    /// Number of pairs of bodies whose free directions were computed for a last leg in another direction.
     pub free_sets: usize,
-    /// Whether all places that these moves lead to were left: no limit ended the search.
+    /// Whether all placements that the moves can reach were explored, so that no limit ended the search.
     pub complete: bool,
 }

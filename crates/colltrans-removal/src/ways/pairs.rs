@@ -1,4 +1,4 @@
-//! What two bodies do, by how one is displaced against the other: asked once for each displacement.
+//! Queries about two bodies by their relative displacement, each computed once.
 
 use std::collections::HashMap;
 
@@ -17,42 +17,43 @@ use colltrans_solid::cast::SolidOptions;
 use colltrans_solid::solve::{Workspace, overlap};
 use colltrans_solid::{SolidCast, SolidScene};
 
-/// A displacement, by its bits: places lie on a grid, so equal ones are equal.
+/// Returns a displacement as bits, for use as a key. Displacements lie on a grid, so equal ones have equal
+/// bits.
 pub(super) fn bits(v: DVec3) -> [u64; 3] {
-    // Both zeros are one.
+    // Adding 0 turns -0 into 0.
     v.to_array().map(|x| (x + 0.0).to_bits())
 }
 
 type Key = ([u64; 3], usize);
 type OpeningKey = ([u64; 3], [usize; 2], [u64; 2]);
 
-/// Facets that were hit are kept, so many pairs at most.
+/// Maximum number of stored pairs of facets that were hit.
 const MOST_HIT: usize = 32;
 
-/// Two bodies, as they are planned with.
+/// Two bodies of the search, with cached results.
 pub(super) struct Pair<'a> {
     placed: [Placed<'a, Solid>; 2],
-    /// In the world, a little larger than the bodies.
+    /// Bounding boxes in the world frame, slightly enlarged.
     boxes: [Aabb; 2],
     pub(super) tolerance: f64,
-    /// Where they overlap as they are, if they do: then they move as one.
+    /// Overlap in the initial poses, if any. Such bodies move together.
     pub(super) overlap: Option<overlap::Overlap>,
-    /// Made when openings are first asked for.
+    /// Built when openings are requested for the first time.
     bodies: Option<Bodies<'a>>,
-    /// A move is worth making from here on.
+    /// Minimum length of a move.
     step: f64,
     rooms: HashMap<Key, f64>,
-    /// Facets that were hit, the last ones first.
+    /// Facets that were hit, the most recent first.
     hit: Vec<[u32; 2]>,
     blocked: HashMap<OpeningKey, Vec<[f64; 2]>>,
     workspace: Workspace,
 }
 
 impl<'a> Pair<'a> {
-    /// Of bodies with their [boxes](around).
+    /// Builds the pair of two bodies with their [boxes](around).
     ///
     /// # Errors
-    /// Bodies that cannot be asked about, or are open.
+    /// Returns an error for bodies that a cast rejects, and for open shells.
     pub(super) fn new(
         placed: [Placed<'a, Solid>; 2],
         boxes: [Aabb; 2],
@@ -83,8 +84,8 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// How far the first body, displaced by `by`, goes along a direction of length 1; of less than a step, no more than
-    /// that it is less.
+    /// Returns the free travel of the first body, displaced by `by`, along a direction of length 1. A free
+    /// travel below the minimum length of a move may be returned as 0.
     pub(super) fn room(
         &mut self,
         by: DVec3,
@@ -102,7 +103,7 @@ impl<'a> Pair<'a> {
             return Ok(room);
         }
         let cast = self.cast(by, d)?;
-        // What was hit last is often in the way again, and soon, along other directions too.
+        // Facets that were hit last often block again after a short distance, also along other directions.
         let soon = |facets: &[u32; 2]| {
             cast.stop_by(*facets).is_some_and(|stop| stop.shrunk_distance.value < self.step)
         };
@@ -122,7 +123,8 @@ impl<'a> Pair<'a> {
         Ok(room)
     }
 
-    /// The same along any direction of length 1, asked anew.
+    /// Computes the free travel of the first body, displaced by `by`, along a direction of length 1. The
+    /// result is not cached.
     pub(super) fn room_along(
         &mut self,
         by: DVec3,
@@ -139,7 +141,8 @@ impl<'a> Pair<'a> {
         displaced(self.placed, by, d)?.with_options(options)
     }
 
-    /// Whether the box of the first, displaced by `by`, meets that of the second along a direction.
+    /// Checks whether the box of the first body, displaced by `by`, meets that of the second one along a
+    /// direction.
     fn may_meet(&self, by: DVec3, d: DVec3) -> bool {
         let [a, b] = &self.boxes;
         let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
@@ -158,7 +161,8 @@ impl<'a> Pair<'a> {
         enter <= exit
     }
 
-    /// Where along the first of two directions the first body cannot go `far` along the second.
+    /// Returns the positions along the first of two directions from which the first body cannot move `far`
+    /// along the second one, as open intervals.
     pub(super) fn blocked(
         &mut self,
         by: DVec3,
@@ -187,12 +191,12 @@ impl<'a> Pair<'a> {
         Ok(self.blocked.entry(key).or_insert_with(ask))
     }
 
-    /// Of directions from a number on nothing is kept.
+    /// Removes the cached free travels of all directions from an index on.
     pub(super) fn forget_rooms(&mut self, from: usize) {
         self.rooms.retain(|key, _| key.1 < from);
     }
 
-    /// The first one displaced by `by`, and the second.
+    /// Returns the first body displaced by `by`, and the second one.
     pub(super) fn placed(&self, by: DVec3) -> Result<[Placed<'a, Solid>; 2], QueryError> {
         let [a, b] = self.placed;
         Ok([a.body.at(moved(a, by)?), b])
@@ -207,7 +211,7 @@ fn room_of(clearance: &Clearance<Solid>) -> f64 {
     }
 }
 
-/// The box of a placed body, in the world, larger by more than rounding.
+/// Returns the bounding box of a placed body in the world frame, enlarged by more than the rounding error.
 pub(super) fn around(body: &Placed<'_, Solid>) -> Aabb {
     let pose = &body.pose;
     let points = body.body.vertices().iter().map(|v| pose.transform_point(*v));
@@ -215,7 +219,7 @@ pub(super) fn around(body: &Placed<'_, Solid>) -> Aabb {
     tight.grown(1e-12 * tight.low.abs().max(tight.high.abs()).max_element())
 }
 
-/// Both where they are.
+/// Builds the cast of both bodies in their initial poses.
 pub(super) fn standing(
     [a, b]: [Placed<'_, Solid>; 2],
     tolerance: f64,
@@ -227,7 +231,7 @@ fn moved(a: Placed<'_, Solid>, by: DVec3) -> Result<colltrans_convex::Pose, Quer
     a.pose.translated(by).map_err(|_| QueryError::Direction { direction: by })
 }
 
-/// The cast of one body against another, displaced by a vector.
+/// Builds the cast of one body, displaced by a vector, against another one.
 pub(super) fn displaced(
     [a, b]: [Placed<'_, Solid>; 2],
     by: DVec3,

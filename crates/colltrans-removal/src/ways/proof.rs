@@ -1,4 +1,4 @@
-//! Proofs of legs: a cast of each body that moves against each that stays.
+//! Proofs of legs: one cast for each pair of a moving body and a body at rest.
 
 use glam::DVec3;
 
@@ -13,24 +13,26 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartProof};
 
-/// Where casts of legs that end do, in multiples of their motion: beyond 1, so that rounding leaves it proven to 1.
+/// End of the cast of a leg that is not the last one, in multiples of its motion. It is larger than 1, so
+/// that the proven bound is at least 1 in spite of rounding.
 const END: f64 = 1.0 + 1.0 / (1 << 30) as f64;
 
-/// Why a body does not hit another on a leg.
+/// Proof that a body does not hit another one on a leg.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegProof {
-    /// The one that moves, and the other.
+    /// Index of the moving body, and of the one at rest.
     pub bodies: [usize; 2],
-    /// Of the cast along the motion, before a little more than 1, or without an end.
+    /// Certificate of the cast along the motion. The cast ends slightly beyond 1, or has no end for the last
+    /// leg.
     pub certificate: SolidCertificate,
 }
 
-/// The bodies of a group.
+/// Returns the bodies of a group.
 pub(super) fn members(group: Group) -> Vec<usize> {
     (0..MOST_BODIES).filter(|k| group >> k & 1 == 1).collect()
 }
 
-/// The cast of a leg.
+/// Builds the cast of one pair on a leg.
 pub(super) fn of_leg(
     pair: [Placed<'_, Solid>; 2],
     by: DVec3,
@@ -43,7 +45,7 @@ pub(super) fn of_leg(
     displaced(pair, by, motion)?.with_options(options)
 }
 
-/// Whether nothing is overlapped at the start, and nothing hit on the way.
+/// Checks whether a certificate proves that the bodies are apart at the start and do not collide on the leg.
 pub(super) fn passes(certificate: &SolidCertificate, last: bool) -> bool {
     let end = if last { f64::INFINITY } else { 1.0 };
     matches!(certificate.start, StartProof::Apart(_))
@@ -51,7 +53,7 @@ pub(super) fn passes(certificate: &SolidCertificate, last: bool) -> bool {
         && certificate.lower >= end
 }
 
-/// The legs of a plan, if all of them can be proven.
+/// Certifies the legs of a plan. Returns `None` if a leg cannot be proven.
 pub(super) fn certified(
     bodies: &[Placed<'_, Solid>],
     moves: &[Move],

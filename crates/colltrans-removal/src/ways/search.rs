@@ -1,17 +1,18 @@
-//! The search over places: those in regions where few places are first, so that a clearance, in which there are many, is left
-//! soon; or those with the fewest legs, so the first way found has the fewest of those that it looks for.
+//! Search over placements, in order of fewest legs, or best first with preference for regions with few
+//! placements.
 //!
-//! At a place each pair of bodies is cast along all directions. Who is hit within a step moves along: so each body and
-//! each direction have a least group. A group that never hits the rest leaves, and that is the answer. Else it goes
-//! along and stops in the middle of the openings for other directions, of all its pairs together and of each alone (and
-//! near the ends of wide ones), and before what it hits; never at it. When no place is left, all directions along which
-//! a body leaves another one are asked for at the first of them, for last legs that are skew.
+//! At a placement each pair of bodies is cast along all directions. Bodies that are hit within a minimum move
+//! join the group, so each body and direction have a smallest group. A group that never hits the others is
+//! removed, which ends the search. Otherwise it stops within the openings for other directions and before the
+//! first contact. If no placement is left, all free directions of a body are computed at explored placements,
+//! for last legs in other directions.
 //!
-//! *Invariants.* The base, a body that is fixed or the largest, never moves: a group with it stays where it is, and
-//! the others move against the direction. Displacements lie on a grid that is finer than the slack, whose
-//! differences are exact. Two places are one if all bodies are in the same cells of a coarse grid and the same pairs
-//! can move along the same directions. A group that has come along a line does not go on along it: from where it came
-//! it has been to all its openings.
+//! - The base, a fixed body or the largest one, never moves. If a group contains it, the other bodies move
+//!   backwards.
+//! - Displacements lie on a grid that is finer than the slack. Their differences are exact.
+//! - Two placements are equal if all bodies are in the same cells of a coarse grid and the same moves are
+//!   possible.
+//! - A group does not continue along the line on which it came.
 
 use std::cmp::Reverse;
 use std::collections::hash_map::DefaultHasher;
@@ -27,62 +28,63 @@ use super::pairs::{Pair, bits};
 use crate::free::{FreeDirections, FreeError, FreeOptions};
 use colltrans_convex::setting::error::QueryError;
 
-/// Places at which free sets are asked for, at most, and pairs of nodes that each looks at.
+/// Maximum number of placements at which free directions are computed.
 const MOST_FREE_SETS: usize = 64;
+/// Maximum number of node visits of each of these computations.
 const FREE_LOOKS: u64 = 200_000;
-/// Regions of new places, in cells of one place.
+/// Size of the regions in which placements are counted, in cells of a placement.
 const REGION: f64 = 8.0;
 
-/// Bodies in a group, a bit each.
+/// Set of bodies, one bit for each.
 pub(super) type Group = u64;
 
-/// A leg as it is planned: who moves, and by which vector; the last one along a direction without an end.
+/// Planned leg: the bodies that move, and the vector. The last leg has a direction and no end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Move {
     pub(super) group: Group,
     pub(super) motion: DVec3,
 }
 
-/// Lengths.
+/// Lengths of a search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
-    /// Longer than all bodies together.
+    /// Length that exceeds the size of all bodies together.
     pub(super) far: f64,
-    /// The least move worth making.
+    /// Minimum length of a move.
     pub(super) step: f64,
-    /// Cells of one place.
+    /// Size of the cells in which placements are equal.
     pub(super) grain: f64,
-    /// How far before a contact, or beside the end of an opening, a leg stops.
+    /// Distance from a contact, or from the end of an opening, at which a leg stops.
     pub(super) off: f64,
-    /// Displacements are multiples of this power of two.
+    /// Power of two of which displacements are multiples.
     pub(super) grid: f64,
 }
 
 struct Place {
     at: Vec<DVec3>,
     before: Option<(usize, Move)>,
-    /// The axis along which it was reached.
+    /// Index of the axis along which it was reached.
     axis: Option<usize>,
     legs: usize,
 }
 
-/// What tells places apart.
+/// Identity of a placement.
 type Key = (Vec<[u64; 3]>, u64);
 
-/// How a search ended.
+/// End of a search.
 pub(super) enum Run<P> {
     Found(P),
-    /// Places are left for another time.
+    /// Unexplored placements remain.
     Paused,
-    /// A limit was reached, or all places were left: then what was searched is complete.
+    /// A limit was reached, or all placements were explored and the search is complete.
     Ended,
 }
 
 pub(super) struct Search<'s, 'a> {
-    /// For bodies `i < j` at `j (j - 1) / 2 + i`.
+    /// Pair of the bodies `i < j` at index `j (j - 1) / 2 + i`.
     pub(super) pairs: Vec<Pair<'a>>,
     pub(super) count: usize,
-    /// Bodies that do not move, the base one of them.
+    /// Bodies that do not move, including the base.
     pub(super) fixed: Group,
     pub(super) base: usize,
     pub(super) directions: Vec<DVec3>,
@@ -92,14 +94,15 @@ pub(super) struct Search<'s, 'a> {
     pub(super) cancel: Option<&'s AtomicBool>,
     pub(super) searched: Searched,
     places: Vec<Place>,
-    /// Places to be left, by their cost.
+    /// Unexplored placements by cost.
     queue: BinaryHeap<Reverse<(usize, usize)>>,
-    /// Places that were left.
+    /// Explored placements.
     left: Vec<usize>,
-    /// Places that are one, and in the finest cells, with the fewest legs by which they were reached.
+    /// Fewest legs by which placements were reached, by their identity.
     known: HashMap<Key, usize>,
+    /// Fewest legs by which placements were reached, by their cells in a fine grid.
     seen: HashMap<Vec<[u64; 3]>, usize>,
-    /// How many places were reached in each region.
+    /// Number of placements that were reached in each region.
     crowds: HashMap<Vec<[u64; 3]>, usize>,
 }
 
@@ -138,8 +141,8 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// Legs that take some bodies away from the others, which `proven` accepts; at most so many places are left until
-    /// it pauses.
+    /// Searches for legs that separate some bodies from the others and that `proven` accepts. Pauses after
+    /// `places` explored placements in total.
     pub(super) fn run<P>(
         &mut self,
         places: usize,
@@ -176,7 +179,8 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(Run::Ended)
     }
 
-    /// The same with a last leg along directions that are free at places which have been left, whatever they are.
+    /// Searches for a last leg along any free direction at an explored placement. Returns `None` if `proven`
+    /// accepts none.
     pub(super) fn askew<P>(
         &mut self,
         mut proven: impl FnMut(&[Move]) -> Result<Option<P>, FreeError>,
@@ -194,8 +198,9 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(None)
     }
 
-    /// A proposal of displacements of the first of two bodies, from one to the next and then on without an end, in as
-    /// few legs from one of them to a later one as casts allow; `sign` is -1 if it is the other that moves.
+    /// Shortens a proposed path of displacements of the first of two bodies against the second one: it finds
+    /// a path with few legs, each from one displacement to a later one, that casts permit. `sign` is -1 if
+    /// the second body moves instead. Returns `None` if `proven` accepts no path.
     pub(super) fn shortened<P>(
         &mut self,
         body: usize,
@@ -244,7 +249,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if cancelled { Err(FreeError::Cancelled) } else { Ok(()) }
     }
 
-    /// Whether a limit is reached.
+    /// Checks whether a limit is reached.
     fn is_spent(&self) -> bool {
         let (searched, most) = (&self.searched, self.options);
         searched.looks >= most.looks
@@ -252,7 +257,7 @@ impl<'s, 'a> Search<'s, 'a> {
             || searched.places >= most.places
     }
 
-    /// What is left first: the least.
+    /// Returns the cost of a placement. The smallest cost is explored first.
     fn cost(&mut self, place: usize) -> usize {
         let legs = self.places[place].legs;
         if self.order == Order::FewestLegs {
@@ -265,7 +270,8 @@ impl<'s, 'a> Search<'s, 'a> {
         legs + 2 * (*crowd - 1)
     }
 
-    /// For each direction how far each body goes until it hits each other, in rows of the moving ones.
+    /// Returns for each direction the free travel of each body against each other one, in rows of the moving
+    /// body.
     fn rooms(&mut self, place: usize) -> Result<Vec<Vec<f64>>, FreeError> {
         let mut rooms = vec![vec![f64::INFINITY; self.count * self.count]; self.directions.len()];
         for k in 0..self.directions.len() {
@@ -274,7 +280,8 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(rooms)
     }
 
-    /// Those of the first of each two bodies along a direction, which are those of the second against it.
+    /// Computes the free travels of all pairs along a direction. That of the first body of a pair equals that
+    /// of the second one in the opposite direction.
     fn put_rooms(
         &mut self,
         place: usize,
@@ -294,8 +301,9 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// The groups that move along a direction if whom they hit before `end` moves along, each once; those with the
-    /// base, or what is fixed, are left out or turned: the others, against it.
+    /// Returns the distinct groups that move along a direction if the bodies that they hit before `end` join
+    /// them. A group with the base is replaced by the other bodies, with the flag set for the opposite
+    /// motion. Groups with fixed bodies are omitted.
     fn groups(&self, rooms: &[f64], end: f64) -> Vec<(Group, bool)> {
         let mut found = Vec::new();
         let all = Group::MAX >> (Group::BITS as usize - self.count);
@@ -318,7 +326,8 @@ impl<'s, 'a> Search<'s, 'a> {
         found
     }
 
-    /// The last moves that are possible along the directions from one on, of the smallest groups first.
+    /// Returns possible last moves along the directions from an index on, smallest groups first, at most
+    /// four.
     fn leaving(&self, rooms: &[Vec<f64>], from: usize) -> Vec<Move> {
         let mut found = Vec::new();
         for (k, d) in self.directions.iter().enumerate().skip(from) {
@@ -331,7 +340,8 @@ impl<'s, 'a> Search<'s, 'a> {
         found
     }
 
-    /// The last moves along directions in the middle of what is free for a body against the one that leaves it least.
+    /// Returns last moves along free directions of each body, relative to the other body that leaves it the
+    /// smallest area.
     fn leaving_askew(&mut self, place: usize) -> Result<Vec<Move>, FreeError> {
         let (count, known) = (self.count, self.directions.len());
         let mut askew = Vec::new();
@@ -350,7 +360,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 let options =
                     FreeOptions::DEFAULT.with_tolerance(pair.tolerance).with_looks(FREE_LOOKS);
                 self.searched.free_sets += 1;
-                // What rounding has made an overlap of, at the planned place, is left out.
+                // Rounding can cause an overlap at the planned placement. Such a pair is skipped.
                 let Ok(free) = FreeDirections::of(&moving, &fixed, options) else { continue };
                 let area = free.free_area()[1] + free.undecided_area();
                 if least.as_ref().is_none_or(|least| area < least.0) {
@@ -374,7 +384,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(found)
     }
 
-    /// The places that are reached from one, those that are new.
+    /// Returns the new placements that can be reached from a placement.
     fn next(&mut self, place: usize, rooms: &[Vec<f64>]) -> Result<Vec<usize>, FreeError> {
         let mut new = Vec::new();
         let came = self.places[place].before.map(|(_, step)| step.group);
@@ -398,12 +408,12 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(new)
     }
 
-    /// All pairs of one body in a group and one that is not.
+    /// Returns all pairs of a body in a group and a body outside it.
     pub(super) fn border(&self, group: Group) -> Vec<[usize; 2]> {
         border(group, self.count)
     }
 
-    /// Where a group that can go `room` along a direction may stop.
+    /// Returns the positions at which a group with free travel `room` along a direction may stop.
     fn stops(
         &mut self,
         place: usize,
@@ -417,7 +427,7 @@ impl<'s, 'a> Search<'s, 'a> {
             if e / 2 == d / 2 {
                 continue;
             }
-            // In openings for far moves first: one for a shorter move around such a stop is none of its own.
+            // Openings for long moves come first. One for a shorter move around such a stop adds no further stop.
             let (mut own, mut shared) = (vec![Vec::new(); pairs.len()], Vec::new());
             for far in [8.0 * far, 5.0 * step, step] {
                 let mut joint = Vec::new();
@@ -450,7 +460,7 @@ impl<'s, 'a> Search<'s, 'a> {
     ) -> Result<Vec<[f64; 2]>, QueryError> {
         let at = &self.places[place].at;
         // The second of a pair goes against the directions of the first.
-        let turn = usize::from(i > j);
+        // The second body of a pair moves opposite to the directions of the first one.
         let (low, high) = (i.min(j), i.max(j));
         let numbers = [d ^ turn, e ^ turn];
         let along = numbers.map(|k| self.directions[k]);
@@ -459,7 +469,8 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(pair.blocked(by, numbers, along, lengths, &mut self.searched)?.to_vec())
     }
 
-    /// The place to which a motion, so far along a direction, takes a group, if it is new.
+    /// Returns the placement after a motion of length `t` of a group along a direction. Returns `None` if it
+    /// is not new.
     fn reach(&mut self, place: usize, group: Group, (d, t): (usize, f64)) -> Option<usize> {
         let grid = self.scale.grid;
         let motion = (self.directions[d] * t).map(|x| (x / grid).round() * grid);
@@ -476,7 +487,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Some(self.places.len() - 1)
     }
 
-    /// What tells places apart.
+    /// Returns the identity of a placement.
     fn key(&self, place: usize, rooms: &[Vec<f64>]) -> Key {
         let mut ways = DefaultHasher::new();
         for rooms in rooms {
@@ -488,7 +499,7 @@ impl<'s, 'a> Search<'s, 'a> {
         (self.places[place].at.iter().map(cell).collect(), ways.finish())
     }
 
-    /// The moves to a place, and the last one.
+    /// Returns the moves to a placement, followed by the last one.
     fn moves(&self, mut place: usize, last: Move) -> Vec<Move> {
         let mut moves = vec![last];
         while let Some((before, step)) = self.places[place].before {
@@ -500,7 +511,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
-/// Whether nobody was there with as few legs.
+/// Records the number of legs by which a key was reached. Returns `true` if it is smaller than all before.
 fn is_new<K: Eq + Hash>(reached: &mut HashMap<K, usize>, key: K, legs: usize) -> bool {
     let fewest = reached.entry(key).or_insert(usize::MAX);
     let new = legs < *fewest;
@@ -508,7 +519,8 @@ fn is_new<K: Eq + Hash>(reached: &mut HashMap<K, usize>, key: K, legs: usize) ->
     new
 }
 
-/// Some free directions: the middles of all regions, then points, some of arcs, and what is free though undecided.
+/// Returns some free directions: centers of all regions, isolated directions, directions of arcs, and free
+/// directions in undecided cells.
 fn some_of(free: &FreeDirections<'_>) -> Vec<DVec3> {
     let mut some: Vec<DVec3> = free.regions().iter().map(|region| region.center).collect();
     some.extend(free.points().iter().map(|point| point.direction));
@@ -517,14 +529,15 @@ fn some_of(free: &FreeDirections<'_>) -> Vec<DVec3> {
     some.into_iter().map(DVec3::normalize).collect()
 }
 
-/// All pairs of one body in a group and one that is not.
+/// Returns all pairs of a body in a group and a body outside it.
 pub(super) fn border(group: Group, count: usize) -> Vec<[usize; 2]> {
     let within = |k: &usize| group >> k & 1 == 1;
     let outside = move |i: usize| (0..count).filter(move |j| !within(j)).map(move |j| [i, j]);
     (0..count).filter(within).flat_map(outside).collect()
 }
 
-/// Stops in openings in which there is none yet; in one that begins where the leg does, near its end.
+/// Adds stops to the openings that contain none: a point near the end if the opening begins with the leg,
+/// otherwise its center and, for a wide opening, points near both ends.
 fn put(openings: &[[f64; 2]], off: f64, step: f64, stops: &mut Vec<f64>) {
     for &[low, high] in openings {
         if stops.iter().any(|t| (low..=high).contains(t)) {

@@ -1,4 +1,4 @@
-//! Checks of ways out, without a search.
+//! Checks of removal paths, without a search.
 
 use glam::DVec3;
 
@@ -11,11 +11,13 @@ use colltrans_convex::body::Placed;
 use colltrans_solid::body::Solid;
 
 impl WayOut {
-    /// Checks all legs against the bodies, placed as they were asked about; no search plays a part. A place is a pose
-    /// displaced by the sum of the motions so far, rounded where the pose itself is no whole multiple of their grid.
+    /// Checks all legs against the bodies in their initial poses, without a search. The placement of a leg
+    /// displaces each pose by the sum of the previous motions. This sum is rounded if the translation of the
+    /// pose is not a multiple of their grid.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns [`FreeError::NotProven`] for the first leg that is not proven, and [`FreeError::Query`] for
+    /// bodies that a cast rejects.
     pub fn verify(&self, bodies: &[Placed<'_, Solid>]) -> Result<(), FreeError> {
         if self.legs.is_empty() {
             return Err(CertificateError::Cover { entry: 0 }.into());

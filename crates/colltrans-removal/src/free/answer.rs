@@ -11,13 +11,13 @@ use super::cell::Cell;
 use super::cone::Cone;
 use super::error::FreeError;
 use super::inner::InnerBox;
+use super::lower_dimensional::{FreeArc, FreePoint, LowerDimensional, find_lower_dimensional};
 use super::options::FreeOptions;
-use super::proof::{Fate, FreeProof, cells, fates};
-use super::region::{FreeRegion, regions};
-use super::rest::{Piece, Rest};
-use super::search::{Found, Search};
-use super::thin::{FreeArc, FreePoint, Thin, thin};
-use super::verify::{blocking_pair, holds, names_exist, rest_of};
+use super::proof::{CellState, FreeProof, cell_proofs, cell_states};
+use super::region::{FreeRegion, connected_regions};
+use super::remainder::{Piece, Remainder};
+use super::search::{Search, SearchResult};
+use super::verify::{blocking_pair, claim_holds, names_exist, remainder_of};
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::Placed;
 use colltrans_convex::cast::Cast;
@@ -92,7 +92,7 @@ pub enum CellKind {
 }
 
 /// Maximum number of directions in undecided cells that are tested by a cast.
-const MOST_ASKED: usize = 64;
+const MAX_TESTED: usize = 64;
 
 /// Solid angles in steradians; `free` is an interval of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -109,11 +109,11 @@ pub struct FreeDirections<'a> {
     options: FreeOptions,
     /// Boxes inside the moving and inside the fixed body.
     boxes: [Vec<InnerBox>; 2],
-    fates: Vec<Fate>,
-    looks: u64,
+    states: Vec<CellState>,
+    visits: u64,
     areas: Areas,
     /// Free arcs and isolated directions, computed at the first request.
-    thin: OnceLock<Thin>,
+    lower_dimensional: OnceLock<LowerDimensional>,
 }
 
 impl<'a> FreeDirections<'a> {
@@ -152,7 +152,7 @@ impl<'a> FreeDirections<'a> {
         fixed: &Placed<'a, B>,
         options: FreeOptions,
     ) -> Result<Self, FreeError> {
-        Self::search(moving, fixed, options, None)
+        Self::search_all(moving, fixed, options, None)
     }
 
     /// Computes the free directions like [`Self::of`], and stops soon after the flag is set.
@@ -165,21 +165,22 @@ impl<'a> FreeDirections<'a> {
         options: FreeOptions,
         cancel: &AtomicBool,
     ) -> Result<Self, FreeError> {
-        Self::search(moving, fixed, options, Some(cancel))
+        Self::search_all(moving, fixed, options, Some(cancel))
     }
 
-    fn search<A: AsSolid, B: AsSolid>(
+    fn search_all<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
         options: FreeOptions,
         cancel: Option<&AtomicBool>,
     ) -> Result<Self, FreeError> {
-        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let (cast, bodies) = checked_bodies(moving, fixed, &options)?;
         let found = Search::new(&bodies, options, cancel).run();
-        let Found { fates, boxes, looks } = found.ok_or(FreeError::Cancelled)?;
-        let (areas, thin) = (Areas::default(), OnceLock::new());
-        let mut all = Self { cast, bodies, options, boxes, fates, looks, areas, thin };
-        all.areas = all.measure();
+        let SearchResult { states, boxes, visits } = found.ok_or(FreeError::Cancelled)?;
+        let (areas, lower_dimensional) = (Areas::default(), OnceLock::new());
+        let mut all =
+            Self { cast, bodies, options, boxes, states, visits, areas, lower_dimensional };
+        all.areas = all.measure_areas();
         Ok(all)
     }
 
@@ -189,25 +190,26 @@ impl<'a> FreeDirections<'a> {
     /// Returns an error for a direction that is zero, not finite or out of range.
     pub fn says(&self, direction: DVec3) -> Result<Verdict, QueryError> {
         check_direction(direction)?;
-        let mut at = Cell::root_of(direction);
-        let mut cell = Cell::roots()[at];
-        while let Fate::Cut(first) = self.fates[at] {
+        let mut at = Cell::root_index(direction);
+        let mut cell = Cell::root_cells()[at];
+        while let CellState::Cut(first) = self.states[at] {
             let quarter = cell.quarter_of(direction);
             at = first as usize + quarter;
             cell = cell.quarter(quarter);
         }
         let blocking = |pairs: &[[u32; 2]]| {
-            let holds =
-                |pair: &&[u32; 2]| Cone::new(&self.bodies, **pair).holds(&self.bodies, direction);
+            let holds = |pair: &&[u32; 2]| {
+                Cone::new(&self.bodies, **pair).contains_direction(&self.bodies, direction)
+            };
             pairs.iter().find(holds).map(|pair| Verdict::Blocked(*pair))
         };
-        Ok(match &self.fates[at] {
-            Fate::Blocked(pair) => Verdict::Blocked(*pair),
-            Fate::Inner(_) => blocking_pair(&self.bodies, &cell, direction)
+        Ok(match &self.states[at] {
+            CellState::Blocked(pair) => Verdict::Blocked(*pair),
+            CellState::Inner(_) => blocking_pair(&self.bodies, &cell, direction)
                 .map_or(Verdict::Undecided, Verdict::Blocked),
-            Fate::Open(pairs) => blocking(pairs).unwrap_or(Verdict::Free),
-            Fate::Undecided(pairs) => blocking(pairs).unwrap_or(Verdict::Undecided),
-            Fate::Cut(_) => Verdict::Undecided,
+            CellState::Open(pairs) => blocking(pairs).unwrap_or(Verdict::Free),
+            CellState::Undecided(pairs) => blocking(pairs).unwrap_or(Verdict::Undecided),
+            CellState::Cut(_) => Verdict::Undecided,
         })
     }
 
@@ -224,44 +226,44 @@ impl<'a> FreeDirections<'a> {
 
     /// Checks whether it is certain that no direction is free.
     pub fn is_blocked(&self) -> bool {
-        self.leaves().all(|(cell, fate)| match fate {
-            Fate::Cut(_) | Fate::Blocked(_) | Fate::Inner(_) => true,
-            Fate::Undecided(_) => false,
-            Fate::Open(pairs) => {
-                rest_of(&self.bodies, cell, pairs).is_ok_and(|rest| rest.pieces.is_empty())
-            }
+        self.leaf_cells().all(|(cell, state)| match state {
+            CellState::Cut(_) | CellState::Blocked(_) | CellState::Inner(_) => true,
+            CellState::Undecided(_) => false,
+            CellState::Open(pairs) => remainder_of(&self.bodies, cell, pairs)
+                .is_ok_and(|remainder| remainder.pieces.is_empty()),
         })
     }
 
     /// Checks whether no cell is undecided.
     pub fn is_complete(&self) -> bool {
-        self.leaves().all(|(_, fate)| !matches!(fate, Fate::Undecided(_)))
+        self.leaf_cells().all(|(_, state)| !matches!(state, CellState::Undecided(_)))
     }
 
     /// Returns convex pieces whose union is the set of free directions with an area. Pieces do not extend
     /// across cells, and neighbours share boundaries.
     pub fn pieces(&self) -> Vec<FreePiece> {
         let piece = |(cell, piece): (Cell, Piece)| {
-            piece
-                .is_region()
-                .then(|| FreePiece { corners: directions(&cell, &piece), area: piece.area() })
+            piece.is_region().then(|| FreePiece {
+                corners: corner_directions(&cell, &piece),
+                area: piece.area(),
+            })
         };
-        self.parts().filter_map(piece).collect()
+        self.free_pieces().filter_map(piece).collect()
     }
 
     /// Returns the connected regions of free directions with an area, the largest first.
     pub fn regions(&self) -> Vec<FreeRegion> {
-        regions(&self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
+        connected_regions(&self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
     }
 
     /// Returns the arcs of free directions that border no region of free or undecided directions.
     pub fn arcs(&self) -> &[FreeArc] {
-        &self.thin().arcs
+        &self.lower_dimensional().arcs
     }
 
     /// Returns the free directions that have no free or undecided direction next to them.
     pub fn points(&self) -> &[FreePoint] {
-        &self.thin().points
+        &self.lower_dimensional().points
     }
 
     /// Checks exactly whether a direction, of any length, is the direction of a free point. Returns `false`
@@ -294,7 +296,7 @@ impl<'a> FreeDirections<'a> {
     /// ```
     pub fn is_at(&self, point: &FreePoint, direction: DVec3) -> Result<bool, QueryError> {
         check_direction(direction)?;
-        Ok(point.is(&self.bodies, direction))
+        Ok(point.has_direction(&self.bodies, direction))
     }
 
     /// Checks exactly whether a direction, of any length, lies on an arc or at one of its ends. Returns
@@ -304,11 +306,12 @@ impl<'a> FreeDirections<'a> {
     /// Returns an error for a direction that is zero, not finite or out of range.
     pub fn is_on(&self, arc: &FreeArc, direction: DVec3) -> Result<bool, QueryError> {
         check_direction(direction)?;
-        Ok(arc.has(&self.bodies, direction))
+        Ok(arc.has_direction(&self.bodies, direction))
     }
 
-    fn thin(&self) -> &Thin {
-        self.thin.get_or_init(|| thin(&self.bodies, self.leaves()))
+    fn lower_dimensional(&self) -> &LowerDimensional {
+        self.lower_dimensional
+            .get_or_init(|| find_lower_dimensional(&self.bodies, self.leaf_cells()))
     }
 
     /// Returns the cast between the bodies. Its direction is arbitrary.
@@ -322,28 +325,28 @@ impl<'a> FreeDirections<'a> {
     /// undecided directions, and corners and centers of undecided cells. At most 64 candidates are tested,
     /// each by one cast.
     pub fn free_among_undecided(&self) -> Vec<DVec3> {
-        let undecided = |(cell, fate): (Cell, &Fate)| match fate {
-            Fate::Undecided(_) => {
-                let middle = cell.side.direction(cell.center());
-                Some(cell.corners().into_iter().chain([middle]))
+        let undecided = |(cell, state): (Cell, &CellState)| match state {
+            CellState::Undecided(_) => {
+                let middle = cell.side.direction_at(cell.center());
+                Some(cell.corner_directions().into_iter().chain([middle]))
             }
             _ => None,
         };
         let mut asked: Vec<DVec3> = Vec::new();
-        let corners = self.leaves().filter_map(undecided).flatten();
-        for d in self.thin().unclear.iter().copied().chain(corners) {
+        let corners = self.leaf_cells().filter_map(undecided).flatten();
+        for d in self.lower_dimensional().unclear.iter().copied().chain(corners) {
             // Two sides of the cube share the directions on their common edge.
             if !asked.contains(&d) {
                 asked.push(d);
             }
-            if asked.len() == MOST_ASKED {
+            if asked.len() == MAX_TESTED {
                 break;
             }
         }
         asked.retain(|&d| {
             let (moving, fixed) = (self.cast.moving(), self.cast.fixed());
             let (p, q) = (self.cast.moving_pose(), self.cast.fixed_pose());
-            let options = self.options.with_tolerance(self.tolerance()).of_cast();
+            let options = self.options.with_tolerance(self.tolerance()).cast_options();
             let cast = Cast::<Solid>::new(moving.at(p), fixed.at(q), d);
             let answer = cast.and_then(|cast| cast.with_options(options)?.clearance());
             answer.is_ok_and(|answer| answer.is_free())
@@ -358,7 +361,7 @@ impl<'a> FreeDirections<'a> {
 
     /// Returns the number of cells of the subdivision and the number of node visits.
     pub fn work(&self) -> [u64; 2] {
-        [self.leaves().count() as u64, self.looks]
+        [self.leaf_cells().count() as u64, self.visits]
     }
 
     /// Returns the tolerance in use, a length.
@@ -379,8 +382,8 @@ impl<'a> FreeDirections<'a> {
                 return Err(CertificateError::Start.into());
             }
         }
-        for (number, (cell, fate)) in self.leaves().enumerate() {
-            if !holds(&self.bodies, &self.boxes, &cell, fate) {
+        for (number, (cell, state)) in self.leaf_cells().enumerate() {
+            if !claim_holds(&self.bodies, &self.boxes, &cell, state) {
                 return Err(CertificateError::Cover { entry: number }.into());
             }
         }
@@ -390,18 +393,18 @@ impl<'a> FreeDirections<'a> {
     /// Returns the cells of the proof. Cells are small near boundaries of the free directions and large
     /// elsewhere.
     pub fn cells(&self) -> impl Iterator<Item = FreeCell> {
-        self.leaves().map(|(cell, fate)| FreeCell {
-            corners: cell.corners(),
-            kind: match fate {
-                Fate::Blocked(_) | Fate::Inner(_) => CellKind::Blocked,
-                Fate::Open(pairs) if pairs.is_empty() => CellKind::Free,
-                Fate::Open(_) => CellKind::Both,
-                Fate::Cut(_) | Fate::Undecided(_) => CellKind::Undecided,
+        self.leaf_cells().map(|(cell, state)| FreeCell {
+            corners: cell.corner_directions(),
+            kind: match state {
+                CellState::Blocked(_) | CellState::Inner(_) => CellKind::Blocked,
+                CellState::Open(pairs) if pairs.is_empty() => CellKind::Free,
+                CellState::Open(_) => CellKind::Both,
+                CellState::Cut(_) | CellState::Undecided(_) => CellKind::Undecided,
             },
-            blocked_by: match fate {
-                Fate::Blocked(pair) => Some(*pair),
-                Fate::Inner(_) => {
-                    let middle = cell.side.direction(cell.center());
+            blocked_by: match state {
+                CellState::Blocked(pair) => Some(*pair),
+                CellState::Inner(_) => {
+                    let middle = cell.side.direction_at(cell.center());
                     blocking_pair(&self.bodies, &cell, middle)
                 }
                 _ => None,
@@ -416,7 +419,7 @@ impl<'a> FreeDirections<'a> {
             tolerance: self.cast.tolerance(),
             start_overlap: self.options.start_overlap,
             boxes: self.boxes.clone(),
-            cells: cells(&self.fates),
+            cells: cell_proofs(&self.states),
         }
     }
 
@@ -435,7 +438,7 @@ impl<'a> FreeDirections<'a> {
             .with_start_overlap(proof.start_overlap);
         let mut all = Self::with_cells(moving, fixed, proof, options)?;
         all.verify()?;
-        all.areas = all.measure();
+        all.areas = all.measure_areas();
         Ok(all)
     }
 
@@ -462,14 +465,15 @@ impl<'a> FreeDirections<'a> {
         proof: &FreeProof,
         options: FreeOptions,
     ) -> Result<Self, FreeError> {
-        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let (cast, bodies) = checked_bodies(moving, fixed, &options)?;
         let misfit = CertificateError::Cover { entry: proof.cells.len() };
-        let fates = fates(&proof.cells).ok_or(misfit)?;
+        let states = cell_states(&proof.cells).ok_or(misfit)?;
         let boxes = proof.boxes.clone();
-        let (areas, thin) = (Areas::default(), OnceLock::new());
-        let all = Self { cast, bodies, options, boxes, fates, looks: 0, areas, thin };
-        let exist = |fate: &Fate| names_exist(&all.bodies, &all.boxes, fate);
-        let strange = all.leaves().position(|(_, fate)| !exist(fate));
+        let (areas, lower_dimensional) = (Areas::default(), OnceLock::new());
+        let all =
+            Self { cast, bodies, options, boxes, states, visits: 0, areas, lower_dimensional };
+        let exist = |state: &CellState| names_exist(&all.bodies, &all.boxes, state);
+        let strange = all.leaf_cells().position(|(_, state)| !exist(state));
         match strange {
             Some(entry) => Err(CertificateError::Cover { entry }.into()),
             None => Ok(all),
@@ -486,46 +490,48 @@ impl<'a> FreeDirections<'a> {
     }
 
     /// Returns the cells that are not divided, in preorder.
-    fn leaves(&self) -> impl Iterator<Item = (Cell, &Fate)> {
-        let mut stack: Vec<(usize, Cell)> = Cell::roots().into_iter().enumerate().rev().collect();
+    fn leaf_cells(&self) -> impl Iterator<Item = (Cell, &CellState)> {
+        let mut stack: Vec<(usize, Cell)> =
+            Cell::root_cells().into_iter().enumerate().rev().collect();
         std::iter::from_fn(move || {
             loop {
                 let (at, cell) = stack.pop()?;
-                match &self.fates[at] {
-                    Fate::Cut(first) => {
+                match &self.states[at] {
+                    CellState::Cut(first) => {
                         let quarter = |k: usize| (*first as usize + k, cell.quarter(k));
                         stack.extend((0..4).rev().map(quarter));
                     }
-                    fate => return Some((cell, fate)),
+                    state => return Some((cell, state)),
                 }
             }
         })
     }
 
     /// Returns all free pieces, each with its cell.
-    fn parts(&self) -> impl Iterator<Item = (Cell, Piece)> {
-        let rest = |(cell, fate): (Cell, &Fate)| {
-            let rest = match fate {
-                Fate::Open(pairs) => rest_of(&self.bodies, cell, pairs).ok(),
+    fn free_pieces(&self) -> impl Iterator<Item = (Cell, Piece)> {
+        let remainder = |(cell, state): (Cell, &CellState)| {
+            let remainder = match state {
+                CellState::Open(pairs) => remainder_of(&self.bodies, cell, pairs).ok(),
                 _ => None,
             };
-            let pieces = rest.map_or_else(Vec::new, |rest| rest.pieces);
+            let pieces = remainder.map_or_else(Vec::new, |remainder| remainder.pieces);
             pieces.into_iter().map(move |piece| (cell, piece))
         };
-        self.leaves().flat_map(rest)
+        self.leaf_cells().flat_map(remainder)
     }
 
-    fn measure(&self) -> Areas {
+    fn measure_areas(&self) -> Areas {
         let (mut free, mut error, mut undecided) = (0.0, 0.0, 0.0);
-        for (cell, fate) in self.leaves() {
-            let (pairs, open) = match fate {
-                Fate::Open(pairs) => (pairs, true),
-                Fate::Undecided(pairs) => (pairs, false),
+        for (cell, state) in self.leaf_cells() {
+            let (pairs, open) = match state {
+                CellState::Open(pairs) => (pairs, true),
+                CellState::Undecided(pairs) => (pairs, false),
                 _ => continue,
             };
-            let rest = rest_of(&self.bodies, cell, pairs).unwrap_or_else(|_| Rest::whole(cell));
-            let area: f64 = rest.pieces.iter().map(Piece::area).sum();
-            let off: f64 = rest.pieces.iter().map(Piece::area_error).sum();
+            let remainder = remainder_of(&self.bodies, cell, pairs)
+                .unwrap_or_else(|_| Remainder::of_cell(cell));
+            let area: f64 = remainder.pieces.iter().map(Piece::area).sum();
+            let off: f64 = remainder.pieces.iter().map(Piece::area_error).sum();
             if open {
                 (free, error) = (free + area, error + off);
             } else {
@@ -538,17 +544,17 @@ impl<'a> FreeDirections<'a> {
 }
 
 /// Returns the directions of the corners of a piece.
-fn directions(cell: &Cell, piece: &Piece) -> Vec<DVec3> {
-    piece.places().into_iter().map(|place| cell.side.direction(place)).collect()
+fn corner_directions(cell: &Cell, piece: &Piece) -> Vec<DVec3> {
+    piece.corner_places().into_iter().map(|place| cell.side.direction_at(place)).collect()
 }
 
 /// Checks the bodies and the options, and returns the cast and the bodies in the setting frame.
-pub(super) fn setting<'a, A: AsSolid, B: AsSolid>(
+pub(super) fn checked_bodies<'a, A: AsSolid, B: AsSolid>(
     moving: &Placed<'a, A>,
     fixed: &Placed<'a, B>,
     options: &FreeOptions,
 ) -> Result<(Cast<'a, Solid>, Bodies<'a>), FreeError> {
-    let cast = Cast::between(*moving, *fixed, DVec3::Z)?.with_options(options.of_cast())?;
+    let cast = Cast::between(*moving, *fixed, DVec3::Z)?.with_options(options.cast_options())?;
     let scene = cast.asked_of_something()?;
     for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
         if !solid.is_closed() {

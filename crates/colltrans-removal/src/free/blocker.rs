@@ -3,14 +3,14 @@
 
 use glam::DVec3;
 
-use super::answer::setting;
+use super::answer::checked_bodies;
 use super::bodies::Bodies;
 use super::cell::Cell;
 use super::error::FreeError;
 use super::options::FreeOptions;
-use super::proof::Fate;
-use super::search::{Memory, Search};
-use super::verify::{holds, names_exist};
+use super::proof::CellState;
+use super::search::{Search, SearchMemory};
+use super::verify::{claim_holds, names_exist};
 use colltrans_convex::body::Placed;
 use colltrans_solid::body::AsSolid;
 
@@ -22,7 +22,7 @@ pub struct DirectionCell(Cell);
 impl DirectionCell {
     /// Returns the six sides of the cube, which cover all directions, in the order `+x`, `-x`, `+y`, ...
     pub fn sphere() -> [Self; 6] {
-        Cell::roots().map(Self)
+        Cell::root_cells().map(Self)
     }
 
     /// Returns the four quarters of the cell.
@@ -38,7 +38,7 @@ impl DirectionCell {
 
     /// Returns the direction at the center of the cell, with a largest component of 1 or -1.
     pub fn center(&self) -> DVec3 {
-        self.0.side.direction(self.0.center())
+        self.0.side.direction_at(self.0.center())
     }
 }
 
@@ -46,7 +46,7 @@ impl DirectionCell {
 pub struct CellBlocker<'a> {
     bodies: Bodies<'a>,
     options: FreeOptions,
-    memory: Memory,
+    memory: SearchMemory,
 }
 
 impl<'a> CellBlocker<'a> {
@@ -60,23 +60,24 @@ impl<'a> CellBlocker<'a> {
         fixed: &Placed<'a, B>,
         options: FreeOptions,
     ) -> Result<Self, FreeError> {
-        let (_, bodies) = setting(moving, fixed, &options)?;
-        Ok(Self { bodies, options, memory: Memory::default() })
+        let (_, bodies) = checked_bodies(moving, fixed, &options)?;
+        Ok(Self { bodies, options, memory: SearchMemory::default() })
     }
 
     /// Checks whether one pair of facets, or of boxes inside the bodies, blocks all directions of a cell.
     /// Pairs that blocked earlier cells are tried first, then a limited search runs. `true` is exact; `false`
     /// means that the search found no such pair.
     pub fn covers(&mut self, cell: &DirectionCell) -> bool {
-        Search::covers(&self.bodies, self.options, &cell.0, &mut self.memory)
+        Search::covers_cell(&self.bodies, self.options, &cell.0, &mut self.memory)
     }
 
     /// Checks exactly whether a pair of facets blocks all directions of a cell. Returns `false` if a facet
     /// does not exist.
     pub fn blocks(&self, cell: &DirectionCell, pair: [u32; 2]) -> bool {
-        let fate = Fate::Blocked(pair);
+        let state = CellState::Blocked(pair);
         let none = [const { Vec::new() }; 2];
-        names_exist(&self.bodies, &none, &fate) && holds(&self.bodies, &none, &cell.0, &fate)
+        names_exist(&self.bodies, &none, &state)
+            && claim_holds(&self.bodies, &none, &cell.0, &state)
     }
 
     /// Returns a pair of facets that blocks all directions of a cell, exactly: indices into

@@ -12,7 +12,7 @@ use colltrans_solid::solve::scene::{Corner, ExactPoint, Scene, Side};
 
 /// Bounds of a set of facets of one body, in the setting frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct View {
+pub(crate) struct NodeBounds {
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
     /// Unit vector near the facet normals, or 0.
@@ -23,20 +23,20 @@ pub(crate) struct View {
     /// Range of the facets' coordinates along `axis`.
     pub(super) slab: [f64; 2],
     /// Index of the first child, and the number of children; 0 for a facet.
-    parts: [u32; 2],
+    child_range: [u32; 2],
 }
 
-impl View {
+impl NodeBounds {
     /// Returns the indices of the children.
-    pub(crate) fn parts(&self) -> std::ops::Range<u32> {
-        self.parts[0]..self.parts[0] + self.parts[1]
+    pub(crate) fn children(&self) -> std::ops::Range<u32> {
+        self.child_range[0]..self.child_range[0] + self.child_range[1]
     }
 
     pub(crate) fn is_facet(&self) -> bool {
-        self.parts[1] == 0
+        self.child_range[1] == 0
     }
 
-    pub(crate) fn size(&self) -> f64 {
+    pub(crate) fn squared_diagonal(&self) -> f64 {
         (self.high - self.low).length_squared()
     }
 }
@@ -46,7 +46,7 @@ pub(crate) struct Bodies<'a> {
     /// Scene with direction `z`, so that its query frame is the setting frame.
     pub(super) scene: Scene<'a>,
     corners: [Vec<Corner>; 2],
-    pub(crate) views: [Vec<View>; 2],
+    pub(crate) nodes: [Vec<NodeBounds>; 2],
     /// Whether the pose of the body only permutes axes and changes signs, so that rotated normals are exact.
     pub(super) permutes: [bool; 2],
 }
@@ -59,66 +59,73 @@ impl<'a> Bodies<'a> {
             let count = side.solid.vertices().len() as u32;
             (0..count).map(|v| side.corner(v)).collect::<Vec<_>>()
         });
-        let views = [0, 1].map(|k| views(&scene, sides[k], &corners[k]));
+        let nodes = [0, 1].map(|k| node_bounds(&scene, sides[k], &corners[k]));
         let permutes = sides.map(|side| side.permutes);
-        Self { scene, corners, views, permutes }
+        Self { scene, corners, nodes, permutes }
     }
 
     /// Returns the two nodes of a pair.
-    pub(crate) fn views_of(&self, pair: [u32; 2]) -> [&View; 2] {
-        [0, 1].map(|k| &self.views[k][pair[k] as usize])
+    pub(crate) fn node_pair(&self, pair: [u32; 2]) -> [&NodeBounds; 2] {
+        [0, 1].map(|k| &self.nodes[k][pair[k] as usize])
     }
 
     /// Replaces the larger node of a pair that has children by each of them. Returns `None` for two facets.
-    pub(crate) fn parts(&self, pair: [u32; 2]) -> Option<impl Iterator<Item = [u32; 2]> + use<>> {
-        let views = self.views_of(pair);
-        let which = node_to_split(views.map(View::is_facet), |k| views[k].size())?;
-        Some(views[which].parts().map(move |part| replaced(pair, which, part)))
+    pub(crate) fn child_pairs(
+        &self,
+        pair: [u32; 2],
+    ) -> Option<impl Iterator<Item = [u32; 2]> + use<>> {
+        let views = self.node_pair(pair);
+        let which =
+            node_to_split(views.map(NodeBounds::is_facet), |k| views[k].squared_diagonal())?;
+        Some(views[which].children().map(move |part| replaced(pair, which, part)))
     }
 
-    pub(crate) fn corner(&self, spot: PlaneVertex) -> &Corner {
-        &self.corners[usize::from(!spot.moving)][spot.vertex as usize]
+    pub(crate) fn placed_vertex(&self, vertex: PlaneVertex) -> &Corner {
+        &self.corners[usize::from(!vertex.moving)][vertex.vertex as usize]
     }
 
     /// Checks whether a vertex exists.
-    pub(super) fn has(&self, spot: PlaneVertex) -> bool {
-        (spot.vertex as usize) < self.corners[usize::from(!spot.moving)].len()
+    pub(super) fn has_vertex(&self, vertex: PlaneVertex) -> bool {
+        (vertex.vertex as usize) < self.corners[usize::from(!vertex.moving)].len()
     }
 
     /// Returns the position of a vertex in exact integers.
-    pub(super) fn wide<const N: usize>(&self, spot: PlaneVertex) -> [Integer<N>; 3] {
-        let corner = self.corner(spot);
+    pub(super) fn exact_position<const N: usize>(&self, vertex: PlaneVertex) -> [Integer<N>; 3] {
+        let corner = self.placed_vertex(vertex);
         let world = corner.world(&self.scene);
         world.map_or_else(|| corner.wide(&self.scene), |at| at.to_array().map(Integer::number))
     }
 
     /// Returns the displacement from one vertex to another, and a bound on the error of a component.
-    pub(super) fn way(&self, ends: [PlaneVertex; 2]) -> (DVec3, f64) {
-        let [a, b] = ends.map(|spot| self.corner(spot));
+    pub(super) fn displacement(&self, ends: [PlaneVertex; 2]) -> (DVec3, f64) {
+        let [a, b] = ends.map(|vertex| self.placed_vertex(vertex));
         let noise = (f64::from(!a.exact) + f64::from(!b.exact)) * self.scene.noise;
         let way = b.at - a.at;
         (way, noise + f64::EPSILON * way.abs().max_element())
     }
 
     /// Returns the displacement from one vertex to another in exact integers.
-    pub(super) fn wide_way<const N: usize>(&self, ends: [PlaneVertex; 2]) -> [Integer<N>; 3] {
-        let [a, b] = ends.map(|spot| self.wide::<N>(spot));
+    pub(super) fn exact_displacement<const N: usize>(
+        &self,
+        ends: [PlaneVertex; 2],
+    ) -> [Integer<N>; 3] {
+        let [a, b] = ends.map(|vertex| self.exact_position::<N>(vertex));
         difference(&b, &a)
     }
 
     /// Returns the vertices of a triangle.
-    pub(crate) fn spots(&self, moving: bool, triangle: u32) -> [PlaneVertex; 3] {
+    pub(crate) fn triangle_vertices(&self, moving: bool, triangle: u32) -> [PlaneVertex; 3] {
         let solid = self.scene.side(moving).solid;
         solid.triangles()[triangle as usize].map(|vertex| PlaneVertex { moving, vertex })
     }
 
     /// Returns the number of triangles of a body.
-    pub(crate) fn count(&self, moving: bool) -> u32 {
+    pub(crate) fn triangle_count(&self, moving: bool) -> u32 {
         self.scene.side(moving).solid.triangles().len() as u32
     }
 
     /// Returns an upper bound on the absolute value of a coordinate, and a bound on its error.
-    pub(crate) fn reach(&self) -> [f64; 2] {
+    pub(crate) fn coordinate_bound(&self) -> [f64; 2] {
         let of = |corner: &Corner| corner.at.abs().max_element();
         let noise = self.scene.noise;
         let all = self.corners.iter().flatten();
@@ -128,41 +135,48 @@ impl<'a> Bodies<'a> {
     }
 
     /// Returns the index of the triangle of a leaf.
-    pub(crate) fn triangle(&self, moving: bool, view: u32) -> u32 {
-        view - self.scene.side(moving).solid.nodes().len() as u32
+    pub(crate) fn leaf_triangle(&self, moving: bool, leaf: u32) -> u32 {
+        leaf - self.scene.side(moving).solid.nodes().len() as u32
     }
 }
 
 /// Builds the nodes of the tree, followed by one leaf for each facet.
-fn views(scene: &Scene, side: &Side, corners: &[Corner]) -> Vec<View> {
+fn node_bounds(scene: &Scene, side: &Side, corners: &[Corner]) -> Vec<NodeBounds> {
     let nodes = side.solid.nodes();
-    let of_node = |(at, node): (usize, &Node)| {
+    let tree_node = |(at, node): (usize, &Node)| {
         let Projected { bounds, axis, slab, .. } = Projected::new(scene, side, at);
-        let parts = if node.is_leaf() {
+        let child_range = if node.is_leaf() {
             [nodes.len() as u32 + node.first, node.count]
         } else {
             [at as u32 + node.skip, 2]
         };
-        View { low: bounds.low, high: bounds.high, axis, spread: spread(side, at), slab, parts }
+        NodeBounds {
+            low: bounds.low,
+            high: bounds.high,
+            axis,
+            spread: normal_spread(side, at),
+            slab,
+            child_range,
+        }
     };
-    let of_facet = |t: &[u32; 3]| facet(scene.noise, t.map(|v| corners[v as usize]));
-    let facets = side.solid.triangles().iter().map(of_facet);
-    nodes.iter().enumerate().map(of_node).chain(facets).collect()
+    let facet = |t: &[u32; 3]| facet_bounds(scene.noise, t.map(|v| corners[v as usize]));
+    let facets = side.solid.triangles().iter().map(facet);
+    nodes.iter().enumerate().map(tree_node).chain(facets).collect()
 }
 
 /// Bounds the sine of the angle between facet normals of a node and its axis.
-fn spread(side: &Side, at: usize) -> f64 {
+fn normal_spread(side: &Side, at: usize) -> f64 {
     let own = f64::from(side.solid.nodes()[at].spread);
     let moved = side.shrinking.map_or(0.0, |shrinking| {
         let motion = &shrinking.nodes[at];
         f64::from(motion.turn) * side.amount + f64::from(motion.rough)
     });
     // The rotated axis is rounded, the rotated facets are not.
-    let turned = if side.permutes { 0.0 } else { 16.0 * f64::EPSILON };
-    own + moved + side.defect + turned
+    let rotation_rounding = if side.permutes { 0.0 } else { 16.0 * f64::EPSILON };
+    own + moved + side.defect + rotation_rounding
 }
 
-fn facet(noise: f64, corners: [Corner; 3]) -> View {
+fn facet_bounds(noise: f64, corners: [Corner; 3]) -> NodeBounds {
     let noise = if corners.iter().all(|c| c.exact) { 0.0 } else { noise };
     let [a, b, c] = corners.map(|corner| corner.at);
     let (normal, doubt) = tree::normal([a, b, c]);
@@ -183,5 +197,5 @@ fn facet(noise: f64, corners: [Corner; 3]) -> View {
         heights.into_iter().fold(f64::NEG_INFINITY, f64::max) + slack,
     ];
     let (low, high) = (a.min(b).min(c) - noise, a.max(b).max(c) + noise);
-    View { low, high, axis, spread, slab, parts: [0, 0] }
+    NodeBounds { low, high, axis, spread, slab, child_range: [0, 0] }
 }

@@ -11,13 +11,13 @@ use glam::DVec3;
 use colltrans_kernel::integer::{Integer, SMALL};
 
 /// Maximum number of halvings for which `u` and `v` are exact.
-pub(super) const DEEPEST: u32 = 50;
+pub(super) const MAX_DEPTH: u32 = 50;
 
 /// Side of the cube: an axis and its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Side(u8);
+pub(super) struct CubeSide(u8);
 
-impl Side {
+impl CubeSide {
     pub(super) fn all() -> [Self; 6] {
         [0, 1, 2, 3, 4, 5].map(Self)
     }
@@ -32,7 +32,7 @@ impl Side {
         if self.0.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
-    pub(super) fn direction(self, [u, v]: [f64; 2]) -> DVec3 {
+    pub(super) fn direction_at(self, [u, v]: [f64; 2]) -> DVec3 {
         let [k, i, j] = self.axes();
         let mut d = DVec3::ZERO;
         (d[k], d[i], d[j]) = (self.sign(), u, v);
@@ -40,7 +40,7 @@ impl Side {
     }
 
     /// Returns the side that a direction passes through.
-    fn of(d: DVec3) -> Self {
+    fn containing(d: DVec3) -> Self {
         let main = d.abs().max_position() as u8;
         Self(2 * main + u8::from(d[usize::from(main)] < 0.0))
     }
@@ -49,29 +49,29 @@ impl Side {
 /// Square cell on a side of the cube.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
-    pub(super) side: Side,
+    pub(super) side: CubeSide,
     pub(super) low: [f64; 2],
     pub(super) size: f64,
     pub(super) depth: u32,
 }
 
 impl Cell {
-    pub(super) fn roots() -> [Self; 6] {
-        Side::all().map(|side| Self { side, low: [-1.0; 2], size: 2.0, depth: 0 })
+    pub(super) fn root_cells() -> [Self; 6] {
+        CubeSide::all().map(|side| Self { side, low: [-1.0; 2], size: 2.0, depth: 0 })
     }
 
-    pub(super) fn range(&self, axis: usize) -> [f64; 2] {
+    pub(super) fn coordinate_range(&self, axis: usize) -> [f64; 2] {
         [self.low[axis], self.low[axis] + self.size]
     }
 
     /// Returns the corners on the side, in cyclic order.
-    pub(super) fn places(&self) -> [[f64; 2]; 4] {
-        let ([a, b], [c, d]) = (self.range(0), self.range(1));
+    pub(super) fn corner_places(&self) -> [[f64; 2]; 4] {
+        let ([a, b], [c, d]) = (self.coordinate_range(0), self.coordinate_range(1));
         [[a, c], [b, c], [b, d], [a, d]]
     }
 
-    pub(super) fn corners(&self) -> [DVec3; 4] {
-        self.places().map(|place| self.side.direction(place))
+    pub(super) fn corner_directions(&self) -> [DVec3; 4] {
+        self.corner_places().map(|place| self.side.direction_at(place))
     }
 
     pub(super) fn center(&self) -> [f64; 2] {
@@ -89,15 +89,16 @@ impl Cell {
     /// Checks whether another cell is equal to this one or inside it.
     pub(super) fn contains(&self, other: &Self) -> bool {
         let within = |axis: usize| {
-            let ([low, high], [least, most]) = (self.range(axis), other.range(axis));
+            let ([low, high], [least, most]) =
+                (self.coordinate_range(axis), other.coordinate_range(axis));
             low <= least && most <= high
         };
         self.side == other.side && within(0) && within(1)
     }
 
     /// Returns the index of the side that contains a direction.
-    pub(super) fn root_of(d: DVec3) -> usize {
-        usize::from(Side::of(d).0)
+    pub(super) fn root_index(d: DVec3) -> usize {
+        usize::from(CubeSide::containing(d).0)
     }
 
     /// Returns the number of the quarter that contains a direction of this cell. The comparison is exact.
@@ -114,19 +115,19 @@ impl Cell {
 
     /// Returns the solid angle in steradians.
     pub(super) fn area(&self) -> f64 {
-        solid_angle(&self.places())
+        solid_angle(&self.corner_places())
     }
 }
 
 /// Computes the solid angle of a convex polygon on a side.
 pub(super) fn solid_angle(places: &[[f64; 2]]) -> f64 {
     let at = |[u, v]: [f64; 2]| DVec3::new(1.0, u, v);
-    let way = |[a, b]: [f64; 2], [c, d]: [f64; 2]| DVec3::new(0.0, c - a, d - b);
+    let vector = |[a, b]: [f64; 2], [c, d]: [f64; 2]| DVec3::new(0.0, c - a, d - b);
     let triangle = |k: usize| {
         let (a, b, c) = (at(places[0]), at(places[k - 1]), at(places[k]));
         let (p, q, r) = (a.length(), b.length(), c.length());
         // det[a, b, c] from the edge vectors, whose relative errors are smaller than those of the corners.
-        let volume = a.dot(way(places[0], places[k - 1]).cross(way(places[0], places[k])));
+        let volume = a.dot(vector(places[0], places[k - 1]).cross(vector(places[0], places[k])));
         2.0 * volume.abs().atan2(p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q)
     };
     (2..places.len()).map(triangle).sum()
@@ -139,20 +140,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cells_of_a_cube_are_the_sphere() {
-        let whole: f64 = Cell::roots().iter().map(Cell::area).sum();
+    fn areas_of_root_cells_add_to_sphere() {
+        let whole: f64 = Cell::root_cells().iter().map(Cell::area).sum();
         assert!((whole - 4.0 * PI).abs() < 1e-14);
-        let cell = Cell::roots()[3];
+        let cell = Cell::root_cells()[3];
         let parts: f64 = (0..4).map(|k| cell.quarter(k).area()).sum();
         assert!((parts - cell.area()).abs() < 1e-15);
     }
 
     #[test]
-    fn a_direction_is_found_in_the_cell_that_holds_it() {
+    fn repeated_quarters_converge_to_direction() {
         let d = DVec3::new(0.3, -2.0, 0.1 + 0.2);
-        let mut cell = Cell::roots()[Cell::root_of(d)];
+        let mut cell = Cell::root_cells()[Cell::root_index(d)];
         assert_eq!((cell.side.axes(), cell.side.sign()), ([1, 2, 0], -1.0));
-        for _ in 0..DEEPEST {
+        for _ in 0..MAX_DEPTH {
             cell = cell.quarter(cell.quarter_of(d));
         }
         let [u, v] = cell.center();

@@ -30,22 +30,23 @@ pub(super) struct Cone {
 impl Cone {
     /// Computes the cone of a triangle of the moving body and one of the fixed body.
     pub(super) fn new(bodies: &Bodies, pair: [u32; 2]) -> Self {
-        let (f, g) = (bodies.spots(true, pair[0]), bodies.spots(false, pair[1]));
-        let signs = Signs::new(bodies, &f, &g);
-        let looks = [Line::of(bodies, f), Line::of(bodies, [g[0], g[2], g[1]])];
-        if signs.are_flat() {
-            let blocks = push_in_one_plane(bodies, f, g);
-            return Self { pair, lines: if blocks { vec![looks[0]] } else { Vec::new() } };
+        let (f, g) =
+            (bodies.triangle_vertices(true, pair[0]), bodies.triangle_vertices(false, pair[1]));
+        let signs = OrientationSigns::new(bodies, &f, &g);
+        let facet_lines = [Line::through(bodies, f), Line::through(bodies, [g[0], g[2], g[1]])];
+        if signs.are_coplanar() {
+            let blocks = coplanar_facets_block(bodies, f, g);
+            return Self { pair, lines: if blocks { vec![facet_lines[0]] } else { Vec::new() } };
         }
-        let mut lines = looks.to_vec();
+        let mut lines = facet_lines.to_vec();
         for k in 0..3 {
             for from in 0..3 {
                 let to = (from + 1) % 3;
-                if let Some(turned) = signs.of_moving_corner(k, from) {
-                    lines.push(line(bodies, f[k], [g[from], g[to]], turned));
+                if let Some(reversed) = signs.side_at_moving_vertex(k, from) {
+                    lines.push(edge_line(bodies, f[k], [g[from], g[to]], reversed));
                 }
-                if let Some(turned) = signs.of_fixed_corner(k, from) {
-                    lines.push(line(bodies, g[k], [f[from], f[to]], turned));
+                if let Some(reversed) = signs.side_at_fixed_vertex(k, from) {
+                    lines.push(edge_line(bodies, g[k], [f[from], f[to]], reversed));
                 }
             }
         }
@@ -54,29 +55,36 @@ impl Cone {
     }
 
     /// Checks whether a direction is inside the cone.
-    pub(super) fn holds(&self, bodies: &Bodies, d: DVec3) -> bool {
-        !self.lines.is_empty() && self.lines.iter().all(|line| line.side(bodies, d) == Greater)
+    pub(super) fn contains_direction(&self, bodies: &Bodies, d: DVec3) -> bool {
+        !self.lines.is_empty()
+            && self.lines.iter().all(|line| line.side_of_direction(bodies, d) == Greater)
     }
 
     /// Checks whether the convex cone of four directions is inside the cone.
-    pub(super) fn covers(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
-        corners.iter().all(|&d| self.holds(bodies, d))
+    pub(super) fn contains_all(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
+        corners.iter().all(|&d| self.contains_direction(bodies, d))
     }
 
     /// Checks whether one side of the cone has all four directions on it or behind it.
-    pub(super) fn misses(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
-        let behind = |line: &Line| corners.iter().all(|&d| line.side(bodies, d) != Greater);
+    pub(super) fn misses_all(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
+        let behind =
+            |line: &Line| corners.iter().all(|&d| line.side_of_direction(bodies, d) != Greater);
         self.lines.is_empty() || self.lines.iter().any(behind)
     }
 }
 
 /// Builds the line through a vertex of one body and an edge of the other.
-fn line(bodies: &Bodies, corner: PlaneVertex, [a, b]: [PlaneVertex; 2], turned: bool) -> Line {
-    Line::of(bodies, if turned { [corner, b, a] } else { [corner, a, b] })
+fn edge_line(
+    bodies: &Bodies,
+    corner: PlaneVertex,
+    [a, b]: [PlaneVertex; 2],
+    reversed: bool,
+) -> Line {
+    Line::through(bodies, if reversed { [corner, b, a] } else { [corner, a, b] })
 }
 
 /// Orientation signs of four vertices of two facets.
-struct Signs {
+struct OrientationSigns {
     /// `outside(f_i; g)`.
     moving: [Ordering; 3],
     /// `outside(g_i; f)`.
@@ -85,9 +93,9 @@ struct Signs {
     edges: [[Ordering; 3]; 3],
 }
 
-impl Signs {
+impl OrientationSigns {
     fn new(bodies: &Bodies, f: &[PlaneVertex; 3], g: &[PlaneVertex; 3]) -> Self {
-        let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
+        let (p, q) = (f.map(|s| bodies.placed_vertex(s)), g.map(|s| bodies.placed_vertex(s)));
         let outside =
             |a: &Corner, b: &Corner, c: &Corner, e: &Corner| bodies.scene.outside(a, b, c, e);
         Self {
@@ -99,31 +107,31 @@ impl Signs {
     }
 
     /// Checks whether all vertices are coplanar.
-    fn are_flat(&self) -> bool {
+    fn are_coplanar(&self) -> bool {
         self.moving.iter().chain(&self.fixed).all(|sign| *sign == Equal)
     }
 
     /// Checks whether the plane through `f_k` and the edge of `g` from `b` has all differences on one side.
     /// Returns `Some(true)` if this is the negative side of `det[g_b - f_k, g_(b+1) - f_k, d]`, and `None` if
     /// there are differences on both sides.
-    fn of_moving_corner(&self, k: usize, b: usize) -> Option<bool> {
+    fn side_at_moving_vertex(&self, k: usize, b: usize) -> Option<bool> {
         let others = [self.edges[k][b], self.edges[(k + 2) % 3][b].reverse()];
-        supports(self.moving[k], others.map(Ordering::reverse))
+        common_side(self.moving[k], others.map(Ordering::reverse))
     }
 
     /// Checks whether the plane through `g_k` and the edge of `f` from `a` has all differences on one side.
     /// Returns `Some(true)` if this is the negative side of `det[f_a - g_k, f_(a+1) - g_k, d]`, and `None` if
     /// there are differences on both sides.
-    fn of_fixed_corner(&self, k: usize, a: usize) -> Option<bool> {
+    fn side_at_fixed_vertex(&self, k: usize, a: usize) -> Option<bool> {
         // outside(g_k, f_a, f_(a+1), g_l), an even permutation of outside(f_a, g_k, g_l, f_(a+1)).
         let others = [self.edges[a][k], self.edges[a][(k + 2) % 3].reverse()];
-        supports(self.fixed[k].reverse(), others)
+        common_side(self.fixed[k].reverse(), others)
     }
 }
 
 /// Returns the common side of three signs, `Some(true)` for the negative one. Returns `None` for signs on
 /// both sides or for three zeros.
-fn supports(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
+fn common_side(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
     let all = [one, others[0], others[1]];
     match (all.contains(&Greater), all.contains(&Less)) {
         (true, false) => Some(false),
@@ -133,9 +141,9 @@ fn supports(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
 }
 
 /// Checks whether two coplanar triangles have opposite normals and overlapping interiors.
-fn push_in_one_plane(bodies: &Bodies, f: [PlaneVertex; 3], g: [PlaneVertex; 3]) -> bool {
+fn coplanar_facets_block(bodies: &Bodies, f: [PlaneVertex; 3], g: [PlaneVertex; 3]) -> bool {
     let scene = &bodies.scene;
-    let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
+    let (p, q) = (f.map(|s| bodies.placed_vertex(s)), g.map(|s| bodies.placed_vertex(s)));
     let facing = |axis: usize| scene.turn_about(axis, p[0], p[1], p[2]);
     let Some(axis) = (0..3).find(|&axis| facing(axis) != Equal) else { return false };
     let turn = facing(axis);

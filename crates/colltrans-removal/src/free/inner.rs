@@ -10,14 +10,14 @@
 
 use glam::{DVec2, DVec3};
 
-use super::bodies::{Bodies, View};
+use super::bodies::{Bodies, NodeBounds};
 
 /// Upper bound on the relative error of ratios and of coordinates along an axis.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Number of step lengths that are tried, each half of the previous one.
-const HALVINGS: u32 = 10;
+const STEP_HALVINGS: u32 = 10;
 /// Number of attempts to move a side outwards after which no further round of attempts begins.
-const MOVES: u32 = 64;
+const MAX_MOVES: u32 = 64;
 
 /// Box inside a body. Its axes are those of the world, its origin is the moving body's translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,51 +40,58 @@ impl InnerBox {
         low.is_finite()
             && high.is_finite()
             && low.cmplt(high).all()
-            && self.is_clear(bodies, moving)
-            && PLACES.iter().any(|&place| winds(bodies, moving, low + (high - low) * place))
+            && self.is_free_of_facets(bodies, moving)
+            && RAY_STARTS
+                .iter()
+                .any(|&place| ray_leaves(bodies, moving, low + (high - low) * place))
     }
 
     /// Checks whether no facet intersects the interior of the box.
-    fn is_clear(&self, bodies: &Bodies, moving: bool) -> bool {
-        let views = &bodies.views[usize::from(!moving)];
+    fn is_free_of_facets(&self, bodies: &Bodies, moving: bool) -> bool {
+        let nodes = &bodies.nodes[usize::from(!moving)];
         let mut stack = vec![0];
         while let Some(at) = stack.pop() {
-            let view = &views[at as usize];
-            if self.is_beside(view) {
+            let node = &nodes[at as usize];
+            if self.is_separated_from(node) {
                 continue;
             }
-            if view.is_facet() {
+            if node.is_facet() {
                 return false;
             }
-            stack.extend(view.parts());
+            stack.extend(node.children());
         }
         true
     }
 
     /// Checks whether a plane separates the box from all facets of a node.
-    fn is_beside(&self, view: &View) -> bool {
-        if view.low.cmpge(self.high).any() || view.high.cmple(self.low).any() {
+    fn is_separated_from(&self, node: &NodeBounds) -> bool {
+        if node.low.cmpge(self.high).any() || node.high.cmple(self.low).any() {
             return true;
         }
         let (middle, half) = ((self.low + self.high) * 0.5, (self.high - self.low) * 0.5);
-        let (center, reach) = (view.axis.dot(middle), view.axis.abs().dot(half));
-        let slack = ROUNDING * (view.axis.abs().dot(middle.abs()) + reach);
+        let (center, reach) = (node.axis.dot(middle), node.axis.abs().dot(half));
+        let slack = ROUNDING * (node.axis.abs().dot(middle.abs()) + reach);
         let reach = reach + slack;
-        center + reach < view.slab[0] || center - reach > view.slab[1]
+        center + reach < node.slab[0] || center - reach > node.slab[1]
     }
 
     /// Grows a box around a place until facets block all of its sides or the limit of attempts is reached. Returns `None` if the initial box
     /// intersects a facet, or the result is not certainly inside the body.
-    pub(super) fn around(bodies: &Bodies, moving: bool, place: DVec3, step: f64) -> Option<Self> {
+    pub(super) fn grown_around(
+        bodies: &Bodies,
+        moving: bool,
+        place: DVec3,
+        step: f64,
+    ) -> Option<Self> {
         let mut step = step;
         let mut grown = Self { low: place - step / 1024.0, high: place + step / 1024.0 };
-        if !grown.is_clear(bodies, moving) {
+        if !grown.is_free_of_facets(bodies, moving) {
             return None;
         }
         let mut moves = 0;
-        for _ in 0..HALVINGS {
+        for _ in 0..STEP_HALVINGS {
             let mut open = [true; 6];
-            while open.contains(&true) && moves < MOVES {
+            while open.contains(&true) && moves < MAX_MOVES {
                 for (side, open) in open.iter_mut().enumerate().filter(|(_, open)| **open) {
                     let mut larger = grown;
                     if side < 3 {
@@ -92,7 +99,7 @@ impl InnerBox {
                     } else {
                         larger.high[side - 3] += step;
                     }
-                    *open = larger.is_clear(bodies, moving);
+                    *open = larger.is_free_of_facets(bodies, moving);
                     if *open {
                         grown = larger;
                     }
@@ -106,22 +113,22 @@ impl InnerBox {
 
     /// Grows boxes inside the moving and the fixed body behind the points where two facets meet along a
     /// direction, in order of increasing depth.
-    pub(super) fn behind(bodies: &Bodies, pair: [u32; 2], d: DVec3) -> [Vec<Self>; 2] {
+    pub(super) fn grown_behind(bodies: &Bodies, pair: [u32; 2], d: DVec3) -> [Vec<Self>; 2] {
         let facets = [true, false].map(|moving| {
             let triangle = pair[usize::from(!moving)];
-            bodies.spots(moving, triangle).map(|spot| bodies.corner(spot).at)
+            bodies.triangle_vertices(moving, triangle).map(|vertex| bodies.placed_vertex(vertex).at)
         });
-        let places = meeting(&facets, d.normalize());
+        let places = common_places(&facets, d.normalize());
         [true, false].map(|moving| {
             let k = usize::from(!moving);
-            let views = &bodies.views[k];
-            let whole = (views[0].high - views[0].low).max_element();
+            let nodes = &bodies.nodes[k];
+            let whole = (nodes[0].high - nodes[0].low).max_element();
             let [a, b, c] = facets[k];
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let mut found: Vec<Self> = Vec::new();
-            for part in DEPTHS {
+            for part in BOX_DEPTHS {
                 let depth = whole * part;
-                let new = Self::around(bodies, moving, places[k] - normal * depth, depth);
+                let new = Self::grown_around(bodies, moving, places[k] - normal * depth, depth);
                 found.extend(new.filter(|new| !found.contains(new)));
             }
             found
@@ -132,7 +139,7 @@ impl InnerBox {
 /// Returns a point on a facet of the moving body and one on a facet of the fixed body whose shadows along the
 /// unit vector `d` coincide, near the center of the overlap of both shadows. If the shadows do not overlap,
 /// returns the centroids.
-fn meeting(facets: &[[DVec3; 3]; 2], d: DVec3) -> [DVec3; 2] {
+fn common_places(facets: &[[DVec3; 3]; 2], d: DVec3) -> [DVec3; 2] {
     let x = d.any_orthonormal_vector();
     let y = d.cross(x);
     let shadow = |p: DVec3| DVec2::new(x.dot(p), y.dot(p));
@@ -165,14 +172,14 @@ fn meeting(facets: &[[DVec3; 3]; 2], d: DVec3) -> [DVec3; 2] {
 }
 
 /// Starting points of rays inside a box, as fractions of its sides.
-const PLACES: [DVec3; 3] =
+const RAY_STARTS: [DVec3; 3] =
     [DVec3::splat(0.5), DVec3::new(0.375, 0.4375, 0.5625), DVec3::new(0.625, 0.28125, 0.40625)];
 /// Depths below facets at which boxes start, as fractions of the size of the body.
-const DEPTHS: [f64; 4] = [1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0];
+const BOX_DEPTHS: [f64; 4] = [1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0];
 
 /// Checks whether boxes inside the moving and the fixed body block all directions of a cell, given by its
 /// corners.
-pub(super) fn cover([moving, fixed]: [&InnerBox; 2], corners: &[DVec3; 4]) -> bool {
+pub(super) fn boxes_block([moving, fixed]: [&InnerBox; 2], corners: &[DVec3; 4]) -> bool {
     let (low, high) = (fixed.low - moving.high, fixed.high - moving.low);
     // Round the difference inwards.
     let (low, high) = (low + low.abs() * ROUNDING, high - high.abs() * ROUNDING);
@@ -192,21 +199,21 @@ pub(super) fn cover([moving, fixed]: [&InnerBox; 2], corners: &[DVec3; 4]) -> bo
 }
 
 /// Checks whether a ray along `x` certainly leaves a body more often than it enters it.
-fn winds(bodies: &Bodies, moving: bool, place: DVec3) -> bool {
-    let views = &bodies.views[usize::from(!moving)];
+fn ray_leaves(bodies: &Bodies, moving: bool, place: DVec3) -> bool {
+    let nodes = &bodies.nodes[usize::from(!moving)];
     let (mut stack, mut count) = (vec![0], 0);
     while let Some(at) = stack.pop() {
-        let view = &views[at as usize];
-        let (low, high) = (view.low, view.high);
+        let node = &nodes[at as usize];
+        let (low, high) = (node.low, node.high);
         let within = (1..3).all(|k| low[k] <= place[k] && place[k] <= high[k]);
         if !within || high.x < place.x {
             continue;
         }
-        if !view.is_facet() {
-            stack.extend(view.parts());
+        if !node.is_facet() {
+            stack.extend(node.children());
             continue;
         }
-        match crossing(bodies, moving, bodies.triangle(moving, at), place) {
+        match ray_crossing(bodies, moving, bodies.leaf_triangle(moving, at), place) {
             Some(turn) => count += turn,
             None => return false,
         }
@@ -216,14 +223,16 @@ fn winds(bodies: &Bodies, moving: bool, place: DVec3) -> bool {
 
 /// Returns 1 if the ray from a place along `x` leaves through a facet, -1 if it enters, and 0 if it misses
 /// the facet. Returns `None` if this is uncertain.
-fn crossing(bodies: &Bodies, moving: bool, triangle: u32, place: DVec3) -> Option<i32> {
-    let corners = bodies.spots(moving, triangle).map(|spot| bodies.corner(spot));
+fn ray_crossing(bodies: &Bodies, moving: bool, triangle: u32, place: DVec3) -> Option<i32> {
+    let corners =
+        bodies.triangle_vertices(moving, triangle).map(|vertex| bodies.placed_vertex(vertex));
     let exact = corners.iter().all(|corner| corner.exact);
     let noise = if exact { 0.0 } else { bodies.scene.noise };
-    let ways = corners.map(|corner| corner.at - place);
+    let vectors = corners.map(|corner| corner.at - place);
     // Add a bound on the rounding errors of the differences.
-    let noise = noise + f64::EPSILON * ways.iter().map(|way| way.abs().max_element()).sum::<f64>();
-    let flat = ways.map(|way| DVec2::new(way.y, way.z));
+    let noise =
+        noise + f64::EPSILON * vectors.iter().map(|vector| vector.abs().max_element()).sum::<f64>();
+    let flat = vectors.map(|vector| DVec2::new(vector.y, vector.z));
     let mut turns = [0; 3];
     for k in 0..3 {
         let (p, q) = (flat[k], flat[(k + 1) % 3]);
@@ -240,9 +249,9 @@ fn crossing(bodies: &Bodies, moving: bool, triangle: u32, place: DVec3) -> Optio
     }
     // The facet is ahead if `value`, the offset of its plane along the normal, has the sign of the normal's `x`
     // component. That is the sign of the turns.
-    let [a, b, c] = ways;
+    let [a, b, c] = vectors;
     let (x, y) = (b - a, c - a);
-    let [l, m, n] = [x, y, a].map(|way| way.abs().max_element() + 2.0 * noise);
+    let [l, m, n] = [x, y, a].map(|vector| vector.abs().max_element() + 2.0 * noise);
     let value = x.cross(y).dot(a);
     if value.abs() <= 48.0 * noise * (l * m + m * n + n * l) + 4.0 * ROUNDING * l * m * n {
         return None;
@@ -259,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_cover_what_their_difference_is_seen_in() {
+    fn boxes_block_cells_inside_cone_of_difference() {
         let (near, far) = (
             cube(-1.0, 1.0),
             InnerBox { low: DVec3::new(3.0, -1.0, -1.0), high: DVec3::new(5.0, 1.0, 1.0) },
@@ -269,8 +278,8 @@ mod tests {
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
                 .map(|[u, v]| DVec3::new(1.0, u * reach, v * reach))
         };
-        assert!(cover([&near, &far], &square(0.999)));
-        assert!(!cover([&near, &far], &square(1.0)));
-        assert!(!cover([&far, &near], &square(0.5)));
+        assert!(boxes_block([&near, &far], &square(0.999)));
+        assert!(!boxes_block([&near, &far], &square(1.0)));
+        assert!(!boxes_block([&far, &near], &square(0.5)));
     }
 }

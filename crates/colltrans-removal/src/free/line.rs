@@ -48,11 +48,11 @@ pub(super) struct Line {
     /// Upper bound on the error of each component. The form is exact if the bound is 0.
     pub(super) error: f64,
     /// Vertices that span the line, if any.
-    spots: Option<[PlaneVertex; 3]>,
+    vertices: Option<[PlaneVertex; 3]>,
 }
 
 /// Computes the cross product of two differences. The flag states whether it is exact.
-fn cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
+fn rounded_cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
     let minor = |i: usize, j: usize| {
         let (p, q) = (x[i] * y[j], x[j] * y[i]);
         let exact = product_error(x[i], y[j], p) == 0.0
@@ -66,7 +66,7 @@ fn cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
 
 /// Returns the power of two that scales a number to the range from 1 to 2. Returns 1 for zero, subnormal numbers
 /// and the largest exponents.
-fn scale(x: f64) -> f64 {
+fn unit_scale(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52 & 0x7ff) as i32;
     if (1..2046).contains(&exponent) {
         f64::from_bits(((2046 - exponent) as u64) << 52)
@@ -77,138 +77,146 @@ fn scale(x: f64) -> f64 {
 
 impl Line {
     /// Builds the line through three vertices.
-    pub(super) fn of(bodies: &Bodies, spots: [PlaneVertex; 3]) -> Self {
-        let [a, b, c] = spots.map(|spot| bodies.corner(spot));
+    pub(super) fn through(bodies: &Bodies, vertices: [PlaneVertex; 3]) -> Self {
+        let [a, b, c] = vertices.map(|vertex| bodies.placed_vertex(vertex));
         let (x, y) = (b.at - a.at, c.at - a.at);
         let lost = |p: DVec3, q: DVec3| (0..3).any(|k| difference_error(p[k], q[k]) != 0.0);
         let rounded = !(a.exact && b.exact && c.exact) || lost(b.at, a.at) || lost(c.at, a.at);
-        let (form, exact) = cross(x, y);
-        let spots = Some(spots);
+        let (form, exact) = rounded_cross(x, y);
+        let vertices = Some(vertices);
         if !rounded && exact {
-            let factor = scale(form.abs().max_element());
-            return Self { form: form * factor, error: 0.0, spots };
+            let factor = unit_scale(form.abs().max_element());
+            return Self { form: form * factor, error: 0.0, vertices };
         }
         let (m, n) = (x.abs().max_element(), y.abs().max_element());
         let noise = |p: bool, q: bool| (f64::from(!p) + f64::from(!q)) * bodies.scene.noise;
         let (e, f) = (noise(a.exact, b.exact) + 2.0 * U * m, noise(a.exact, c.exact) + 2.0 * U * n);
         let error = 2.02 * (e * n + f * m + e * f) + 8.0 * U * m * n + f64::MIN_POSITIVE;
-        let factor = scale(form.abs().max_element().max(error));
-        Self { form: form * factor, error: error * factor, spots }
+        let factor = unit_scale(form.abs().max_element().max(error));
+        Self { form: form * factor, error: error * factor, vertices }
     }
 
     /// Builds a line with an exact form.
-    pub(super) fn exactly(form: DVec3) -> Self {
-        Self { form, error: 0.0, spots: None }
+    pub(super) fn from_exact_form(form: DVec3) -> Self {
+        Self { form, error: 0.0, vertices: None }
     }
 
     /// Returns the exact side on which a direction lies. Returns `Equal` if numbers are too large for exact
     /// arithmetic.
-    pub(super) fn side(&self, bodies: &Bodies, d: DVec3) -> Ordering {
+    pub(super) fn side_of_direction(&self, bodies: &Bodies, d: DVec3) -> Ordering {
         let value = self.form.dot(d);
         let (size, terms) = (d.abs().element_sum(), (self.form * d).abs().element_sum());
         if value.abs() > self.error * size + 4.0 * U * terms + f64::MIN_POSITIVE {
             return sign(value);
         }
-        self.wide_side::<SMALL>(bodies, d)
-            .or_else(|| self.wide_side::<LARGE>(bodies, d))
+        self.exact_side::<SMALL>(bodies, d)
+            .or_else(|| self.exact_side::<LARGE>(bodies, d))
             .unwrap_or(Ordering::Equal)
     }
 
-    fn wide_side<const N: usize>(&self, bodies: &Bodies, d: DVec3) -> Option<Ordering> {
-        let form = self.wide::<N>(bodies);
+    fn exact_side<const N: usize>(&self, bodies: &Bodies, d: DVec3) -> Option<Ordering> {
+        let form = self.exact_form::<N>(bodies);
         let term = |k: usize| form[k].multiply(&Integer::number(d[k]));
         term(0).add(&term(1)).add(&term(2)).sign()
     }
 
     /// Returns the form in exact integers, up to a positive factor.
-    pub(super) fn wide<const N: usize>(&self, bodies: &Bodies) -> [Integer<N>; 3] {
-        let Some(spots) = self.spots.filter(|_| self.error > 0.0) else {
+    pub(super) fn exact_form<const N: usize>(&self, bodies: &Bodies) -> [Integer<N>; 3] {
+        let Some(vertices) = self.vertices.filter(|_| self.error > 0.0) else {
             return self.form.to_array().map(Integer::number);
         };
-        let [a, b, c] = spots.map(|spot| bodies.wide::<N>(spot));
+        let [a, b, c] = vertices.map(|vertex| bodies.exact_position::<N>(vertex));
         let (x, y) = (difference(&b, &a), difference(&c, &a));
-        wide_cross(&x, &y)
+        exact_cross(&x, &y)
     }
 
     /// Returns the vertices that span the line; `None` for a line with an exact form.
-    pub(super) fn vertices(&self) -> Option<[PlaneVertex; 3]> {
-        self.spots
+    pub(super) fn spanning_vertices(&self) -> Option<[PlaneVertex; 3]> {
+        self.vertices
     }
 
     /// Returns the line with both sides exchanged.
     pub(super) fn reversed(&self) -> Self {
-        let spots = self.spots.map(|[a, b, c]| [a, c, b]);
-        Self { form: -self.form, error: self.error, spots }
+        let vertices = self.vertices.map(|[a, b, c]| [a, c, b]);
+        Self { form: -self.form, error: self.error, vertices }
     }
 
     /// Returns the exact side on which a direction lies. Returns `Equal` if numbers are too large for exact
     /// arithmetic.
     pub(super) fn side_of_ray(&self, bodies: &Bodies, ray: &Ray) -> Ordering {
         match ray {
-            Ray::Exactly(d) => self.side(bodies, *d),
-            Ray::Toward(ends) => self.side_of(bodies, *ends),
+            Ray::Exactly(d) => self.side_of_direction(bodies, *d),
+            Ray::Toward(ends) => self.side_of_displacement(bodies, *ends),
             Ray::Crossing([a, b]) => orientation(bodies, [a, b, self]).unwrap_or(Ordering::Equal),
         }
     }
 
     /// Checks exactly whether another line is the same great circle, in either orientation.
-    pub(super) fn is_along(&self, bodies: &Bodies, other: &Self) -> bool {
-        let way = self.form.cross(other.form).abs().max_element();
+    pub(super) fn is_same_circle(&self, bodies: &Bodies, other: &Self) -> bool {
+        let vector = self.form.cross(other.form).abs().max_element();
         // Components are at most 2.
-        if way > 4.04 * (self.error + other.error + self.error * other.error) + 32.0 * U {
+        if vector > 4.04 * (self.error + other.error + self.error * other.error) + 32.0 * U {
             return false;
         }
-        self.is_along_exactly::<SMALL>(bodies, other)
-            .or_else(|| self.is_along_exactly::<LARGE>(bodies, other))
+        self.is_same_circle_exactly::<SMALL>(bodies, other)
+            .or_else(|| self.is_same_circle_exactly::<LARGE>(bodies, other))
             .unwrap_or(true)
     }
 
-    fn is_along_exactly<const N: usize>(&self, bodies: &Bodies, other: &Self) -> Option<bool> {
-        let way = wide_cross(&self.wide::<N>(bodies), &other.wide::<N>(bodies));
-        let signs = way.map(|component| component.sign());
+    fn is_same_circle_exactly<const N: usize>(
+        &self,
+        bodies: &Bodies,
+        other: &Self,
+    ) -> Option<bool> {
+        let vector = exact_cross(&self.exact_form::<N>(bodies), &other.exact_form::<N>(bodies));
+        let signs = vector.map(|component| component.sign());
         signs.iter().all(Option::is_some).then(|| signs == [Some(Ordering::Equal); 3])
     }
 
     /// Returns two vertices that two lines share, in whose difference they intersect. Returns `None` if they
     /// do not share exactly two.
-    pub(super) fn shared(&self, other: &Self) -> Option<[PlaneVertex; 2]> {
-        let (own, others) = (self.spots?, other.spots?);
-        let mut both = own.into_iter().filter(|spot| others.contains(spot));
+    pub(super) fn shared_vertices(&self, other: &Self) -> Option<[PlaneVertex; 2]> {
+        let (own, others) = (self.vertices?, other.vertices?);
+        let mut both = own.into_iter().filter(|vertex| others.contains(vertex));
         let found = [both.next()?, both.next()?];
         both.next().is_none().then_some(found)
     }
 
     /// Returns the exact side on which the direction from one vertex to another lies.
-    pub(super) fn side_of(&self, bodies: &Bodies, [from, to]: [PlaneVertex; 2]) -> Ordering {
-        if self.spots.is_some_and(|own| own.contains(&from) && own.contains(&to)) {
+    pub(super) fn side_of_displacement(
+        &self,
+        bodies: &Bodies,
+        [from, to]: [PlaneVertex; 2],
+    ) -> Ordering {
+        if self.vertices.is_some_and(|own| own.contains(&from) && own.contains(&to)) {
             return Ordering::Equal;
         }
-        let (way, doubt) = bodies.way([from, to]);
-        let value = self.form.dot(way);
-        let (size, terms) = (way.abs().element_sum(), (self.form * way).abs().element_sum());
+        let (vector, doubt) = bodies.displacement([from, to]);
+        let value = self.form.dot(vector);
+        let (size, terms) = (vector.abs().element_sum(), (self.form * vector).abs().element_sum());
         let form = self.form.abs().element_sum();
         let error = self.error * (size + 3.0 * doubt) + form * doubt;
         if value.abs() > 1.01 * error + 4.0 * U * terms + f64::MIN_POSITIVE {
             return sign(value);
         }
-        self.wide_side_of::<SMALL>(bodies, [from, to])
-            .or_else(|| self.wide_side_of::<LARGE>(bodies, [from, to]))
+        self.exact_side_of_displacement::<SMALL>(bodies, [from, to])
+            .or_else(|| self.exact_side_of_displacement::<LARGE>(bodies, [from, to]))
             .unwrap_or(Ordering::Equal)
     }
 
-    fn wide_side_of<const N: usize>(
+    fn exact_side_of_displacement<const N: usize>(
         &self,
         bodies: &Bodies,
         ends: [PlaneVertex; 2],
     ) -> Option<Ordering> {
-        let (form, way) = (self.wide::<N>(bodies), bodies.wide_way::<N>(ends));
-        let term = |k: usize| form[k].multiply(&way[k]);
+        let (form, vector) = (self.exact_form::<N>(bodies), bodies.exact_displacement::<N>(ends));
+        let term = |k: usize| form[k].multiply(&vector[k]);
         term(0).add(&term(1)).add(&term(2)).sign()
     }
 }
 
 /// Returns the cross product in exact integers.
-pub(super) fn wide_cross<const N: usize>(
+pub(super) fn exact_cross<const N: usize>(
     x: &[Integer<N>; 3],
     y: &[Integer<N>; 3],
 ) -> [Integer<N>; 3] {
@@ -226,10 +234,10 @@ pub(super) fn orientation(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering
     if value.abs() > 6.06 * (most - least) + 64.0 * U * most + f64::MIN_POSITIVE {
         return Some(sign(value));
     }
-    wide_orientation::<SMALL>(bodies, lines).or_else(|| wide_orientation::<LARGE>(bodies, lines))
+    exact_orientation::<SMALL>(bodies, lines).or_else(|| exact_orientation::<LARGE>(bodies, lines))
 }
 
-fn wide_orientation<const N: usize>(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
-    let [a, b, c] = lines.map(|line| line.wide::<N>(bodies));
+fn exact_orientation<const N: usize>(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
+    let [a, b, c] = lines.map(|line| line.exact_form::<N>(bodies));
     determinant(&a, &b, &c).sign()
 }

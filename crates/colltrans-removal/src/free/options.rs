@@ -1,6 +1,6 @@
 //! Options of a search for free directions.
 
-use super::cell::DEEPEST;
+use super::cell::MAX_DEPTH;
 use colltrans_solid::cast::{SolidOptions, StartOverlap};
 
 /// Options of [`FreeDirections`](super::FreeDirections). Fields may be added, therefore start from
@@ -62,7 +62,7 @@ impl FreeOptions {
     /// Returns the options with a maximum depth, at most 50.
     #[must_use]
     pub fn with_depth(self, depth: u32) -> Self {
-        Self { depth: depth.min(DEEPEST), ..self }
+        Self { depth: depth.min(MAX_DEPTH), ..self }
     }
 
     /// Returns the options with a limit of node visits.
@@ -78,7 +78,7 @@ impl FreeOptions {
     }
 
     /// Returns the options of a cast along one direction.
-    pub(super) fn of_cast(&self) -> SolidOptions {
+    pub(super) fn cast_options(&self) -> SolidOptions {
         SolidOptions::default()
             .with_tolerance(self.tolerance)
             .with_start_overlap(self.start_overlap)

@@ -1,13 +1,13 @@
 //! Claims about the cells of the sphere, and their order in a list.
 
-use super::cell::DEEPEST;
+use super::cell::MAX_DEPTH;
 use super::inner::InnerBox;
 use colltrans_solid::cast::StartOverlap;
 
 /// State of a cell. Pairs are indices into [`Solid::triangles`](colltrans_solid::Solid::triangles) of the
 /// moving and the fixed body.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum CellState {
     /// Divided into quarters. The number is the index of the first one.
     Cut(u32),
     /// One pair blocks all directions.
@@ -20,7 +20,7 @@ pub(super) enum Fate {
     Undecided(Vec<[u32; 2]>),
 }
 
-impl Fate {
+impl CellState {
     /// Undecided, with no blocking pair.
     pub(super) const UNKNOWN: Self = Self::Undecided(Vec::new());
 }
@@ -67,42 +67,42 @@ pub enum CellProof {
 }
 
 /// Converts the list of a proof to cells with indices. Returns `None` if the list does not partition the
-/// sphere, or a cell is deeper than [`DEEPEST`].
-pub(super) fn fates(cells: &[CellProof]) -> Option<Vec<Fate>> {
-    let mut fates = vec![Fate::UNKNOWN; 6];
+/// sphere, or a cell is deeper than [`MAX_DEPTH`].
+pub(super) fn cell_states(cells: &[CellProof]) -> Option<Vec<CellState>> {
+    let mut states = vec![CellState::UNKNOWN; 6];
     let mut stack: Vec<(usize, u32)> = (0..6).rev().map(|at| (at, 0)).collect();
     for cell in cells {
         let (at, depth) = stack.pop()?;
-        fates[at] = match cell {
-            CellProof::Blocked(pair) => Fate::Blocked(*pair),
-            CellProof::Inner(pair) => Fate::Inner(*pair),
-            CellProof::Open(pairs) => Fate::Open(pairs.clone()),
-            CellProof::Undecided(pairs) => Fate::Undecided(pairs.clone()),
-            CellProof::Cut if depth >= DEEPEST => return None,
+        states[at] = match cell {
+            CellProof::Blocked(pair) => CellState::Blocked(*pair),
+            CellProof::Inner(pair) => CellState::Inner(*pair),
+            CellProof::Open(pairs) => CellState::Open(pairs.clone()),
+            CellProof::Undecided(pairs) => CellState::Undecided(pairs.clone()),
+            CellProof::Cut if depth >= MAX_DEPTH => return None,
             CellProof::Cut => {
-                let first = fates.len();
+                let first = states.len();
                 stack.extend((0..4).rev().map(|k| (first + k, depth + 1)));
-                Fate::Cut(first as u32)
+                CellState::Cut(first as u32)
             }
         };
-        if let Fate::Cut(_) = fates[at] {
-            fates.extend([const { Fate::UNKNOWN }; 4]);
+        if let CellState::Cut(_) = states[at] {
+            states.extend([const { CellState::UNKNOWN }; 4]);
         }
     }
-    stack.is_empty().then_some(fates)
+    stack.is_empty().then_some(states)
 }
 
 /// Converts cells with indices to the list of a proof.
-pub(super) fn cells(fates: &[Fate]) -> Vec<CellProof> {
-    let mut cells = Vec::with_capacity(fates.len());
+pub(super) fn cell_proofs(states: &[CellState]) -> Vec<CellProof> {
+    let mut cells = Vec::with_capacity(states.len());
     let mut stack: Vec<usize> = (0..6).rev().collect();
     while let Some(at) = stack.pop() {
-        cells.push(match &fates[at] {
-            Fate::Blocked(pair) => CellProof::Blocked(*pair),
-            Fate::Inner(pair) => CellProof::Inner(*pair),
-            Fate::Open(pairs) => CellProof::Open(pairs.clone()),
-            Fate::Undecided(pairs) => CellProof::Undecided(pairs.clone()),
-            Fate::Cut(first) => {
+        cells.push(match &states[at] {
+            CellState::Blocked(pair) => CellProof::Blocked(*pair),
+            CellState::Inner(pair) => CellProof::Inner(*pair),
+            CellState::Open(pairs) => CellProof::Open(pairs.clone()),
+            CellState::Undecided(pairs) => CellProof::Undecided(pairs.clone()),
+            CellState::Cut(first) => {
                 stack.extend((0..4).rev().map(|k| *first as usize + k));
                 CellProof::Cut
             }

@@ -12,20 +12,20 @@ use glam::DVec3;
 use super::answer::FreePiece;
 
 /// Directions on the cube that differ by less are identified.
-const BESIDE: f64 = 1e-12;
+const SAME_DIRECTION: f64 = 1e-12;
 /// Angle in radians. A boundary that turns by less has no corner.
-const TURN: f64 = 1e-6;
+const MIN_TURN: f64 = 1e-6;
 /// Area from which on a region is the whole sphere and has no boundary.
-const WHOLE: f64 = 4.0 * PI * (1.0 - 1e-9);
+const WHOLE_SPHERE: f64 = 4.0 * PI * (1.0 - 1e-9);
 /// Parts of a side that are shorter than this fraction of it are ignored.
-const PART: f64 = 1e-9;
+const MIN_PART: f64 = 1e-9;
 /// Maximum number of pieces whose centers are starting points of the search for the direction farthest from
 /// the boundary.
-const MIDDLES: usize = 32;
+const MAX_STARTS: usize = 32;
 /// Maximum number of steps of this search.
-const STEPS: usize = 60;
+const MAX_STEPS: usize = 60;
 /// Step length at which this search ends, relative to the angle to the boundary.
-const FINEST: f64 = 1e-3;
+const MIN_STEP: f64 = 1e-3;
 
 /// Connected region of free directions, including its boundary.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,9 +48,12 @@ pub struct FreeRegion {
 }
 
 /// Joins pieces that touch to regions, sorted by decreasing area. `is_free` classifies a direction exactly.
-pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> Vec<FreeRegion> {
+pub(super) fn connected_regions(
+    pieces: &[FreePiece],
+    is_free: impl Fn(DVec3) -> bool,
+) -> Vec<FreeRegion> {
     let pieces = &without_slivers(pieces)[..];
-    let touching = touching(pieces);
+    let touching = touching_pieces(pieces);
     let mut group = vec![usize::MAX; pieces.len()];
     let mut regions: Vec<FreeRegion> = Vec::new();
     for first in 0..pieces.len() {
@@ -69,7 +72,7 @@ pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> 
                 }
             }
         }
-        regions.push(region(pieces, &members, &touching, &is_free));
+        regions.push(build_region(pieces, &members, &touching, &is_free));
     }
     regions.sort_by(|a, b| b.area.total_cmp(&a.area));
     regions
@@ -81,7 +84,7 @@ fn without_slivers(pieces: &[FreePiece]) -> Vec<FreePiece> {
     if !slivers.contains(&true) {
         return pieces.to_vec();
     }
-    let touching = touching(pieces);
+    let touching = touching_pieces(pieces);
     let beside = |k: usize| slivers[k] && touching[k].iter().any(|&other| !slivers[other]);
     (0..pieces.len()).filter(|&k| !beside(k)).map(|k| pieces[k].clone()).collect()
 }
@@ -90,10 +93,12 @@ fn without_slivers(pieces: &[FreePiece]) -> Vec<FreePiece> {
 fn is_sliver(piece: &FreePiece) -> bool {
     let length = |k: usize| piece.corners[k].distance(piece.corners[(k + 1) % piece.corners.len()]);
     let longest = (0..piece.corners.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
-    longest.is_none_or(|k| piece.corners.iter().all(|c| side(piece, k).dot(*c).abs() < BESIDE))
+    longest.is_none_or(|k| {
+        piece.corners.iter().all(|c| side_normal(piece, k).dot(*c).abs() < SAME_DIRECTION)
+    })
 }
 
-fn region(
+fn build_region(
     pieces: &[FreePiece],
     members: &[usize],
     touching: &[Vec<usize>],
@@ -103,42 +108,43 @@ fn region(
     let mut corners: Vec<DVec3> = Vec::new();
     for &at in members {
         for &c in &pieces[at].corners {
-            if corners.iter().any(|other| other.distance(c) < BESIDE) {
+            if corners.iter().any(|other| other.distance(c) < SAME_DIRECTION) {
                 continue;
             }
-            let around = touching[at].iter().chain([&at]).map(|&k| angle(&pieces[k], c));
+            let around = touching[at].iter().chain([&at]).map(|&k| interior_angle(&pieces[k], c));
             let whole: f64 = around.sum();
-            if (whole - PI).abs() > TURN && (whole - 2.0 * PI).abs() > TURN {
+            if (whole - PI).abs() > MIN_TURN && (whole - 2.0 * PI).abs() > MIN_TURN {
                 corners.push(c);
             }
         }
     }
     let area: f64 = own.iter().map(|piece| piece.area).sum();
-    let mean: DVec3 = own.iter().map(|piece| center(piece) * piece.area).sum();
+    let mean: DVec3 = own.iter().map(|piece| piece_center(piece) * piece.area).sum();
     let mut border: Vec<[DVec3; 2]> =
         members.iter().flat_map(|&at| outer_sides(pieces, at, &touching[at])).collect();
-    if border.is_empty() && area < WHOLE {
+    if border.is_empty() && area < WHOLE_SPHERE {
         // The region is narrower than rounding, and its sides coincide. All of them form its boundary.
-        border = own.iter().flat_map(sides).collect();
+        border = own.iter().flat_map(piece_sides).collect();
         corners = own.iter().flat_map(|piece| piece.corners.iter().copied()).collect();
     }
     let inside = mean.try_normalize().filter(|d| is_free(*d));
-    let (center, margin) = farthest(&border, inside.into_iter().chain(middles(&own)));
+    let (center, margin) =
+        farthest_from_boundary(&border, inside.into_iter().chain(largest_centers(&own)));
     // The center of a piece is free, independently of the boundary.
-    let middle = || middles(&own).next().unwrap_or(DVec3::Z);
+    let middle = || largest_centers(&own).next().unwrap_or(DVec3::Z);
     let (center, margin) = if is_free(center) { (center, margin) } else { (middle(), 0.0) };
     FreeRegion { center, margin, corners, border, area, pieces: own }
 }
 
 /// Returns the centers of the largest pieces.
-fn middles(pieces: &[FreePiece]) -> impl Iterator<Item = DVec3> {
+fn largest_centers(pieces: &[FreePiece]) -> impl Iterator<Item = DVec3> {
     let mut order: Vec<&FreePiece> = pieces.iter().collect();
     order.sort_by(|a, b| b.area.total_cmp(&a.area));
-    order.into_iter().take(MIDDLES).map(center)
+    order.into_iter().take(MAX_STARTS).map(piece_center)
 }
 
 /// Returns the sides of a piece.
-fn sides(piece: &FreePiece) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+fn piece_sides(piece: &FreePiece) -> impl Iterator<Item = [DVec3; 2]> + '_ {
     let next = piece.corners.iter().cycle().skip(1);
     piece.corners.iter().zip(next).map(|(a, b)| [*a, *b])
 }
@@ -149,13 +155,13 @@ fn outer_sides(pieces: &[FreePiece], at: usize, touching: &[usize]) -> Vec<[DVec
     let mut found = Vec::new();
     for k in 0..piece.corners.len() {
         let (a, b) = (piece.corners[k], piece.corners[(k + 1) % piece.corners.len()]);
-        let (form, way) = (side(piece, k), b - a);
-        let along = |c: DVec3| (c - a).dot(way) / way.length_squared();
+        let (form, vector) = (side_normal(piece, k), b - a);
+        let along = |c: DVec3| (c - a).dot(vector) / vector.length_squared();
         let mut shared: Vec<[f64; 2]> = Vec::new();
         for other in touching.iter().map(|&other| &pieces[other]) {
             for (j, &c) in other.corners.iter().enumerate() {
                 let d = other.corners[(j + 1) % other.corners.len()];
-                if form.dot(c).abs() < BESIDE && form.dot(d).abs() < BESIDE {
+                if form.dot(c).abs() < SAME_DIRECTION && form.dot(d).abs() < SAME_DIRECTION {
                     let (s, t) = (along(c), along(d));
                     shared.push([s.min(t), s.max(t)]);
                 }
@@ -164,8 +170,8 @@ fn outer_sides(pieces: &[FreePiece], at: usize, touching: &[usize]) -> Vec<[DVec
         shared.sort_by(|x, y| x[0].total_cmp(&y[0]));
         let mut from = 0.0_f64;
         for [low, high] in shared.into_iter().chain([[1.0, 1.0]]) {
-            if low.min(1.0) - from > PART {
-                found.push([a + way * from, a + way * low.min(1.0)]);
+            if low.min(1.0) - from > MIN_PART {
+                found.push([a + vector * from, a + vector * low.min(1.0)]);
             }
             from = from.max(high);
         }
@@ -175,23 +181,26 @@ fn outer_sides(pieces: &[FreePiece], at: usize, touching: &[usize]) -> Vec<[DVec
 
 /// Maximises the angle to a boundary by a pattern search from several starting directions inside. Returns the
 /// direction and its angle.
-fn farthest(border: &[[DVec3; 2]], inside: impl Iterator<Item = DVec3>) -> (DVec3, f64) {
-    let sides: Vec<Side> = border.iter().map(Side::new).collect();
-    let margin = |d: DVec3| sides.iter().map(|side| side.angle(d)).fold(PI, f64::min);
+fn farthest_from_boundary(
+    border: &[[DVec3; 2]],
+    inside: impl Iterator<Item = DVec3>,
+) -> (DVec3, f64) {
+    let sides: Vec<BoundarySide> = border.iter().map(BoundarySide::new).collect();
+    let margin = |d: DVec3| sides.iter().map(|side| side.angle_to(d)).fold(PI, f64::min);
     let starts = inside.map(|d| (d, margin(d)));
     let Some(mut best) = starts.max_by(|a, b| a.1.total_cmp(&b.1)) else { return (DVec3::Z, 0.0) };
     // Directions that are nearer than the boundary are inside.
     let mut step = best.1 / 2.0;
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         let (u, v) = best.0.any_orthonormal_pair();
         let around = [u, u + v, v, v - u, -u, -u - v, -v, u - v];
-        let moved = around.map(|way| (best.0 + way.normalize() * step).normalize());
+        let moved = around.map(|vector| (best.0 + vector.normalize() * step).normalize());
         let next = moved.map(|d| (d, margin(d))).into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         match next {
             Some(next) if next.1 > best.1 => best = next,
             _ => step /= 2.0,
         }
-        if step < FINEST * best.1 {
+        if step < MIN_STEP * best.1 {
             break;
         }
     }
@@ -199,14 +208,14 @@ fn farthest(border: &[[DVec3; 2]], inside: impl Iterator<Item = DVec3>) -> (DVec
 }
 
 /// Side of a boundary, prepared for angles.
-struct Side {
+struct BoundarySide {
     ends: [DVec3; 2],
     /// Normal of the side's plane, and the directions from each end along the side.
     across: DVec3,
     along: [DVec3; 2],
 }
 
-impl Side {
+impl BoundarySide {
     fn new([a, b]: &[DVec3; 2]) -> Self {
         let across = a.cross(b - a).normalize_or_zero();
         let ends = [a.normalize(), b.normalize()];
@@ -214,7 +223,7 @@ impl Side {
     }
 
     /// Returns the angle between the side and a direction of length 1.
-    fn angle(&self, d: DVec3) -> f64 {
+    fn angle_to(&self, d: DVec3) -> f64 {
         if self.along.iter().all(|along| along.dot(d) >= 0.0) {
             let sine = self.across.dot(d - self.ends[0]).abs();
             return sine.atan2((1.0 - sine * sine).max(0.0).sqrt());
@@ -225,12 +234,12 @@ impl Side {
 }
 
 /// Returns the center of a piece, of length 1.
-fn center(piece: &FreePiece) -> DVec3 {
+fn piece_center(piece: &FreePiece) -> DVec3 {
     piece.corners.iter().sum::<DVec3>().normalize_or(DVec3::Z)
 }
 
 /// Returns for each piece the other pieces that share a direction with it.
-fn touching(pieces: &[FreePiece]) -> Vec<Vec<usize>> {
+fn touching_pieces(pieces: &[FreePiece]) -> Vec<Vec<usize>> {
     let bounds = |piece: &FreePiece| {
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         piece.corners.iter().fold(start, |(low, high), &c| (low.min(c), high.max(c)))
@@ -241,12 +250,15 @@ fn touching(pieces: &[FreePiece]) -> Vec<Vec<usize>> {
     let mut touching = vec![Vec::new(); pieces.len()];
     for (k, &a) in order.iter().enumerate() {
         for &b in &order[k + 1..] {
-            if boxes[b].0.x > boxes[a].1.x + BESIDE {
+            if boxes[b].0.x > boxes[a].1.x + SAME_DIRECTION {
                 break;
             }
             let ([p, q], [r, s]) = ([boxes[a].0, boxes[a].1], [boxes[b].0, boxes[b].1]);
-            let near = p.cmple(s + BESIDE).all() && r.cmple(q + BESIDE).all();
-            if near && !is_apart(&pieces[a], &pieces[b]) && !is_apart(&pieces[b], &pieces[a]) {
+            let near = p.cmple(s + SAME_DIRECTION).all() && r.cmple(q + SAME_DIRECTION).all();
+            if near
+                && !has_separating_side(&pieces[a], &pieces[b])
+                && !has_separating_side(&pieces[b], &pieces[a])
+            {
                 touching[a].push(b);
                 touching[b].push(a);
             }
@@ -256,33 +268,33 @@ fn touching(pieces: &[FreePiece]) -> Vec<Vec<usize>> {
 }
 
 /// Checks whether a side of one piece separates it from another one.
-fn is_apart(piece: &FreePiece, other: &FreePiece) -> bool {
+fn has_separating_side(piece: &FreePiece, other: &FreePiece) -> bool {
     let inner: DVec3 = piece.corners.iter().sum();
     (0..piece.corners.len()).any(|k| {
-        let form = side(piece, k);
+        let form = side_normal(piece, k);
         let form = if form.dot(inner) < 0.0 { -form } else { form };
-        other.corners.iter().all(|c| form.dot(*c) < -BESIDE)
+        other.corners.iter().all(|c| form.dot(*c) < -SAME_DIRECTION)
     })
 }
 
 /// Returns the unit normal of the plane through the origin and the side from corner `k`.
-fn side(piece: &FreePiece, k: usize) -> DVec3 {
+fn side_normal(piece: &FreePiece, k: usize) -> DVec3 {
     let (a, b) = (piece.corners[k], piece.corners[(k + 1) % piece.corners.len()]);
     // Exact for sides of cells.
     a.cross(b - a).normalize_or_zero()
 }
 
 /// Returns the interior angle of a piece at a direction on its boundary, and 0 for other directions.
-fn angle(piece: &FreePiece, at: DVec3) -> f64 {
+fn interior_angle(piece: &FreePiece, at: DVec3) -> f64 {
     let count = piece.corners.len();
-    if let Some(k) = (0..count).find(|&k| piece.corners[k].distance(at) < BESIDE) {
-        let way = |other: DVec3| (other - at).reject_from(at);
+    if let Some(k) = (0..count).find(|&k| piece.corners[k].distance(at) < SAME_DIRECTION) {
+        let vector = |other: DVec3| (other - at).reject_from(at);
         let (a, b) = (piece.corners[(k + 1) % count], piece.corners[(k + count - 1) % count]);
-        return way(a).angle_between(way(b));
+        return vector(a).angle_between(vector(b));
     }
     let is_on = |k: usize| {
         let (a, b) = (piece.corners[k], piece.corners[(k + 1) % count]);
-        side(piece, k).dot(at).abs() < BESIDE && (a - at).dot(b - at) < 0.0
+        side_normal(piece, k).dot(at).abs() < SAME_DIRECTION && (a - at).dot(b - at) < 0.0
     };
     if (0..count).any(is_on) { PI } else { 0.0 }
 }

@@ -7,20 +7,20 @@
 
 use glam::DVec3;
 
-use super::bodies::{Bodies, View};
-use super::cell::{Cell, Side};
+use super::bodies::{Bodies, NodeBounds};
+use super::cell::{Cell, CubeSide};
 
 /// Upper bound on the relative error of ratios of differences.
-const RATIO: f64 = 8.0 * f64::EPSILON;
+const RATIO_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// Rectangle on a side of the cube.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
-    side: Side,
+    side: CubeSide,
     pub(super) u: [f64; 2],
     pub(super) v: [f64; 2],
     /// Whether the rectangle has a non-empty interior.
-    solid: bool,
+    has_interior: bool,
     corners: [DVec3; 4],
     lengths: [f64; 4],
     /// Number of corners that are tested: 1 for a single direction, otherwise 4.
@@ -28,36 +28,36 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn new(side: Side, u: [f64; 2], v: [f64; 2]) -> Self {
+    pub(super) fn new(side: CubeSide, u: [f64; 2], v: [f64; 2]) -> Self {
         let places = [[u[0], v[0]], [u[1], v[0]], [u[1], v[1]], [u[0], v[1]]];
-        let corners = places.map(|place| side.direction(place));
+        let corners = places.map(|place| side.direction_at(place));
         let count = if u[0] == u[1] && v[0] == v[1] { 1 } else { 4 };
-        let solid = u[0] < u[1] && v[0] < v[1];
-        Self { side, u, v, solid, corners, lengths: corners.map(DVec3::length), count }
+        let has_interior = u[0] < u[1] && v[0] < v[1];
+        Self { side, u, v, has_interior, corners, lengths: corners.map(DVec3::length), count }
     }
 
-    pub(super) fn of(cell: &Cell) -> Self {
-        Self::new(cell.side, cell.range(0), cell.range(1))
+    pub(super) fn of_cell(cell: &Cell) -> Self {
+        Self::new(cell.side, cell.coordinate_range(0), cell.coordinate_range(1))
     }
 
-    pub(super) fn at(side: Side, [u, v]: [f64; 2]) -> Self {
+    pub(super) fn at_place(side: CubeSide, [u, v]: [f64; 2]) -> Self {
         Self::new(side, [u; 2], [v; 2])
     }
 
     /// Checks whether no facet of `a`, of the moving body, blocks a facet of `b`, of the fixed body, along
     /// any direction of the rectangle.
-    pub(super) fn is_missed(&self, bodies: &Bodies, a: &View, b: &View) -> bool {
+    pub(super) fn is_missed(&self, bodies: &Bodies, a: &NodeBounds, b: &NodeBounds) -> bool {
         let (low, high) = (b.low - a.high, b.high - a.low);
-        self.boxes_miss(low, high)
-            || self.looks_away(a.axis, a.spread, bodies.permutes[0])
-            || self.looks_away(-b.axis, b.spread, bodies.permutes[1])
-            || self.is_behind(a.axis, a.slab, [b.low, b.high], false)
-            || self.is_behind(b.axis, b.slab, [a.low, a.high], true)
+        self.is_missed_by_box(low, high)
+            || self.faces_away(a.axis, a.spread, bodies.permutes[0])
+            || self.faces_away(-b.axis, b.spread, bodies.permutes[1])
+            || self.is_behind_slab(a.axis, a.slab, [b.low, b.high], false)
+            || self.is_behind_slab(b.axis, b.slab, [a.low, a.high], true)
     }
 
     /// Checks whether a box of differences contains neither zero nor a positive multiple of a direction of
     /// the rectangle.
-    fn boxes_miss(&self, low: DVec3, high: DVec3) -> bool {
+    fn is_missed_by_box(&self, low: DVec3, high: DVec3) -> bool {
         if low.max_element() <= 0.0 && high.min_element() >= 0.0 {
             return false;
         }
@@ -67,62 +67,72 @@ impl Window {
         if far <= 0.0 {
             return true;
         }
-        let mut range = [near.max(0.0) * (1.0 - RATIO), far * (1.0 + RATIO)];
-        self.bound(&mut range, self.u[1], low[i])
-            || self.bound(&mut range, -self.u[0], -high[i])
-            || self.bound(&mut range, self.v[1], low[j])
-            || self.bound(&mut range, -self.v[0], -high[j])
+        let mut range = [near.max(0.0) * (1.0 - RATIO_ERROR), far * (1.0 + RATIO_ERROR)];
+        self.restrict_range(&mut range, self.u[1], low[i])
+            || self.restrict_range(&mut range, -self.u[0], -high[i])
+            || self.restrict_range(&mut range, self.v[1], low[j])
+            || self.restrict_range(&mut range, -self.v[0], -high[j])
             || range[0] > range[1]
     }
 
     /// Restricts a range of positive `t` to `t slope > limit`, or to `t slope >= limit` for a rectangle
     /// without interior. Returns `true` if the condition excludes all positive `t`.
-    fn bound(&self, range: &mut [f64; 2], slope: f64, limit: f64) -> bool {
+    fn restrict_range(&self, range: &mut [f64; 2], slope: f64, limit: f64) -> bool {
         if slope > 0.0 {
             if limit > 0.0 {
-                range[0] = range[0].max(limit / slope * (1.0 - RATIO));
+                range[0] = range[0].max(limit / slope * (1.0 - RATIO_ERROR));
             }
             return false;
         }
-        if limit > 0.0 || limit == 0.0 && (self.solid || slope < 0.0) {
+        if limit > 0.0 || limit == 0.0 && (self.has_interior || slope < 0.0) {
             return true;
         }
         if slope < 0.0 {
-            range[1] = range[1].min(limit / slope * (1.0 + RATIO));
+            range[1] = range[1].min(limit / slope * (1.0 + RATIO_ERROR));
         }
         false
     }
 
     /// Checks whether no facet with a normal near `axis` faces along any of the directions.
-    fn looks_away(&self, axis: DVec3, spread: f64, permutes: bool) -> bool {
+    fn faces_away(&self, axis: DVec3, spread: f64, permutes: bool) -> bool {
         let away = |k: usize| {
             let terms = axis * self.corners[k];
             // Terms that vanish after a quarter turn vanish exactly.
             let size = if permutes { terms.abs().element_sum() } else { self.lengths[k] };
-            terms.element_sum() <= -(spread * self.lengths[k] * (1.0 + RATIO) + RATIO * size)
+            terms.element_sum()
+                <= -(spread * self.lengths[k] * (1.0 + RATIO_ERROR) + RATIO_ERROR * size)
         };
         spread < 1.0 && (0..self.count).all(away)
     }
 
-    /// Checks whether a box lies behind a slab along all of the directions. `turned` selects a slab of the
+    /// Checks whether a box lies behind a slab along all of the directions. `of_fixed` selects a slab of the
     /// fixed body.
-    fn is_behind(&self, axis: DVec3, slab: [f64; 2], bounds: [DVec3; 2], turned: bool) -> bool {
+    fn is_behind_slab(
+        &self,
+        axis: DVec3,
+        slab: [f64; 2],
+        bounds: [DVec3; 2],
+        of_fixed: bool,
+    ) -> bool {
         if slab[1] == f64::INFINITY {
             return false;
         }
         let (middle, half) = ((bounds[0] + bounds[1]) * 0.5, (bounds[1] - bounds[0]) * 0.5);
         let (center, reach) = (axis.dot(middle), axis.abs().dot(half));
-        let slack = RATIO * (axis.abs().dot(middle.abs()) + reach);
+        let slack = RATIO_ERROR * (axis.abs().dot(middle.abs()) + reach);
         let [low, high] = [center - reach - slack, center + reach + slack];
-        let [least, most] =
-            if turned { [slab[0] - high, slab[1] - low] } else { [low - slab[1], high - slab[0]] };
+        let [least, most] = if of_fixed {
+            [slab[0] - high, slab[1] - low]
+        } else {
+            [low - slab[1], high - slab[0]]
+        };
         if least <= 0.0 && most >= 0.0 {
             return false;
         }
-        let way = if most < 0.0 { axis } else { -axis };
+        let vector = if most < 0.0 { axis } else { -axis };
         (0..self.count).all(|k| {
-            let terms = way * self.corners[k];
-            terms.element_sum() >= RATIO * terms.abs().element_sum()
+            let terms = vector * self.corners[k];
+            terms.element_sum() >= RATIO_ERROR * terms.abs().element_sum()
         })
     }
 }

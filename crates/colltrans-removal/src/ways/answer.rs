@@ -4,12 +4,12 @@ use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 
-use super::candidates::{directions, of_walls};
-use super::enclosed::{Cells, Enclosure, NoWay, axes_of};
+use super::candidates::{candidate_directions, wall_axes};
+use super::enclosed::{Enclosure, EnclosureResult, NoWay, cell_axes};
 use super::options::{Order, Searched, WayOptions};
-use super::pairs::{Pair, around};
-use super::proof::{LegProof, certified};
-use super::search::{Group, Move, Run, Scale, Search};
+use super::pairs::{BodyPair, bounding_box};
+use super::proof::{LegProof, certified_legs};
+use super::search::{Group, Move, Search, SearchEnd, SearchScale};
 use crate::free::FreeError;
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
@@ -18,9 +18,9 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::{AsSolid, Solid};
 
 /// Fraction of the tolerance by which the bodies of the search are offset.
-const SLACK: f64 = 0.8;
+const SEARCH_TOLERANCE_SHARE: f64 = 0.8;
 /// Maximum number of bodies of a search.
-pub(super) const MOST_BODIES: usize = Group::BITS as usize - 1;
+pub(super) const MAX_BODIES: usize = Group::BITS as usize - 1;
 
 /// Moves one after another. The last one has no end.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,62 +129,69 @@ impl WaysOut {
         options: &WayOptions,
         cancel: Option<&AtomicBool>,
     ) -> Result<Self, FreeError> {
-        if !(2..=MOST_BODIES).contains(&bodies.len()) {
+        if !(2..=MAX_BODIES).contains(&bodies.len()) {
             return Ok(Self::NotFound { searched: Searched::default() });
         }
         let wrong = |d: &&DVec3| !(d.is_finite() && d.try_normalize().is_some());
         if let Some(&direction) = options.directions.iter().find(wrong) {
             return Err(QueryError::Direction { direction }.into());
         }
-        let tolerance = tolerance(bodies, options)?;
-        let boxes: Vec<Aabb> = bodies.iter().map(around).collect();
-        let scale = scale(bodies, tolerance, options.step);
+        let tolerance = largest_tolerance(bodies, options)?;
+        let boxes: Vec<Aabb> = bodies.iter().map(bounding_box).collect();
+        let scale = search_scale(bodies, tolerance, options.step);
         let mut pairs = Vec::new();
         for j in 1..bodies.len() {
             for i in 0..j {
                 let both = [bodies[i], bodies[j]];
-                pairs.push(Pair::new(both, [boxes[i], boxes[j]], (SLACK * tolerance, scale.step))?);
+                pairs.push(BodyPair::new(
+                    both,
+                    [boxes[i], boxes[j]],
+                    (SEARCH_TOLERANCE_SHARE * tolerance, scale.step),
+                )?);
             }
         }
-        if let [Pair { overlap: Some(place), .. }] = pairs[..] {
+        if let [BodyPair { overlap: Some(place), .. }] = pairs[..] {
             return Err(FreeError::Overlapping { place });
         }
         let mask = fixed.iter().filter(|&&k| k < bodies.len()).fold(0, |mask, &k| mask | 1 << k);
-        let stays = fixed.iter().copied().find(|&k| k < bodies.len());
-        let base = stays.unwrap_or_else(|| largest(bodies));
-        let directions = directions(bodies, &options.directions);
-        let who = (bodies.len(), mask | 1 << base, base);
-        let mut search = Search::new(pairs, who, directions, scale, options, cancel);
-        let certified = |moves: &[Move]| certified(bodies, moves, tolerance);
+        let first_fixed = fixed.iter().copied().find(|&k| k < bodies.len());
+        let base = first_fixed.unwrap_or_else(|| largest_body(bodies));
+        let directions = candidate_directions(bodies, &options.directions);
+        let roles = (bodies.len(), mask | 1 << base, base);
+        let mut search = Search::new(pairs, roles, directions, scale, options, cancel);
+        let certified = |moves: &[Move]| certified_legs(bodies, moves, tolerance);
         let mut provable = bodies.len() == 2 && options.cells > 0;
         let fewest = options.order == Some(Order::FewestLegs);
-        let (mut cells, mut through, mut places) = (None, None, WayOptions::PLACES_FIRST);
+        let (mut cells, mut proposal, mut places) = (None, None, WayOptions::PLACES_FIRST);
         let mut legs = loop {
             let run = search.run(if provable { places } else { usize::MAX }, certified)?;
-            if let Run::Found(legs) = run {
+            if let SearchEnd::Found(legs) = run {
                 break Some(legs);
             }
-            let ended = matches!(run, Run::Ended);
+            let ended = matches!(run, SearchEnd::Ended);
             if provable {
-                let of = match &mut cells {
-                    Some(of) => of,
+                let enclosure = match &mut cells {
+                    Some(enclosure) => enclosure,
                     none => {
-                        let axes = axes_of(&of_walls(&bodies[base], middle(&bodies[1 - base])));
+                        let axes =
+                            cell_axes(&wall_axes(&bodies[base], box_center(&bodies[1 - base])));
                         let both = [bodies[0], bodies[1]];
                         none.insert(Enclosure::new(both, tolerance, scale.far, axes)?)
                     }
                 };
                 let own = if ended { usize::MAX } else { WayOptions::CELLS_FOR_A_PLACE * places };
-                match of.go_on(own.min(options.cells), cancel)? {
-                    Some(Cells::Proven(proof)) => return Ok(Self::Proven(proof)),
-                    Some(Cells::Way(found)) => (provable, through) = (false, Some(found)),
+                match enclosure.continue_search(own.min(options.cells), cancel)? {
+                    Some(EnclosureResult::Proven(proof)) => return Ok(Self::Proven(proof)),
+                    Some(EnclosureResult::Way(found)) => {
+                        (provable, proposal) = (false, Some(found))
+                    }
                     None => (),
                 }
             }
             // A path through cells may have more legs than necessary.
-            if let Some(through) = through.take_if(|_| ended || !fewest) {
-                let way = (&through[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
-                if let Some(legs) = search.shortened(1 - base, way, certified)? {
+            if let Some(proposal) = proposal.take_if(|_| ended || !fewest) {
+                let way = (&proposal[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
+                if let Some(legs) = search.shortened_path(1 - base, way, certified)? {
                     break Some(legs);
                 }
             }
@@ -195,7 +202,7 @@ impl WaysOut {
         };
         // More than two bodies have too many pairs.
         if legs.is_none() && bodies.len() == 2 && search.searched.complete {
-            legs = search.askew(certified)?;
+            legs = search.last_leg_in_any_direction(certified)?;
         }
         let searched = search.searched;
         Ok(match legs {
@@ -206,7 +213,10 @@ impl WaysOut {
 }
 
 /// Returns the tolerance of all casts: the given one, or the largest default of all pairs.
-fn tolerance(bodies: &[Placed<'_, Solid>], options: &WayOptions) -> Result<f64, QueryError> {
+fn largest_tolerance(
+    bodies: &[Placed<'_, Solid>],
+    options: &WayOptions,
+) -> Result<f64, QueryError> {
     let mut most = 0.0_f64;
     for j in 1..bodies.len() {
         for i in 0..j {
@@ -221,28 +231,28 @@ fn tolerance(bodies: &[Placed<'_, Solid>], options: &WayOptions) -> Result<f64, 
     Ok(most)
 }
 
-fn volume_of_box(body: &Placed<'_, Solid>) -> f64 {
+fn box_volume(body: &Placed<'_, Solid>) -> f64 {
     body.body.bounds().size().element_product()
 }
 
-fn largest(bodies: &[Placed<'_, Solid>]) -> usize {
-    let volume = |k: &usize| volume_of_box(&bodies[*k]);
+fn largest_body(bodies: &[Placed<'_, Solid>]) -> usize {
+    let volume = |k: &usize| box_volume(&bodies[*k]);
     (0..bodies.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0)
 }
 
 /// Returns the center of a body's bounding box, in the world frame.
-fn middle(body: &Placed<'_, Solid>) -> DVec3 {
+fn box_center(body: &Placed<'_, Solid>) -> DVec3 {
     body.pose.transform_point(body.body.bounds().center())
 }
 
-fn scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> Scale {
+fn search_scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> SearchScale {
     let size = |body: &Placed<'_, Solid>| body.body.bounds().size().max_element();
     let far = bodies.iter().map(size).sum::<f64>() * 2.0;
     let step = step * bodies.iter().map(size).fold(0.0, f64::max);
     // Without a tolerance there is no slack. The grid only has to keep sums exact.
     let off = if tolerance > 0.0 { (0.1 * tolerance).min(0.1 * step) } else { 1e-6 * step };
     let fine = if tolerance > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };
-    Scale { far, step, grain: step, off, grid: power_of_two(fine) }
+    SearchScale { far, step, grain: step, off, grid: power_of_two(fine) }
 }
 
 /// Returns the largest power of two that does not exceed a number.

@@ -7,19 +7,19 @@ use colltrans_convex::body::Placed;
 use colltrans_solid::body::Solid;
 
 /// Maximum number of axes of each body's largest facets.
-const AXES: usize = 3;
+const MAX_AXES_PER_BODY: usize = 3;
 /// Maximum number of axes of walls around a place.
-const MOST_WALLS: usize = 8;
+const MAX_WALL_AXES: usize = 8;
 /// Maximum number of axes. Each stands for two directions.
-const MOST: usize = 13;
+const MAX_AXES: usize = 13;
 /// Length of the cross product of two axes below which they are identified.
-const ALIKE: f64 = 1e-6;
+const SAME_AXIS: f64 = 1e-6;
 
 /// Returns directions of length 1, each followed by its opposite: the given ones, or those of large facets.
-pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<DVec3> {
+pub(super) fn candidate_directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<DVec3> {
     let mut axes = Vec::new();
     for &d in given {
-        put(&mut axes, d);
+        add_axis(&mut axes, d);
     }
     let axes = if given.is_empty() { of_large_facets(bodies) } else { axes };
     axes.iter().flat_map(|&axis| [axis, DVec3::ZERO - axis]).collect()
@@ -30,26 +30,26 @@ pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<D
 pub fn of_large_facets(bodies: &[Placed<'_, Solid>]) -> Vec<DVec3> {
     let mut axes = Vec::new();
     for body in bodies {
-        for axis in large(body, |_| true).into_iter().take(AXES) {
-            put(&mut axes, axis);
+        for axis in facet_axes(body, |_| true).into_iter().take(MAX_AXES_PER_BODY) {
+            add_axis(&mut axes, axis);
         }
     }
-    for k in 0..axes.len().min(MOST) {
+    for k in 0..axes.len().min(MAX_AXES) {
         for l in 0..k {
             let across = axes[l].cross(axes[k]);
-            put(&mut axes, across);
+            add_axis(&mut axes, across);
         }
     }
-    axes.truncate(MOST);
+    axes.truncate(MAX_AXES);
     axes
 }
 
 /// Returns the axes of the walls around a place: normals of facets that face it, those with the largest area
 /// first, and the cross product of the first two.
-pub(super) fn of_walls(body: &Placed<'_, Solid>, place: DVec3) -> Vec<DVec3> {
+pub(super) fn wall_axes(body: &Placed<'_, Solid>, place: DVec3) -> Vec<DVec3> {
     let within = body.pose.matrix().transpose() * (place - body.pose.translation());
-    let mut axes = large(body, |[a, b, c]| (b - a).cross(c - a).dot(within - a) > 0.0);
-    axes.truncate(MOST_WALLS);
+    let mut axes = facet_axes(body, |[a, b, c]| (b - a).cross(c - a).dot(within - a) > 0.0);
+    axes.truncate(MAX_WALL_AXES);
     if let [first, second, ..] = axes[..] {
         axes.push(first.cross(second));
     }
@@ -58,7 +58,7 @@ pub(super) fn of_walls(body: &Placed<'_, Solid>, place: DVec3) -> Vec<DVec3> {
 
 /// Returns the normals of the facets that `among` accepts, in the world frame, sorted by decreasing total
 /// area. Opposite normals are one axis.
-fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DVec3> {
+fn facet_axes(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DVec3> {
     let mut found: Vec<(DVec3, f64)> = Vec::new();
     let vertices = body.body.vertices();
     for t in body.body.triangles() {
@@ -69,7 +69,7 @@ fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DV
         let normal = (b - a).cross(c - a);
         let area = normal.length();
         let Some(unit) = normal.try_normalize() else { continue };
-        let known = found.iter().position(|(axis, _)| axis.cross(unit).length() < ALIKE);
+        let known = found.iter().position(|(axis, _)| axis.cross(unit).length() < SAME_AXIS);
         match known {
             Some(k) => found[k].1 += area,
             // For a finely tessellated body the first 256 axes suffice.
@@ -81,11 +81,11 @@ fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DV
     found.iter().map(|(axis, _)| body.pose.transform_vector(*axis)).collect()
 }
 
-fn put(axes: &mut Vec<DVec3>, d: DVec3) {
-    let Some(unit) = (d.length() > ALIKE).then(|| d.try_normalize()).flatten() else { return };
+fn add_axis(axes: &mut Vec<DVec3>, d: DVec3) {
+    let Some(unit) = (d.length() > SAME_AXIS).then(|| d.try_normalize()).flatten() else { return };
     // Rounding of a cross product must not leave components such as 1e-17.
     let unit = unit.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
-    if !axes.iter().any(|axis| axis.cross(unit).length() < ALIKE) {
+    if !axes.iter().any(|axis| axis.cross(unit).length() < SAME_AXIS) {
         axes.push(unit);
     }
 }

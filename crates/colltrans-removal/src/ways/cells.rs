@@ -26,12 +26,12 @@ pub struct RoomCell {
 }
 
 /// Maximum number of halvings.
-pub(super) const DEEPEST: u32 = 20;
+pub(super) const MAX_DEPTH: u32 = 20;
 
 impl RoomCell {
     pub(super) const ALL: Self = Self { depth: 0, at: [0; 3] };
 
-    pub(super) fn parts(self) -> [Self; 8] {
+    pub(super) fn children(self) -> [Self; 8] {
         let depth = self.depth + 1;
         std::array::from_fn(|k| {
             let at = std::array::from_fn(|axis| 2 * self.at[axis] + (k as u32 >> axis & 1));
@@ -44,30 +44,30 @@ impl RoomCell {
     }
 
     /// Returns the cell of the same size adjacent to a side. Returns `None` outside the octree.
-    pub(super) fn beside(self, (axis, upper): Side) -> Option<Self> {
+    pub(super) fn neighbour(self, (axis, upper): CellSide) -> Option<Self> {
         let mut at = self.at;
         at[axis] = if upper { at[axis] + 1 } else { at[axis].checked_sub(1)? };
         (at[axis] < 1 << self.depth).then_some(Self { at, ..self })
     }
 
     /// Returns the distance from the boundary of the octree, in sides of the smallest cells.
-    pub(super) fn to_border(self) -> u32 {
+    pub(super) fn boundary_distance(self) -> u32 {
         let last = (1 << self.depth) - 1;
         let nearest = self.at.iter().map(|&x| x.min(last - x)).min().unwrap_or(0);
-        nearest << (DEEPEST - self.depth)
+        nearest << (MAX_DEPTH - self.depth)
     }
 
     /// Returns the children that touch a side.
-    pub(super) fn parts_at(self, (axis, upper): Side) -> impl Iterator<Item = Self> {
+    pub(super) fn children_at(self, (axis, upper): CellSide) -> impl Iterator<Item = Self> {
         let touches = move |part: &Self| (part.at[axis] & 1 == 1) == upper;
-        self.parts().into_iter().filter(touches)
+        self.children().into_iter().filter(touches)
     }
 }
 
 /// Axis, and whether its upper side.
-pub(super) type Side = (usize, bool);
+pub(super) type CellSide = (usize, bool);
 
-pub(super) const SIDES: [Side; 6] =
+pub(super) const SIDES: [CellSide; 6] =
     [(0, false), (0, true), (1, false), (1, true), (2, false), (2, true)];
 
 /// Frame of the octree.
@@ -84,13 +84,13 @@ pub struct Room {
 
 impl Room {
     /// Returns an octree around the initial placement. The placement is not on the boundary of a cell.
-    pub(super) fn around(reach: f64, axes: DMat3) -> Self {
+    pub(super) fn around_origin(reach: f64, axes: DMat3) -> Self {
         let low = DVec3::splat(-reach) + reach * DVec3::new(0.17, 0.23, 0.29) / 3.0;
         Self { low, side: 2.0 * reach, axes }
     }
 
     /// Checks whether the frame is finite, and its axes have length 1 and are independent.
-    pub(super) fn is_proper(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let Self { low, side, axes } = self;
         low.is_finite() && side.is_finite() && *side > 0.0 && are_independent(*axes)
     }
@@ -104,11 +104,11 @@ impl Room {
     }
 
     /// Returns the displacements in a cell.
-    pub(super) fn displacements(&self, cell: RoomCell) -> Displacements {
+    pub(super) fn displacements(&self, cell: RoomCell) -> DisplacementRange {
         let [low, high] = self.corners(cell);
         let half = (high - low) / 2.0;
         let axes = self.axes;
-        Displacements {
+        DisplacementRange {
             middle: axes * ((low + high) / 2.0),
             half: [axes.x_axis * half.x, axes.y_axis * half.y, axes.z_axis * half.z],
         }
@@ -123,19 +123,19 @@ pub(super) fn are_independent(axes: DMat3) -> bool {
 
 /// Parallelepiped of displacements: its center and three half edges.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Displacements {
+pub(super) struct DisplacementRange {
     pub(super) middle: DVec3,
     half: [DVec3; 3],
 }
 
-impl Displacements {
+impl DisplacementRange {
     /// Returns the half width of the scalar product with a vector.
-    pub(super) fn width(&self, along: DVec3) -> f64 {
+    pub(super) fn half_width(&self, along: DVec3) -> f64 {
         self.half.iter().map(|half| along.dot(*half).abs()).sum()
     }
 
     /// Returns the opposite displacements: those of the other body against this one.
-    fn turned(&self) -> Self {
+    fn opposite(&self) -> Self {
         Self { middle: DVec3::ZERO - self.middle, half: self.half }
     }
 }
@@ -153,7 +153,7 @@ pub struct Crossing {
 }
 
 /// Two bodies with bounds on their displaced coordinates.
-pub(super) struct Displaced<'a> {
+pub(super) struct DisplacedBodies<'a> {
     pub(super) bodies: Bodies<'a>,
     /// Upper bound on the absolute value of a coordinate, displaced or not.
     size: f64,
@@ -161,9 +161,9 @@ pub(super) struct Displaced<'a> {
     noise: f64,
 }
 
-impl<'a> Displaced<'a> {
+impl<'a> DisplacedBodies<'a> {
     pub(super) fn new(bodies: Bodies<'a>, room: Room) -> Self {
-        let [reach, noise] = bodies.reach();
+        let [reach, noise] = bodies.coordinate_bound();
         let Room { low, side, axes } = room;
         let rows = axes.x_axis.abs() + axes.y_axis.abs() + axes.z_axis.abs();
         let displaced = 1.001 * rows.max_element() * (low.abs().max_element() + side);
@@ -171,34 +171,36 @@ impl<'a> Displaced<'a> {
     }
 
     /// Returns the corners of a triangle.
-    pub(super) fn triangle(&self, moving: bool, triangle: u32) -> [DVec3; 3] {
-        self.bodies.spots(moving, triangle).map(|spot| self.bodies.corner(spot).at)
+    pub(super) fn triangle_corners(&self, moving: bool, triangle: u32) -> [DVec3; 3] {
+        self.bodies
+            .triangle_vertices(moving, triangle)
+            .map(|vertex| self.bodies.placed_vertex(vertex).at)
     }
 
     /// Checks whether an edge passes through a facet for all displacements of a cell. Returns `false` if the
     /// edge or the facet does not exist.
-    pub(super) fn blocks(&self, crossing: Crossing, by: &Displacements) -> bool {
+    pub(super) fn crossing_blocks(&self, crossing: Crossing, by: &DisplacementRange) -> bool {
         let Crossing { moving, edge: (triangle, first), facet } = crossing;
-        let counts = [moving, !moving].map(|moving| self.bodies.count(moving));
+        let counts = [moving, !moving].map(|moving| self.bodies.triangle_count(moving));
         if triangle >= counts[0] || facet >= counts[1] || first > 2 {
             return false;
         }
-        let own = self.triangle(moving, triangle);
-        let g = self.triangle(!moving, facet);
+        let own = self.triangle_corners(moving, triangle);
+        let g = self.triangle_corners(!moving, facet);
         // Displacing the fixed body's edge against the facet is the opposite displacement.
-        let by = if moving { *by } else { by.turned() };
+        let by = if moving { *by } else { by.opposite() };
         let ends = [own[usize::from(first)], own[(usize::from(first) + 1) % 3]];
-        self.passes(ends, g, &by)
+        self.edge_passes(ends, g, &by)
     }
 
     /// Checks whether an edge, displaced by any displacement of a cell, passes through a facet.
-    fn passes(&self, [p, q]: [DVec3; 2], g: [DVec3; 3], by: &Displacements) -> bool {
+    fn edge_passes(&self, [p, q]: [DVec3; 2], g: [DVec3; 3], by: &DisplacementRange) -> bool {
         const U: f64 = f64::EPSILON / 2.0;
         let size = self.size;
         let error = 4096.0 * U * size.powi(3) + 1024.0 * self.noise * size.powi(2);
         // The sign for all displacements of the cell, or 0.
         let sign = |value: f64, slope: DVec3| {
-            let width = by.width(slope) + error;
+            let width = by.half_width(slope) + error;
             if value > width {
                 1
             } else if value < -width {

@@ -17,9 +17,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::{DMat3, DVec3};
 
 use super::cells::{
-    Crossing, DEEPEST, Displaced, Displacements, Room, RoomCell, SIDES, Side, are_independent,
+    CellSide, Crossing, DisplacedBodies, DisplacementRange, MAX_DEPTH, Room, RoomCell, SIDES,
+    are_independent,
 };
-use super::pairs::standing;
+use super::pairs::initial_cast;
 use crate::free::{Bodies, FreeError};
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::{Aabb, Placed};
@@ -28,11 +29,11 @@ use colltrans_solid::SolidScene;
 use colltrans_solid::body::{AsSolid, Solid};
 
 /// Maximum number of crossings that are tried first in a new cell.
-const MOST_SEEN: usize = 48;
+const MAX_RECENT: usize = 48;
 /// Maximum number of node visits of a cell.
-const MOST_LOOKS: usize = 4_000;
+const MAX_NODE_VISITS: usize = 4_000;
 /// Maximum number of pairs of facets that are tried for a cell.
-const MOST_TRIED: usize = 400;
+const MAX_FACET_PAIRS: usize = 400;
 
 /// Proof that no sequence of translations separates two bodies. [`verify`](Self::verify) checks it.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,12 +69,13 @@ impl NoWay {
         let b = fixed.body.as_solid().map_err(QueryError::from)?.at(fixed.pose);
         let refused = |entry: usize| Err(CertificateError::Cover { entry }.into());
         let all = || self.rooms.iter().chain(self.walls.iter().map(|wall| &wall.0));
-        let proper =
-            |cell: &RoomCell| cell.depth <= DEEPEST && cell.at.iter().all(|&x| x < 1 << cell.depth);
-        if !(self.room.is_proper() && all().all(proper)) {
+        let proper = |cell: &RoomCell| {
+            cell.depth <= MAX_DEPTH && cell.at.iter().all(|&x| x < 1 << cell.depth)
+        };
+        if !(self.room.is_valid() && all().all(proper)) {
             return refused(0);
         }
-        let displaced = Displaced::new(bodies([a, b], self.tolerance)?, self.room);
+        let displaced = DisplacedBodies::new(offset_bodies([a, b], self.tolerance)?, self.room);
         let home = self.rooms.iter().any(|&cell| {
             let [low, high] = self.room.corners(cell);
             low.cmplt(DVec3::ZERO).all() && high.cmpgt(DVec3::ZERO).all()
@@ -82,15 +84,15 @@ impl NoWay {
             return refused(0);
         }
         for (k, &(cell, crossing)) in self.walls.iter().enumerate() {
-            if !displaced.blocks(crossing, &self.room.displacements(cell)) {
+            if !displaced.crossing_blocks(crossing, &self.room.displacements(cell)) {
                 return refused(self.rooms.len() + k);
             }
         }
         let known: HashSet<RoomCell> = all().copied().collect();
         for (k, &cell) in self.rooms.iter().enumerate() {
             for (axis, upper) in SIDES {
-                let beside = cell.beside((axis, upper));
-                if !beside.is_some_and(|beside| is_covered(&known, beside, (axis, !upper))) {
+                let beside = cell.neighbour((axis, upper));
+                if !beside.is_some_and(|beside| is_side_covered(&known, beside, (axis, !upper))) {
                     return refused(k);
                 }
             }
@@ -100,28 +102,28 @@ impl NoWay {
 }
 
 /// Checks whether known cells cover one side of a cell from within.
-fn is_covered(known: &HashSet<RoomCell>, cell: RoomCell, side: Side) -> bool {
+fn is_side_covered(known: &HashSet<RoomCell>, cell: RoomCell, side: CellSide) -> bool {
     let above = std::iter::successors(Some(cell), |cell| cell.parent());
-    above.into_iter().any(|cell| known.contains(&cell)) || is_covered_below(known, cell, side)
+    above.into_iter().any(|cell| known.contains(&cell)) || is_covered_by_children(known, cell, side)
 }
 
-fn is_covered_below(known: &HashSet<RoomCell>, cell: RoomCell, side: Side) -> bool {
+fn is_covered_by_children(known: &HashSet<RoomCell>, cell: RoomCell, side: CellSide) -> bool {
     known.contains(&cell)
-        || cell.depth < DEEPEST
-            && cell.parts_at(side).all(|part| is_covered_below(known, part, side))
+        || cell.depth < MAX_DEPTH
+            && cell.children_at(side).all(|part| is_covered_by_children(known, part, side))
 }
 
 /// Returns axes for the cells: cross products of the normals of three independent walls, preferably the first
 /// ones. For orthogonal walls these are the normals. Returns the axes of the world if no three are
 /// independent.
-pub(super) fn axes_of(normals: &[DVec3]) -> DMat3 {
+pub(super) fn cell_axes(normals: &[DVec3]) -> DMat3 {
     for (k, &w) in normals.iter().enumerate() {
         for (l, &v) in normals[..k].iter().enumerate() {
             for &u in &normals[..l] {
                 let [x, y, z] = [v.cross(w), w.cross(u), u.cross(v)].map(DVec3::normalize_or_zero);
                 let axes = DMat3::from_cols(x, y, z);
                 if are_independent(axes) {
-                    return along_the_world(axes);
+                    return near_world_axes(axes);
                 }
             }
         }
@@ -130,7 +132,7 @@ pub(super) fn axes_of(normals: &[DVec3]) -> DMat3 {
 }
 
 /// Permutes and reverses the columns so that each is close to the axis of the world with the same index.
-fn along_the_world(axes: DMat3) -> DMat3 {
+fn near_world_axes(axes: DMat3) -> DMat3 {
     let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis];
     let orders = [[x, y, z], [x, z, y], [y, x, z], [y, z, x], [z, x, y], [z, y, x]];
     let near = |[x, y, z]: &[DVec3; 3]| x.x.abs() + y.y.abs() + z.z.abs();
@@ -142,111 +144,118 @@ fn along_the_world(axes: DMat3) -> DMat3 {
 }
 
 /// Computes the bounding boxes of all nodes of a body, with its vertices transformed by a matrix.
-fn boxes(displaced: &Displaced, moving: bool, seen: DMat3) -> Vec<Aabb> {
+fn node_boxes(displaced: &DisplacedBodies, moving: bool, transform: DMat3) -> Vec<Aabb> {
     let bodies = &displaced.bodies;
-    let views = &bodies.views[usize::from(!moving)];
-    let mut boxes: Vec<Aabb> = vec![Aabb::EMPTY; views.len()];
+    let nodes = &bodies.nodes[usize::from(!moving)];
+    let mut boxes: Vec<Aabb> = vec![Aabb::EMPTY; nodes.len()];
     // Children have larger indices than their parent.
-    for (k, view) in views.iter().enumerate().rev() {
-        boxes[k] = if view.is_facet() {
-            let corners = displaced.triangle(moving, bodies.triangle(moving, k as u32));
-            Aabb::of_points(corners.map(|p| seen * p))
+    for (k, node) in nodes.iter().enumerate().rev() {
+        boxes[k] = if node.is_facet() {
+            let corners =
+                displaced.triangle_corners(moving, bodies.leaf_triangle(moving, k as u32));
+            Aabb::of_points(corners.map(|p| transform * p))
         } else {
-            let parts = view.parts().map(|part| boxes[part as usize]);
-            parts.fold(Aabb::EMPTY, |all, part| all.join(&part))
+            let children = node.children().map(|child| boxes[child as usize]);
+            children.fold(Aabb::EMPTY, |all, child| all.join(&child))
         };
     }
     boxes
 }
 
 /// Checks that both bodies are closed, and offsets them.
-fn bodies(placed: [Placed<'_, Solid>; 2], tolerance: f64) -> Result<Bodies<'_>, FreeError> {
+fn offset_bodies(placed: [Placed<'_, Solid>; 2], tolerance: f64) -> Result<Bodies<'_>, FreeError> {
     for (which, body) in [("moving", &placed[0]), ("fixed", &placed[1])] {
         if !body.body.is_closed() {
             return Err(FreeError::Open { which });
         }
     }
-    Ok(Bodies::new(standing(placed, tolerance)?.asked_of_something()?))
+    Ok(Bodies::new(initial_cast(placed, tolerance)?.asked_of_something()?))
 }
 
 /// State of a cell.
 #[derive(Clone, Copy)]
-enum State {
+enum DisplacementState {
     /// Divided into eight cells.
-    Cut,
+    Divided,
     /// Open; the flag states whether surfaces may meet in the cell.
-    Room(bool),
-    Wall(Crossing),
+    Open(bool),
+    Blocked(Crossing),
 }
 
 /// Search for a proof that two bodies cannot be separated by translations, or for a wide path.
 pub(super) struct Enclosure<'a> {
     tolerance: f64,
-    displaced: Displaced<'a>,
+    displaced: DisplacedBodies<'a>,
     room: Room,
     /// Bounding boxes of the nodes of each body, in multiples of the axes.
     boxes: [Vec<Aabb>; 2],
-    states: HashMap<RoomCell, State>,
+    states: HashMap<RoomCell, DisplacementState>,
     /// Crossings that blocked earlier cells, the most recent first.
-    seen: VecDeque<Crossing>,
+    recent: VecDeque<Crossing>,
 }
 
 /// Result of a search with cells.
-pub(super) enum Cells {
+pub(super) enum EnclosureResult {
     /// No removal path exists.
     Proven(NoWay),
-    /// Displacements of a possible removal path. The last one is beyond both bodies.
+    /// Displacements of a possible removal path. At the last one the bodies are far apart.
     Way(Vec<DVec3>),
 }
 
 impl<'a> Enclosure<'a> {
     /// Starts a search for two bodies that are separated by a displacement of length `far`. Cells are aligned
-    /// with `axes`, see [`axes_of`].
+    /// with `axes`, see [`cell_axes`].
     pub(super) fn new(
         placed: [Placed<'a, Solid>; 2],
         tolerance: f64,
         far: f64,
         axes: DMat3,
     ) -> Result<Self, FreeError> {
-        let room = Room::around(far, axes);
-        let displaced = Displaced::new(bodies(placed, tolerance)?, room);
-        let boxes = [true, false].map(|moving| boxes(&displaced, moving, axes.inverse()));
-        let (states, seen) = (HashMap::new(), VecDeque::new());
-        let mut search = Self { tolerance, displaced, room, boxes, states, seen };
-        search.look(RoomCell::ALL);
+        let room = Room::around_origin(far, axes);
+        let displaced = DisplacedBodies::new(offset_bodies(placed, tolerance)?, room);
+        let boxes = [true, false].map(|moving| node_boxes(&displaced, moving, axes.inverse()));
+        let (states, recent) = (HashMap::new(), VecDeque::new());
+        let mut search = Self { tolerance, displaced, room, boxes, states, recent };
+        search.classify_cell(RoomCell::ALL);
         Ok(search)
     }
 
     /// Continues the search until it has more than `most` cells or ends. Returns `None` in the first case, and
     /// if the cells at the maximum depth decide nothing.
-    pub(super) fn go_on(
+    pub(super) fn continue_search(
         &mut self,
         most: usize,
         cancel: Option<&AtomicBool>,
-    ) -> Result<Option<Cells>, FreeError> {
+    ) -> Result<Option<EnclosureResult>, FreeError> {
         while self.states.len() <= most {
             if cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
                 return Err(FreeError::Cancelled);
             }
-            let way = match self.flood() {
+            let way = match self.explore_open_cells() {
                 Ok((rooms, walls)) => {
                     let Self { tolerance, room, .. } = *self;
-                    return Ok(Some(Cells::Proven(NoWay { tolerance, room, rooms, walls })));
+                    return Ok(Some(EnclosureResult::Proven(NoWay {
+                        tolerance,
+                        room,
+                        rooms,
+                        walls,
+                    })));
                 }
                 Err(way) => way,
             };
             let may_be_cut = |cell: &&RoomCell| {
-                cell.depth < DEEPEST && matches!(self.states[*cell], State::Room(true))
+                cell.depth < MAX_DEPTH
+                    && matches!(self.states[*cell], DisplacementState::Open(true))
             };
             let cut: Vec<RoomCell> = way.iter().filter(may_be_cut).copied().collect();
             let Some(least) = cut.iter().map(|cell| cell.depth).min() else {
-                let wide = way.iter().all(|cell| cell.depth < DEEPEST);
-                return Ok(wide.then(|| Cells::Way(self.through(&way))));
+                let wide = way.iter().all(|cell| cell.depth < MAX_DEPTH);
+                return Ok(wide.then(|| EnclosureResult::Way(self.path_through(&way))));
             };
             for cell in cut.into_iter().filter(|cell| cell.depth == least) {
-                self.states.insert(cell, State::Cut);
-                for part in cell.parts() {
-                    self.look(part);
+                self.states.insert(cell, DisplacementState::Divided);
+                for part in cell.children() {
+                    self.classify_cell(part);
                 }
             }
         }
@@ -259,14 +268,14 @@ type Walls = Vec<(RoomCell, Crossing)>;
 impl Enclosure<'_> {
     /// Explores all open cells that are connected with the initial placement. Returns them and the adjacent
     /// blocked cells, or as an error the open cells of a path to the boundary.
-    fn flood(&self) -> Result<(Vec<RoomCell>, Walls), Vec<RoomCell>> {
+    fn explore_open_cells(&self) -> Result<(Vec<RoomCell>, Walls), Vec<RoomCell>> {
         let mut home = RoomCell::ALL;
-        while let State::Cut = self.states[&home] {
+        while let DisplacementState::Divided = self.states[&home] {
             let inside = |part: &RoomCell| {
                 let [low, high] = self.room.corners(*part);
                 low.cmple(DVec3::ZERO).all() && high.cmpge(DVec3::ZERO).all()
             };
-            home = home.parts().into_iter().find(inside).unwrap_or(home.parts()[0]);
+            home = home.children().into_iter().find(inside).unwrap_or(home.children()[0]);
         }
         let mut from = HashMap::from([(home, home)]);
         // Cells in which surfaces cannot meet come first, then large ones. So a wide path is found before narrow
@@ -277,17 +286,17 @@ impl Enclosure<'_> {
         while let Some((_, cell)) = queue.pop() {
             rooms.push(cell);
             for (axis, upper) in SIDES {
-                let Some(beside) = cell.beside((axis, upper)) else {
+                let Some(beside) = cell.neighbour((axis, upper)) else {
                     let back = |cell: &RoomCell| Some(from[cell]).filter(|before| before != cell);
                     let mut way: Vec<_> = std::iter::successors(Some(cell), back).collect();
                     way.reverse();
                     return Err(way);
                 };
                 touching.clear();
-                self.leaves(beside, (axis, !upper), &mut touching);
+                self.adjacent_leaves(beside, (axis, !upper), &mut touching);
                 for &leaf in &touching {
                     match self.states[&leaf] {
-                        State::Wall(crossing) => {
+                        DisplacementState::Blocked(crossing) => {
                             if around.insert(leaf) {
                                 walls.push((leaf, crossing));
                             }
@@ -295,8 +304,9 @@ impl Enclosure<'_> {
                         _ if from.contains_key(&leaf) => (),
                         _ => {
                             from.insert(leaf, cell);
-                            let may = matches!(self.states[&leaf], State::Room(true));
-                            queue.push((Reverse((may, leaf.depth, leaf.to_border())), leaf));
+                            let may = matches!(self.states[&leaf], DisplacementState::Open(true));
+                            queue
+                                .push((Reverse((may, leaf.depth, leaf.boundary_distance())), leaf));
                         }
                     }
                 }
@@ -306,7 +316,7 @@ impl Enclosure<'_> {
     }
 
     /// Returns the displacements of a path through adjacent cells, from the initial placement on.
-    fn through(&self, way: &[RoomCell]) -> Vec<DVec3> {
+    fn path_through(&self, way: &[RoomCell]) -> Vec<DVec3> {
         let (mut places, room) = (vec![DVec3::ZERO], self.room);
         let mut between = |low: DVec3, high: DVec3| places.push(room.axes * ((low + high) / 2.0));
         for pair in way.windows(2) {
@@ -322,63 +332,67 @@ impl Enclosure<'_> {
 
     /// Finds the cells that are not divided and touch a side of a cell from within, or the one that contains
     /// the cell.
-    fn leaves(&self, cell: RoomCell, side: Side, found: &mut Vec<RoomCell>) {
+    fn adjacent_leaves(&self, cell: RoomCell, side: CellSide, found: &mut Vec<RoomCell>) {
         match self.states.get(&cell) {
             None => found.extend(
                 std::iter::successors(cell.parent(), |cell| cell.parent())
                     .find(|cell| self.states.contains_key(cell)),
             ),
-            Some(State::Cut) => cell.parts_at(side).for_each(|part| self.leaves(part, side, found)),
+            Some(DisplacementState::Divided) => {
+                cell.children_at(side).for_each(|part| self.adjacent_leaves(part, side, found))
+            }
             Some(_) => found.push(cell),
         }
     }
 
     /// Classifies a new cell.
-    fn look(&mut self, cell: RoomCell) {
+    fn classify_cell(&mut self, cell: RoomCell) {
         let (by, corners) = (self.room.displacements(cell), self.room.corners(cell));
-        let known = self.seen.iter().position(|&seen| self.displaced.blocks(seen, &by));
+        let known =
+            self.recent.iter().position(|&recent| self.displaced.crossing_blocks(recent, &by));
         let state = if let Some(k) = known {
-            self.seen.swap(0, k);
-            State::Wall(self.seen[0])
-        } else if let Some(crossing) = self.crossing(&by, corners) {
-            self.seen.push_front(crossing);
-            self.seen.truncate(MOST_SEEN);
-            State::Wall(crossing)
+            self.recent.swap(0, k);
+            DisplacementState::Blocked(self.recent[0])
+        } else if let Some(crossing) = self.find_crossing(&by, corners) {
+            self.recent.push_front(crossing);
+            self.recent.truncate(MAX_RECENT);
+            DisplacementState::Blocked(crossing)
         } else {
-            State::Room(self.may_meet(&by, corners))
+            DisplacementState::Open(self.may_have_contact(&by, corners))
         };
         self.states.insert(cell, state);
     }
 
     /// Searches for an edge and a facet that block a whole cell. Returns `None` if the limited search finds
     /// none.
-    fn crossing(&self, by: &Displacements, [low, high]: [DVec3; 2]) -> Option<Crossing> {
+    fn find_crossing(&self, by: &DisplacementRange, [low, high]: [DVec3; 2]) -> Option<Crossing> {
         let mut tried = 0;
         let mut found = None;
         // The boxes of the nodes have to intersect for every displacement of the cell.
         let meets = |[a, b]: [&Aabb; 2]| {
             (a.low + high).cmple(b.high).all() && (a.high + low).cmpge(b.low).all()
         };
-        self.pairs(meets, |triangles| {
+        self.visit_facet_pairs(meets, |triangles| {
             tried += 1;
-            found = self.of_facets(triangles, by);
-            found.is_some() || tried >= MOST_TRIED
+            found = self.facet_crossing(triangles, by);
+            found.is_some() || tried >= MAX_FACET_PAIRS
         });
         found
     }
 
     /// Checks whether facets may meet for some displacement of a cell. Returns `true` if a limit is reached.
-    fn may_meet(&self, by: &Displacements, [low, high]: [DVec3; 2]) -> bool {
+    fn may_have_contact(&self, by: &DisplacementRange, [low, high]: [DVec3; 2]) -> bool {
         let meets = |[a, b]: [&Aabb; 2]| {
             (a.low + low).cmple(b.high).all() && (a.high + high).cmpge(b.low).all()
         };
-        self.pairs(meets, |triangles| self.facets_may_meet(triangles, by))
+        self.visit_facet_pairs(meets, |triangles| self.facets_may_meet(triangles, by))
     }
 
     /// Checks whether neither normal of two facets separates them, up to rounding, for all displacements of a
     /// cell.
-    fn facets_may_meet(&self, [a, b]: [u32; 2], by: &Displacements) -> bool {
-        let [f, g] = [(true, a), (false, b)].map(|(moving, k)| self.displaced.triangle(moving, k));
+    fn facets_may_meet(&self, [a, b]: [u32; 2], by: &DisplacementRange) -> bool {
+        let [f, g] =
+            [(true, a), (false, b)].map(|(moving, k)| self.displaced.triangle_corners(moving, k));
         let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
         let parts = |along: &DVec3| {
             let shadow = |t: &[DVec3; 3]| {
@@ -386,7 +400,7 @@ impl Enclosure<'_> {
                 [x.min(y).min(z), x.max(y).max(z)]
             };
             let ([f, g], middle, width) =
-                ([shadow(&f), shadow(&g)], along.dot(by.middle), by.width(*along));
+                ([shadow(&f), shadow(&g)], along.dot(by.middle), by.half_width(*along));
             f[0] + middle - width > g[1] || f[1] + middle + width < g[0]
         };
         ![normal(&f), normal(&g)].iter().any(parts)
@@ -394,30 +408,32 @@ impl Enclosure<'_> {
 
     /// Calls `end` for pairs of triangles in nodes that meet, until `end` returns `true`. Returns `true` if
     /// it did, or if the limit of node visits was reached.
-    fn pairs(
+    fn visit_facet_pairs(
         &self,
         meets: impl Fn([&Aabb; 2]) -> bool,
         mut end: impl FnMut([u32; 2]) -> bool,
     ) -> bool {
         let bodies = &self.displaced.bodies;
-        let (mut stack, mut looks) = (vec![[0_u32, 0]], 0);
+        let (mut stack, mut visits) = (vec![[0_u32, 0]], 0);
         while let Some(pair) = stack.pop() {
-            looks += 1;
-            if looks > MOST_LOOKS {
+            visits += 1;
+            if visits > MAX_NODE_VISITS {
                 return true;
             }
             if !meets([0, 1].map(|k| &self.boxes[k][pair[k] as usize])) {
                 continue;
             }
-            let [a, b] = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
+            let [a, b] = [0, 1].map(|k| &bodies.nodes[k][pair[k] as usize]);
             if a.is_facet() && b.is_facet() {
-                if end([bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])]) {
+                if end([bodies.leaf_triangle(true, pair[0]), bodies.leaf_triangle(false, pair[1])])
+                {
                     return true;
                 }
                 continue;
             }
-            let first = b.is_facet() || (!a.is_facet() && a.size() >= b.size());
-            let parts = if first { a.parts() } else { b.parts() };
+            let first =
+                b.is_facet() || (!a.is_facet() && a.squared_diagonal() >= b.squared_diagonal());
+            let parts = if first { a.children() } else { b.children() };
             stack.extend(parts.map(|k| if first { [k, pair[1]] } else { [pair[0], k] }));
         }
         false
@@ -425,11 +441,11 @@ impl Enclosure<'_> {
 
     /// Searches for an edge of one of two facets that passes through the other one for all displacements of a
     /// cell.
-    fn of_facets(&self, [a, b]: [u32; 2], by: &Displacements) -> Option<Crossing> {
+    fn facet_crossing(&self, [a, b]: [u32; 2], by: &DisplacementRange) -> Option<Crossing> {
         let both = [(true, a, b), (false, b, a)].into_iter();
         let edges = |(moving, own, facet)| {
             (0..3).map(move |first| Crossing { moving, edge: (own, first), facet })
         };
-        both.flat_map(edges).find(|&crossing| self.displaced.blocks(crossing, by))
+        both.flat_map(edges).find(|&crossing| self.displaced.crossing_blocks(crossing, by))
     }
 }

@@ -12,14 +12,14 @@
 
 use glam::DVec3;
 
-use crate::free::{Bodies, View};
+use crate::free::{Bodies, NodeBounds};
 use colltrans_convex::body::Aabb;
 
 /// Open interval.
-type Span = [f64; 2];
+type Interval = [f64; 2];
 
 /// Query about two bodies.
-pub(super) struct Question {
+pub(super) struct OpeningQuery {
     /// Displacement of the moving body against the other one.
     pub(super) from: DVec3,
     /// First and second direction, of length 1 and not parallel.
@@ -30,31 +30,32 @@ pub(super) struct Question {
     pub(super) far: f64,
 }
 
-impl Question {
+impl OpeningQuery {
     /// Returns the values of `t` at which the second move is blocked, as sorted disjoint open intervals. Adds
-    /// the number of node visits to `looks`.
-    pub(super) fn blocked(&self, bodies: &Bodies, looks: &mut u64) -> Vec<Span> {
+    /// the number of node visits to `visits`.
+    pub(super) fn blocked_intervals(&self, bodies: &Bodies, visits: &mut u64) -> Vec<Interval> {
         let mut blocked = Vec::new();
         let mut stack = vec![([0_u32, 0], [0.0, self.end])];
         while let Some((pair, span)) = stack.pop() {
-            if covers(&blocked, span) {
+            if is_covered(&blocked, span) {
                 continue;
             }
-            let [a, b] = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
+            let [a, b] = [0, 1].map(|k| &bodies.nodes[k][pair[k] as usize]);
             if a.is_facet() && b.is_facet() {
-                if let Some(span) = self.of_facets(bodies, pair) {
-                    add(&mut blocked, span);
+                if let Some(span) = self.facet_interval(bodies, pair) {
+                    insert_interval(&mut blocked, span);
                 }
                 continue;
             }
-            let first = b.is_facet() || (!a.is_facet() && a.size() >= b.size());
-            let parts = if first { a.parts() } else { b.parts() };
+            let first =
+                b.is_facet() || (!a.is_facet() && a.squared_diagonal() >= b.squared_diagonal());
+            let parts = if first { a.children() } else { b.children() };
             let pairs = parts.map(|k| if first { [k, pair[1]] } else { [pair[0], k] });
-            let mut found: Vec<([u32; 2], Span)> = Vec::new();
+            let mut found: Vec<([u32; 2], Interval)> = Vec::new();
             for pair in pairs {
-                *looks += 1;
-                let views = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
-                found.extend(self.of_nodes(views).map(|span| (pair, span)));
+                *visits += 1;
+                let nodes = [0, 1].map(|k| &bodies.nodes[k][pair[k] as usize]);
+                found.extend(self.node_interval(nodes).map(|span| (pair, span)));
             }
             found.sort_by(|x, y| (x.1[1] - x.1[0]).total_cmp(&(y.1[1] - y.1[0])));
             stack.append(&mut found);
@@ -63,22 +64,22 @@ impl Question {
     }
 
     /// Returns an interval that contains those of all facets of two nodes, clipped to the range.
-    fn of_nodes(&self, [a, b]: [&View; 2]) -> Option<Span> {
+    fn node_interval(&self, [a, b]: [&NodeBounds; 2]) -> Option<Interval> {
         let [_, e] = self.along;
         let looks_away = |axis: DVec3, spread: f64| spread < 1.0 && axis.dot(e) <= -spread;
         if looks_away(a.axis, a.spread) || looks_away(-b.axis, b.spread) {
             return None;
         }
-        self.of_differences(b.low - a.high - self.from, b.high - a.low - self.from)
+        self.difference_interval(b.low - a.high - self.from, b.high - a.low - self.from)
     }
 
     /// Returns an interval that contains those of all facets in two boxes, clipped to the range.
-    pub(super) fn of_boxes(&self, [a, b]: [&Aabb; 2]) -> Option<Span> {
-        self.of_differences(b.low - a.high - self.from, b.high - a.low - self.from)
+    pub(super) fn box_interval(&self, [a, b]: [&Aabb; 2]) -> Option<Interval> {
+        self.difference_interval(b.low - a.high - self.from, b.high - a.low - self.from)
     }
 
     /// Returns the interval of a box of differences, clipped to the range.
-    fn of_differences(&self, low: DVec3, high: DVec3) -> Option<Span> {
+    fn difference_interval(&self, low: DVec3, high: DVec3) -> Option<Interval> {
         let [d, e] = self.along;
         let mut range = Range { low: 0.0, high: self.end };
         // Lower and upper bounds of `tau`, each as its value at 0 and its slope.
@@ -87,8 +88,8 @@ impl Question {
         let mut count = 1;
         for k in 0..3 {
             if e[k] == 0.0 {
-                range.keep([high[k], -d[k]]);
-                range.keep([-low[k], d[k]]);
+                range.restrict_to([high[k], -d[k]]);
+                range.restrict_to([-low[k], d[k]]);
                 continue;
             }
             let (share, slope) = (e[k].recip(), -d[k] / e[k]);
@@ -100,7 +101,7 @@ impl Question {
         for (i, floor) in floors[..count].iter().enumerate() {
             for (j, roof) in roofs[..count].iter().enumerate() {
                 if i != j {
-                    range.keep([roof[0] - floor[0], roof[1] - floor[1]]);
+                    range.restrict_to([roof[0] - floor[0], roof[1] - floor[1]]);
                 }
             }
         }
@@ -108,15 +109,15 @@ impl Question {
     }
 
     /// Returns the interval of two facets. Returns `None` if it does not meet the range.
-    fn of_facets(&self, bodies: &Bodies, pair: [u32; 2]) -> Option<Span> {
+    fn facet_interval(&self, bodies: &Bodies, pair: [u32; 2]) -> Option<Interval> {
         let [d, e] = self.along;
-        let normal = |k: usize| bodies.views[k][pair[k] as usize].axis;
-        if normal(0).dot(e) <= FLAT || normal(1).dot(e) >= -FLAT {
+        let normal = |k: usize| bodies.nodes[k][pair[k] as usize].axis;
+        if normal(0).dot(e) <= MIN_FACING || normal(1).dot(e) >= -MIN_FACING {
             return None;
         }
         let corners = [true, false].map(|moving| {
-            let triangle = bodies.triangle(moving, pair[usize::from(!moving)]);
-            bodies.spots(moving, triangle).map(|spot| bodies.corner(spot).at)
+            let triangle = bodies.leaf_triangle(moving, pair[usize::from(!moving)]);
+            bodies.triangle_vertices(moving, triangle).map(|vertex| bodies.placed_vertex(vertex).at)
         });
         let across = d.cross(e);
         let scale = across.length_squared().recip();
@@ -127,17 +128,17 @@ impl Question {
             let place = [v.cross(e).dot(across) * scale, d.cross(v).dot(across) * scale];
             *difference = (across.dot(v), place);
         }
-        let span = shadow(&slice(&differences), self.far)?;
+        let span = projected_range(&slice_points(&differences), self.far)?;
         (span[1] > 0.0 && span[0] < self.end).then_some(span)
     }
 }
 
 /// Sine of the angle between a direction and a facet below which the facet does not block.
-const FLAT: f64 = 1e-12;
+const MIN_FACING: f64 = 1e-12;
 
 /// Returns points whose hull is the slice at height 0. The result is empty if all differences are on one
 /// side.
-fn slice(differences: &[(f64, [f64; 2]); 9]) -> Vec<[f64; 2]> {
+fn slice_points(differences: &[(f64, [f64; 2]); 9]) -> Vec<[f64; 2]> {
     let mut points = Vec::with_capacity(20);
     if !differences.iter().any(|x| x.0 > 0.0) {
         return points;
@@ -153,7 +154,7 @@ fn slice(differences: &[(f64, [f64; 2]); 9]) -> Vec<[f64; 2]> {
 
 /// Returns the range of the first coordinate over the part of a hull whose second coordinate is between 0 and
 /// `far`.
-fn shadow(points: &[[f64; 2]], far: f64) -> Option<Span> {
+fn projected_range(points: &[[f64; 2]], far: f64) -> Option<Interval> {
     let mut span = [f64::INFINITY, f64::NEG_INFINITY];
     let mut put = |t: f64| span = [span[0].min(t), span[1].max(t)];
     for p in points {
@@ -180,7 +181,7 @@ struct Range {
 impl Range {
     /// Restricts the range to where a linear function, given by its value at 0 and its slope, is not
     /// negative.
-    fn keep(&mut self, [value, slope]: [f64; 2]) {
+    fn restrict_to(&mut self, [value, slope]: [f64; 2]) {
         let (at_low, at_high) = (value + slope * self.low, value + slope * self.high);
         match (at_low >= 0.0, at_high >= 0.0) {
             (true, true) => (),
@@ -191,13 +192,13 @@ impl Range {
     }
 }
 
-fn covers(set: &[Span], span: Span) -> bool {
+fn is_covered(set: &[Interval], span: Interval) -> bool {
     set.iter().any(|s| s[0] <= span[0] && span[1] <= s[1])
 }
 
 /// Inserts an open interval into a set of disjoint ones, and joins those that overlap. Intervals that only
 /// touch remain separate, because the point between them is an opening.
-pub(super) fn add(set: &mut Vec<Span>, mut span: Span) {
+pub(super) fn insert_interval(set: &mut Vec<Interval>, mut span: Interval) {
     set.retain(|s| {
         let apart = s[1] <= span[0] || span[1] <= s[0];
         if !apart {
@@ -210,7 +211,7 @@ pub(super) fn add(set: &mut Vec<Span>, mut span: Span) {
 }
 
 /// Returns the complement of blocked intervals in `[0, end]`.
-pub(super) fn open(blocked: &[Span], end: f64) -> Vec<Span> {
+pub(super) fn complement(blocked: &[Interval], end: f64) -> Vec<Interval> {
     let (mut open, mut at) = (Vec::new(), 0.0_f64);
     for &[low, high] in blocked {
         if low >= at {
@@ -229,23 +230,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_between_two_that_touch_is_open() {
+    fn point_between_touching_intervals_is_open() {
         let mut set = Vec::new();
         for span in [[3.0, 5.0], [0.0, 1.0], [1.0, 2.0], [4.0, 9.0]] {
-            add(&mut set, span);
+            insert_interval(&mut set, span);
         }
         assert_eq!(set, [[0.0, 1.0], [1.0, 2.0], [3.0, 9.0]]);
-        assert_eq!(open(&set, 7.0), [[0.0, 0.0], [1.0, 1.0], [2.0, 3.0]]);
+        assert_eq!(complement(&set, 7.0), [[0.0, 0.0], [1.0, 1.0], [2.0, 3.0]]);
     }
 
     #[test]
-    fn a_box_of_differences_has_the_range_of_its_slice() {
-        let question =
-            |along: [DVec3; 2], end: f64, far: f64| Question { from: DVec3::ZERO, along, end, far };
-        let of = |question: &Question, low: [f64; 3], high: [f64; 3]| {
-            question.of_differences(DVec3::from(low), DVec3::from(high))
+    fn difference_interval_matches_sampled_slice() {
+        let query = |along: [DVec3; 2], end: f64, far: f64| OpeningQuery {
+            from: DVec3::ZERO,
+            along,
+            end,
+            far,
         };
-        let across = question([DVec3::X, DVec3::Z], 4.0, 4.0);
+        let of = |query: &OpeningQuery, low: [f64; 3], high: [f64; 3]| {
+            query.difference_interval(DVec3::from(low), DVec3::from(high))
+        };
+        let across = query([DVec3::X, DVec3::Z], 4.0, 4.0);
         assert_eq!(of(&across, [0.5, -1.0, 1.0], [2.0, 1.0, 9.0]), Some([0.5, 2.0]));
         // To the side, beyond the second move, before the first one.
         assert_eq!(of(&across, [0.5, 1.0, 1.0], [2.0, 2.0, 9.0]), None);
@@ -256,7 +261,7 @@ mod tests {
         let (mut met, mut missed) = (0, 0);
         for _ in 0..300 {
             let [a, b] = [random.direction(), random.direction()];
-            let question = question([a, b], 2.0, 1.5);
+            let query = query([a, b], 2.0, 1.5);
             let (middle, half) = (1.5 * random.direction(), 0.6 * random.direction().abs());
             let (low, high) = (middle - half, middle + half);
             let places = (0..=400).flat_map(|i| (0..=300).map(move |j| (i, j)));
@@ -268,7 +273,7 @@ mod tests {
                     seen = [seen[0].min(t), seen[1].max(t)];
                 }
             }
-            match question.of_differences(low, high) {
+            match query.difference_interval(low, high) {
                 Some([from, to]) if seen[0] <= seen[1] => {
                     met += 1;
                     assert!(from <= seen[0] + 1e-12 && to >= seen[1] - 1e-12);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::openings::Question;
+use super::openings::OpeningQuery;
 use super::options::Searched;
 use crate::free::{Bodies, FreeError};
 use colltrans_convex::answer::Clearance;
@@ -19,19 +19,19 @@ use colltrans_solid::{SolidCast, SolidScene};
 
 /// Returns a displacement as bits, for use as a key. Displacements lie on a grid, so equal ones have equal
 /// bits.
-pub(super) fn bits(v: DVec3) -> [u64; 3] {
+pub(super) fn bit_key(v: DVec3) -> [u64; 3] {
     // Adding 0 turns -0 into 0.
     v.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-type Key = ([u64; 3], usize);
+type TravelKey = ([u64; 3], usize);
 type OpeningKey = ([u64; 3], [usize; 2], [u64; 2]);
 
 /// Maximum number of stored pairs of facets that were hit.
-const MOST_HIT: usize = 32;
+const MAX_HIT: usize = 32;
 
 /// Two bodies of the search, with cached results.
-pub(super) struct Pair<'a> {
+pub(super) struct BodyPair<'a> {
     placed: [Placed<'a, Solid>; 2],
     /// Bounding boxes in the world frame, slightly enlarged.
     boxes: [Aabb; 2],
@@ -42,15 +42,15 @@ pub(super) struct Pair<'a> {
     bodies: Option<Bodies<'a>>,
     /// Minimum length of a move.
     step: f64,
-    rooms: HashMap<Key, f64>,
+    free_travels: HashMap<TravelKey, f64>,
     /// Facets that were hit, the most recent first.
     hit: Vec<[u32; 2]>,
     blocked: HashMap<OpeningKey, Vec<[f64; 2]>>,
     workspace: Workspace,
 }
 
-impl<'a> Pair<'a> {
-    /// Builds the pair of two bodies with their [boxes](around).
+impl<'a> BodyPair<'a> {
+    /// Builds the pair of two bodies with their [boxes](bounding_box).
     ///
     /// # Errors
     /// Returns an error for bodies that a cast rejects, and for open shells.
@@ -64,7 +64,7 @@ impl<'a> Pair<'a> {
                 return Err(FreeError::Open { which });
             }
         }
-        let cast = standing(placed, tolerance)?;
+        let cast = initial_cast(placed, tolerance)?;
         let overlap = if boxes[0].meets(&boxes[1]) {
             overlap::find(&cast.asked_of_something()?, &mut SolidSteps::default())
         } else {
@@ -77,7 +77,7 @@ impl<'a> Pair<'a> {
             overlap,
             bodies: None,
             step,
-            rooms: HashMap::new(),
+            free_travels: HashMap::new(),
             hit: Vec::new(),
             blocked: HashMap::new(),
             workspace: Workspace::default(),
@@ -86,7 +86,7 @@ impl<'a> Pair<'a> {
 
     /// Returns the free travel of the first body, displaced by `by`, along a direction of length 1. A free
     /// travel below the minimum length of a move may be returned as 0.
-    pub(super) fn room(
+    pub(super) fn free_travel(
         &mut self,
         by: DVec3,
         (number, d): (usize, DVec3),
@@ -95,14 +95,14 @@ impl<'a> Pair<'a> {
         if self.overlap.is_some() {
             return Ok(0.0);
         }
-        if !self.may_meet(by, d) {
+        if !self.boxes_may_meet(by, d) {
             return Ok(f64::INFINITY);
         }
-        let key = (bits(by), number);
-        if let Some(&room) = self.rooms.get(&key) {
+        let key = (bit_key(by), number);
+        if let Some(&room) = self.free_travels.get(&key) {
             return Ok(room);
         }
-        let cast = self.cast(by, d)?;
+        let cast = self.cast_along(by, d)?;
         // Facets that were hit last often block again after a short distance, also along other directions.
         let soon = |facets: &[u32; 2]| {
             cast.stop_by(*facets).is_some_and(|stop| stop.shrunk_distance.value < self.step)
@@ -115,35 +115,35 @@ impl<'a> Pair<'a> {
             let clearance = cast.clearance_in(&mut self.workspace)?;
             if let Clearance::Blocked { contact, .. } = &clearance {
                 self.hit.insert(0, contact.triangles);
-                self.hit.truncate(MOST_HIT);
+                self.hit.truncate(MAX_HIT);
             }
-            room_of(&clearance)
+            travel_of_clearance(&clearance)
         };
-        self.rooms.insert(key, room);
+        self.free_travels.insert(key, room);
         Ok(room)
     }
 
     /// Computes the free travel of the first body, displaced by `by`, along a direction of length 1. The
     /// result is not cached.
-    pub(super) fn room_along(
+    pub(super) fn uncached_free_travel(
         &mut self,
         by: DVec3,
         d: DVec3,
         searched: &mut Searched,
     ) -> Result<f64, QueryError> {
         searched.casts += 1;
-        Ok(room_of(&self.cast(by, d)?.clearance_in(&mut self.workspace)?))
+        Ok(travel_of_clearance(&self.cast_along(by, d)?.clearance_in(&mut self.workspace)?))
     }
 
-    fn cast(&self, by: DVec3, d: DVec3) -> Result<Cast<'a, Solid>, QueryError> {
+    fn cast_along(&self, by: DVec3, d: DVec3) -> Result<Cast<'a, Solid>, QueryError> {
         let options =
             SolidOptions::default().with_tolerance(self.tolerance).with_overlapping(false);
-        displaced(self.placed, by, d)?.with_options(options)
+        displaced_cast(self.placed, by, d)?.with_options(options)
     }
 
     /// Checks whether the box of the first body, displaced by `by`, meets that of the second one along a
     /// direction.
-    fn may_meet(&self, by: DVec3, d: DVec3) -> bool {
+    fn boxes_may_meet(&self, by: DVec3, d: DVec3) -> bool {
         let [a, b] = &self.boxes;
         let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
         for k in 0..3 {
@@ -163,7 +163,7 @@ impl<'a> Pair<'a> {
 
     /// Returns the positions along the first of two directions from which the first body cannot move `far`
     /// along the second one, as open intervals.
-    pub(super) fn blocked(
+    pub(super) fn blocked_intervals(
         &mut self,
         by: DVec3,
         numbers: [usize; 2],
@@ -171,39 +171,39 @@ impl<'a> Pair<'a> {
         [end, far]: [f64; 2],
         searched: &mut Searched,
     ) -> Result<&[[f64; 2]], QueryError> {
-        let question = Question { from: by, along, end, far };
+        let query = OpeningQuery { from: by, along, end, far };
         let [a, b] = &self.boxes;
-        if question.of_boxes([a, b]).is_none() {
+        if query.box_interval([a, b]).is_none() {
             return Ok(&[]);
         }
         let bodies = match &mut self.bodies {
             Some(bodies) => bodies,
             none => {
-                let scene = standing(self.placed, self.tolerance)?.asked_of_something()?;
+                let scene = initial_cast(self.placed, self.tolerance)?.asked_of_something()?;
                 none.insert(Bodies::new(scene))
             }
         };
         let ask = || {
             searched.openings += 1;
-            question.blocked(bodies, &mut searched.looks)
+            query.blocked_intervals(bodies, &mut searched.looks)
         };
-        let key = (bits(by), numbers, [end.to_bits(), far.to_bits()]);
+        let key = (bit_key(by), numbers, [end.to_bits(), far.to_bits()]);
         Ok(self.blocked.entry(key).or_insert_with(ask))
     }
 
     /// Removes the cached free travels of all directions from an index on.
-    pub(super) fn forget_rooms(&mut self, from: usize) {
-        self.rooms.retain(|key, _| key.1 < from);
+    pub(super) fn forget_travels(&mut self, from: usize) {
+        self.free_travels.retain(|key, _| key.1 < from);
     }
 
     /// Returns the first body displaced by `by`, and the second one.
-    pub(super) fn placed(&self, by: DVec3) -> Result<[Placed<'a, Solid>; 2], QueryError> {
+    pub(super) fn placed_bodies(&self, by: DVec3) -> Result<[Placed<'a, Solid>; 2], QueryError> {
         let [a, b] = self.placed;
-        Ok([a.body.at(moved(a, by)?), b])
+        Ok([a.body.at(displaced_pose(a, by)?), b])
     }
 }
 
-fn room_of(clearance: &Clearance<Solid>) -> f64 {
+fn travel_of_clearance(clearance: &Clearance<Solid>) -> f64 {
     match clearance {
         Clearance::Blocked { contact, .. } => contact.shrunk_distance.value.max(0.0),
         Clearance::Free(_) => f64::INFINITY,
@@ -212,7 +212,7 @@ fn room_of(clearance: &Clearance<Solid>) -> f64 {
 }
 
 /// Returns the bounding box of a placed body in the world frame, enlarged by more than the rounding error.
-pub(super) fn around(body: &Placed<'_, Solid>) -> Aabb {
+pub(super) fn bounding_box(body: &Placed<'_, Solid>) -> Aabb {
     let pose = &body.pose;
     let points = body.body.vertices().iter().map(|v| pose.transform_point(*v));
     let tight = Aabb::of_points(points);
@@ -220,22 +220,22 @@ pub(super) fn around(body: &Placed<'_, Solid>) -> Aabb {
 }
 
 /// Builds the cast of both bodies in their initial poses.
-pub(super) fn standing(
+pub(super) fn initial_cast(
     [a, b]: [Placed<'_, Solid>; 2],
     tolerance: f64,
 ) -> Result<Cast<'_, Solid>, QueryError> {
     Cast::new(a, b, DVec3::Z)?.with_options(SolidOptions::default().with_tolerance(tolerance))
 }
 
-fn moved(a: Placed<'_, Solid>, by: DVec3) -> Result<colltrans_convex::Pose, QueryError> {
+fn displaced_pose(a: Placed<'_, Solid>, by: DVec3) -> Result<colltrans_convex::Pose, QueryError> {
     a.pose.translated(by).map_err(|_| QueryError::Direction { direction: by })
 }
 
 /// Builds the cast of one body, displaced by a vector, against another one.
-pub(super) fn displaced(
+pub(super) fn displaced_cast(
     [a, b]: [Placed<'_, Solid>; 2],
     by: DVec3,
     d: DVec3,
 ) -> Result<Cast<'_, Solid>, QueryError> {
-    Cast::new(a.body.at(moved(a, by)?), b, d)
+    Cast::new(a.body.at(displaced_pose(a, by)?), b, d)
 }

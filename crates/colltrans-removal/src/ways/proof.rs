@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::answer::{Leg, MOST_BODIES};
-use super::pairs::displaced;
-use super::search::{Group, Move, border};
+use super::answer::{Leg, MAX_BODIES};
+use super::pairs::displaced_cast;
+use super::search::{Group, Move, moving_pairs};
 use crate::free::FreeError;
 use colltrans_convex::body::Placed;
 use colltrans_convex::cast::Cast;
@@ -15,7 +15,7 @@ use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartProof};
 
 /// End of the cast of a leg that is not the last one, in multiples of its motion. It is larger than 1, so
 /// that the proven bound is at least 1 in spite of rounding.
-const END: f64 = 1.0 + 1.0 / (1 << 30) as f64;
+const CAST_END: f64 = 1.0 + 1.0 / (1 << 30) as f64;
 
 /// Proof that a body does not hit another one on a leg.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,25 +28,25 @@ pub struct LegProof {
 }
 
 /// Returns the bodies of a group.
-pub(super) fn members(group: Group) -> Vec<usize> {
-    (0..MOST_BODIES).filter(|k| group >> k & 1 == 1).collect()
+pub(super) fn group_members(group: Group) -> Vec<usize> {
+    (0..MAX_BODIES).filter(|k| group >> k & 1 == 1).collect()
 }
 
 /// Builds the cast of one pair on a leg.
-pub(super) fn of_leg(
+pub(super) fn leg_cast(
     pair: [Placed<'_, Solid>; 2],
     by: DVec3,
     motion: DVec3,
     last: bool,
     tolerance: f64,
 ) -> Result<Cast<'_, Solid>, QueryError> {
-    let end = (!last).then_some(END);
+    let end = (!last).then_some(CAST_END);
     let options = SolidOptions::default().with_tolerance(tolerance).with_before(end);
-    displaced(pair, by, motion)?.with_options(options)
+    displaced_cast(pair, by, motion)?.with_options(options)
 }
 
 /// Checks whether a certificate proves that the bodies are apart at the start and do not collide on the leg.
-pub(super) fn passes(certificate: &SolidCertificate, last: bool) -> bool {
+pub(super) fn proves_leg(certificate: &SolidCertificate, last: bool) -> bool {
     let end = if last { f64::INFINITY } else { 1.0 };
     matches!(certificate.start, StartProof::Apart(_))
         && certificate.stop.is_none()
@@ -54,7 +54,7 @@ pub(super) fn passes(certificate: &SolidCertificate, last: bool) -> bool {
 }
 
 /// Certifies the legs of a plan. Returns `None` if a leg cannot be proven.
-pub(super) fn certified(
+pub(super) fn certified_legs(
     bodies: &[Placed<'_, Solid>],
     moves: &[Move],
     tolerance: f64,
@@ -64,15 +64,15 @@ pub(super) fn certified(
     for (k, &Move { group, motion }) in moves.iter().enumerate() {
         let last = k + 1 == moves.len();
         let mut proofs = Vec::new();
-        for [i, j] in border(group, bodies.len()) {
-            let cast = of_leg([bodies[i], bodies[j]], at[i] - at[j], motion, last, tolerance)?;
+        for [i, j] in moving_pairs(group, bodies.len()) {
+            let cast = leg_cast([bodies[i], bodies[j]], at[i] - at[j], motion, last, tolerance)?;
             let certificate = cast.certified_clearance()?.1;
-            if !passes(&certificate, last) {
+            if !proves_leg(&certificate, last) {
                 return Ok(None);
             }
             proofs.push(LegProof { bodies: [i, j], certificate });
         }
-        let own = members(group);
+        let own = group_members(group);
         for &b in &own {
             at[b] += motion;
         }

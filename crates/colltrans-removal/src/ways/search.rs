@@ -4,7 +4,7 @@
 //! At a placement each pair of bodies is cast along all directions. Bodies that are hit within a minimum move
 //! join the group, so each body and direction have a smallest group. A group that never hits the others is
 //! removed, which ends the search. Otherwise it stops within the openings for other directions and before the
-//! first contact. If no placement is left, all free directions of a body are computed at explored placements,
+//! first contact. If two bodies have no placement left, all free directions are computed at explored placements,
 //! for last legs in other directions.
 //!
 //! - The base, a fixed body or the largest one, never moves. If a group contains it, the other bodies move
@@ -22,18 +22,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 
-use super::openings::{add, open};
+use super::openings::{complement, insert_interval};
 use super::options::{Order, Searched, WayOptions};
-use super::pairs::{Pair, bits};
+use super::pairs::{BodyPair, bit_key};
 use crate::free::{FreeDirections, FreeError, FreeOptions};
 use colltrans_convex::setting::error::QueryError;
 
 /// Maximum number of placements at which free directions are computed.
-const MOST_FREE_SETS: usize = 64;
+const MAX_FREE_SETS: usize = 64;
 /// Maximum number of node visits of each of these computations.
-const FREE_LOOKS: u64 = 200_000;
+const MAX_FREE_VISITS: u64 = 200_000;
 /// Size of the regions in which placements are counted, in cells of a placement.
-const REGION: f64 = 8.0;
+const REGION_SIZE: f64 = 8.0;
 
 /// Set of bodies, one bit for each.
 pub(super) type Group = u64;
@@ -47,7 +47,7 @@ pub(super) struct Move {
 
 /// Lengths of a search.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
+pub(super) struct SearchScale {
     /// Length that exceeds the size of all bodies together.
     pub(super) far: f64,
     /// Minimum length of a move.
@@ -60,7 +60,7 @@ pub(super) struct Scale {
     pub(super) grid: f64,
 }
 
-struct Place {
+struct Placement {
     at: Vec<DVec3>,
     before: Option<(usize, Move)>,
     /// Index of the axis along which it was reached.
@@ -69,10 +69,10 @@ struct Place {
 }
 
 /// Identity of a placement.
-type Key = (Vec<[u64; 3]>, u64);
+type PlacementKey = (Vec<[u64; 3]>, u64);
 
 /// End of a search.
-pub(super) enum Run<P> {
+pub(super) enum SearchEnd<P> {
     Found(P),
     /// Unexplored placements remain.
     Paused,
@@ -82,45 +82,46 @@ pub(super) enum Run<P> {
 
 pub(super) struct Search<'s, 'a> {
     /// Pair of the bodies `i < j` at index `j (j - 1) / 2 + i`.
-    pub(super) pairs: Vec<Pair<'a>>,
+    pub(super) pairs: Vec<BodyPair<'a>>,
     pub(super) count: usize,
     /// Bodies that do not move, including the base.
     pub(super) fixed: Group,
     pub(super) base: usize,
     pub(super) directions: Vec<DVec3>,
-    pub(super) scale: Scale,
+    pub(super) scale: SearchScale,
     pub(super) options: &'s WayOptions,
     order: Order,
     pub(super) cancel: Option<&'s AtomicBool>,
     pub(super) searched: Searched,
-    places: Vec<Place>,
+    placements: Vec<Placement>,
     /// Unexplored placements by cost.
     queue: BinaryHeap<Reverse<(usize, usize)>>,
     /// Explored placements.
-    left: Vec<usize>,
+    explored: Vec<usize>,
     /// Fewest legs by which placements were reached, by their identity.
-    known: HashMap<Key, usize>,
+    known: HashMap<PlacementKey, usize>,
     /// Fewest legs by which placements were reached, by their cells in a fine grid.
     seen: HashMap<Vec<[u64; 3]>, usize>,
     /// Number of placements that were reached in each region.
-    crowds: HashMap<Vec<[u64; 3]>, usize>,
+    region_counts: HashMap<Vec<[u64; 3]>, usize>,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
     pub(super) fn new(
-        pairs: Vec<Pair<'a>>,
+        pairs: Vec<BodyPair<'a>>,
         (count, fixed, base): (usize, Group, usize),
         directions: Vec<DVec3>,
-        scale: Scale,
+        scale: SearchScale,
         options: &'s WayOptions,
         cancel: Option<&'s AtomicBool>,
     ) -> Self {
         let own = if count == 2 { Order::NewestFirst } else { Order::FewestLegs };
         let order = options.order.unwrap_or(own);
         let searched = Searched { directions: directions.len(), ..Searched::default() };
-        let start = Place { at: vec![DVec3::ZERO; count], before: None, axis: None, legs: 0 };
-        let (places, queue, left) = (vec![start], BinaryHeap::from([Reverse((0, 0))]), Vec::new());
-        let (seen, known, crowds) = (HashMap::new(), HashMap::new(), HashMap::new());
+        let start = Placement { at: vec![DVec3::ZERO; count], before: None, axis: None, legs: 0 };
+        let (placements, queue, explored) =
+            (vec![start], BinaryHeap::from([Reverse((0, 0))]), Vec::new());
+        let (seen, known, region_counts) = (HashMap::new(), HashMap::new(), HashMap::new());
         Self {
             pairs,
             count,
@@ -132,12 +133,12 @@ impl<'s, 'a> Search<'s, 'a> {
             order,
             cancel,
             searched,
-            places,
+            placements,
             queue,
-            left,
+            explored,
             known,
             seen,
-            crowds,
+            region_counts,
         }
     }
 
@@ -147,50 +148,50 @@ impl<'s, 'a> Search<'s, 'a> {
         &mut self,
         places: usize,
         mut proven: impl FnMut(&[Move]) -> Result<Option<P>, FreeError>,
-    ) -> Result<Run<P>, FreeError> {
+    ) -> Result<SearchEnd<P>, FreeError> {
         while let Some(&Reverse((_, at))) = self.queue.peek() {
-            self.check()?;
-            if self.is_spent() {
-                return Ok(Run::Ended);
+            self.check_cancelled()?;
+            if self.is_limit_reached() {
+                return Ok(SearchEnd::Ended);
             }
             if self.searched.places >= places {
-                return Ok(Run::Paused);
+                return Ok(SearchEnd::Paused);
             }
             self.queue.pop();
             self.searched.places += 1;
-            let rooms = self.rooms(at)?;
-            for last in self.leaving(&rooms, 0) {
-                if let Some(way) = proven(&self.moves(at, last))? {
-                    return Ok(Run::Found(way));
+            let travels = self.free_travels(at)?;
+            for last in self.last_moves(&travels, 0) {
+                if let Some(way) = proven(&self.moves_to(at, last))? {
+                    return Ok(SearchEnd::Found(way));
                 }
             }
-            self.left.push(at);
-            let goes_on = self.places[at].legs + 2 <= self.options.legs;
-            let (key, legs) = (self.key(at, &rooms), self.places[at].legs);
-            if goes_on && is_new(&mut self.known, key, legs) {
-                let new = self.next(at, &rooms)?;
+            self.explored.push(at);
+            let goes_on = self.placements[at].legs + 2 <= self.options.legs;
+            let (key, legs) = (self.placement_key(at, &travels), self.placements[at].legs);
+            if goes_on && is_improvement(&mut self.known, key, legs) {
+                let new = self.new_placements(at, &travels)?;
                 for place in new {
-                    let cost = self.cost(place);
+                    let cost = self.exploration_cost(place);
                     self.queue.push(Reverse((cost, place)));
                 }
             }
         }
-        self.searched.complete = !self.is_spent();
-        Ok(Run::Ended)
+        self.searched.complete = !self.is_limit_reached();
+        Ok(SearchEnd::Ended)
     }
 
     /// Searches for a last leg along any free direction at an explored placement. Returns `None` if `proven`
     /// accepts none.
-    pub(super) fn askew<P>(
+    pub(super) fn last_leg_in_any_direction<P>(
         &mut self,
         mut proven: impl FnMut(&[Move]) -> Result<Option<P>, FreeError>,
     ) -> Result<Option<P>, FreeError> {
-        let mut left = std::mem::take(&mut self.left);
-        left.sort_by_key(|&place| self.places[place].legs);
-        left.truncate(MOST_FREE_SETS);
-        for place in left {
-            for last in self.leaving_askew(place)? {
-                if let Some(way) = proven(&self.moves(place, last))? {
+        let mut explored = std::mem::take(&mut self.explored);
+        explored.sort_by_key(|&place| self.placements[place].legs);
+        explored.truncate(MAX_FREE_SETS);
+        for place in explored {
+            for last in self.last_moves_in_free_directions(place)? {
+                if let Some(way) = proven(&self.moves_to(place, last))? {
                     return Ok(Some(way));
                 }
             }
@@ -201,7 +202,7 @@ impl<'s, 'a> Search<'s, 'a> {
     /// Shortens a proposed path of displacements of the first of two bodies against the second one: it finds
     /// a path with few legs, each from one displacement to a later one, that casts permit. `sign` is -1 if
     /// the second body moves instead. Returns `None` if `proven` accepts no path.
-    pub(super) fn shortened<P>(
+    pub(super) fn shortened_path<P>(
         &mut self,
         body: usize,
         (places, grid, sign): (&[DVec3], f64, f64),
@@ -214,9 +215,11 @@ impl<'s, 'a> Search<'s, 'a> {
         let (mut before, mut legs) = (vec![None; places.len()], vec![0; places.len()]);
         let mut queue = VecDeque::from([0]);
         while let Some(at) = queue.pop_front() {
-            self.check()?;
+            self.check_cancelled()?;
             for &d in &self.directions.clone() {
-                if self.pairs[0].room_along(places[at], d, &mut self.searched)? < f64::INFINITY {
+                if self.pairs[0].uncached_free_travel(places[at], d, &mut self.searched)?
+                    < f64::INFINITY
+                {
                     continue;
                 }
                 let way = std::iter::successors(Some(at), |&k| before[k]);
@@ -234,7 +237,9 @@ impl<'s, 'a> Search<'s, 'a> {
                 let length = motion.length();
                 if before[next].is_none() && length > 0.0 {
                     let d = motion / length;
-                    if self.pairs[0].room_along(places[at], d, &mut self.searched)? > length {
+                    if self.pairs[0].uncached_free_travel(places[at], d, &mut self.searched)?
+                        > length
+                    {
                         (before[next], legs[next]) = (Some(at), legs[at] + 1);
                         queue.push_back(next);
                     }
@@ -244,13 +249,13 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(None)
     }
 
-    fn check(&self) -> Result<(), FreeError> {
+    fn check_cancelled(&self) -> Result<(), FreeError> {
         let cancelled = self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if cancelled { Err(FreeError::Cancelled) } else { Ok(()) }
     }
 
     /// Checks whether a limit is reached.
-    fn is_spent(&self) -> bool {
+    fn is_limit_reached(&self) -> bool {
         let (searched, most) = (&self.searched, self.options);
         searched.looks >= most.looks
             || searched.casts >= most.casts
@@ -258,44 +263,44 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Returns the cost of a placement. The smallest cost is explored first.
-    fn cost(&mut self, place: usize) -> usize {
-        let legs = self.places[place].legs;
+    fn exploration_cost(&mut self, place: usize) -> usize {
+        let legs = self.placements[place].legs;
         if self.order == Order::FewestLegs {
             return legs;
         }
-        let cell = |v: &DVec3| bits((*v / (REGION * self.scale.grain)).round());
-        let region = self.places[place].at.iter().map(cell).collect();
-        let crowd = self.crowds.entry(region).or_default();
-        *crowd += 1;
-        legs + 2 * (*crowd - 1)
+        let cell = |v: &DVec3| bit_key((*v / (REGION_SIZE * self.scale.grain)).round());
+        let region = self.placements[place].at.iter().map(cell).collect();
+        let region_count = self.region_counts.entry(region).or_default();
+        *region_count += 1;
+        legs + 2 * (*region_count - 1)
     }
 
     /// Returns for each direction the free travel of each body against each other one, in rows of the moving
     /// body.
-    fn rooms(&mut self, place: usize) -> Result<Vec<Vec<f64>>, FreeError> {
-        let mut rooms = vec![vec![f64::INFINITY; self.count * self.count]; self.directions.len()];
+    fn free_travels(&mut self, place: usize) -> Result<Vec<Vec<f64>>, FreeError> {
+        let mut travels = vec![vec![f64::INFINITY; self.count * self.count]; self.directions.len()];
         for k in 0..self.directions.len() {
-            self.put_rooms(place, k, &mut rooms)?;
+            self.compute_travels(place, k, &mut travels)?;
         }
-        Ok(rooms)
+        Ok(travels)
     }
 
     /// Computes the free travels of all pairs along a direction. That of the first body of a pair equals that
     /// of the second one in the opposite direction.
-    fn put_rooms(
+    fn compute_travels(
         &mut self,
         place: usize,
         k: usize,
-        rooms: &mut [Vec<f64>],
+        travels: &mut [Vec<f64>],
     ) -> Result<(), QueryError> {
         let (count, d) = (self.count, (k, self.directions[k]));
         for j in 1..count {
             for i in 0..j {
-                let by = self.places[place].at[i] - self.places[place].at[j];
+                let by = self.placements[place].at[i] - self.placements[place].at[j];
                 let pair = &mut self.pairs[j * (j - 1) / 2 + i];
-                let room = pair.room(by, d, &mut self.searched)?;
-                rooms[k][i * count + j] = room;
-                rooms[k ^ 1][j * count + i] = room;
+                let travel = pair.free_travel(by, d, &mut self.searched)?;
+                travels[k][i * count + j] = travel;
+                travels[k ^ 1][j * count + i] = travel;
             }
         }
         Ok(())
@@ -304,23 +309,23 @@ impl<'s, 'a> Search<'s, 'a> {
     /// Returns the distinct groups that move along a direction if the bodies that they hit before `end` join
     /// them. A group with the base is replaced by the other bodies, with the flag set for the opposite
     /// motion. Groups with fixed bodies are omitted.
-    fn groups(&self, rooms: &[f64], end: f64) -> Vec<(Group, bool)> {
+    fn moving_groups(&self, travels: &[f64], end: f64) -> Vec<(Group, bool)> {
         let mut found = Vec::new();
         let all = Group::MAX >> (Group::BITS as usize - self.count);
         for first in 0..self.count {
             let (mut group, mut stack): (Group, _) = (1 << first, vec![first]);
             while let Some(i) = stack.pop() {
                 for j in 0..self.count {
-                    if group >> j & 1 == 0 && rooms[i * self.count + j] < end {
+                    if group >> j & 1 == 0 && travels[i * self.count + j] < end {
                         group |= 1 << j;
                         stack.push(j);
                     }
                 }
             }
-            let turned = group >> self.base & 1 == 1;
-            let moving = if turned { all & !group } else { group };
-            if moving != 0 && moving & self.fixed == 0 && !found.contains(&(moving, turned)) {
-                found.push((moving, turned));
+            let reversed = group >> self.base & 1 == 1;
+            let moving = if reversed { all & !group } else { group };
+            if moving != 0 && moving & self.fixed == 0 && !found.contains(&(moving, reversed)) {
+                found.push((moving, reversed));
             }
         }
         found
@@ -328,11 +333,11 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Returns possible last moves along the directions from an index on, smallest groups first, at most
     /// four.
-    fn leaving(&self, rooms: &[Vec<f64>], from: usize) -> Vec<Move> {
+    fn last_moves(&self, travels: &[Vec<f64>], from: usize) -> Vec<Move> {
         let mut found = Vec::new();
         for (k, d) in self.directions.iter().enumerate().skip(from) {
-            for (group, turned) in self.groups(&rooms[k], f64::INFINITY) {
-                found.push(Move { group, motion: if turned { DVec3::ZERO - *d } else { *d } });
+            for (group, reversed) in self.moving_groups(&travels[k], f64::INFINITY) {
+                found.push(Move { group, motion: if reversed { DVec3::ZERO - *d } else { *d } });
             }
         }
         found.sort_by_key(|way| way.group.count_ones());
@@ -342,29 +347,29 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Returns last moves along free directions of each body, relative to the other body that leaves it the
     /// smallest area.
-    fn leaving_askew(&mut self, place: usize) -> Result<Vec<Move>, FreeError> {
+    fn last_moves_in_free_directions(&mut self, place: usize) -> Result<Vec<Move>, FreeError> {
         let (count, known) = (self.count, self.directions.len());
         let mut askew = Vec::new();
         for i in (0..count).filter(|i| self.fixed >> i & 1 == 0) {
             let mut least: Option<(f64, Vec<DVec3>)> = None;
             for j in (0..count).filter(|&j| j != i) {
-                self.check()?;
+                self.check_cancelled()?;
                 let (low, high) = (i.min(j), i.max(j));
                 let pair = &self.pairs[high * (high - 1) / 2 + low];
                 if pair.overlap.is_some() {
                     continue;
                 }
-                let by = self.places[place].at[low] - self.places[place].at[high];
-                let [a, b] = pair.placed(by)?;
+                let by = self.placements[place].at[low] - self.placements[place].at[high];
+                let [a, b] = pair.placed_bodies(by)?;
                 let (moving, fixed) = if i < j { (a, b) } else { (b, a) };
                 let options =
-                    FreeOptions::DEFAULT.with_tolerance(pair.tolerance).with_looks(FREE_LOOKS);
+                    FreeOptions::DEFAULT.with_tolerance(pair.tolerance).with_looks(MAX_FREE_VISITS);
                 self.searched.free_sets += 1;
                 // Rounding can cause an overlap at the planned placement. Such a pair is skipped.
                 let Ok(free) = FreeDirections::of(&moving, &fixed, options) else { continue };
                 let area = free.free_area()[1] + free.undecided_area();
                 if least.as_ref().is_none_or(|least| area < least.0) {
-                    least = Some((area, some_of(&free)));
+                    least = Some((area, sample_free_directions(&free)));
                 }
             }
             askew.extend(least.map_or_else(Vec::new, |least| least.1));
@@ -372,36 +377,40 @@ impl<'s, 'a> Search<'s, 'a> {
         for d in askew {
             self.directions.extend([d, DVec3::ZERO - d]);
         }
-        let mut rooms = vec![vec![f64::INFINITY; count * count]; self.directions.len()];
+        let mut travels = vec![vec![f64::INFINITY; count * count]; self.directions.len()];
         for k in known..self.directions.len() {
-            self.put_rooms(place, k, &mut rooms)?;
+            self.compute_travels(place, k, &mut travels)?;
         }
-        let found = self.leaving(&rooms, known);
+        let found = self.last_moves(&travels, known);
         self.directions.truncate(known);
         for pair in &mut self.pairs {
-            pair.forget_rooms(known);
+            pair.forget_travels(known);
         }
         Ok(found)
     }
 
     /// Returns the new placements that can be reached from a placement.
-    fn next(&mut self, place: usize, rooms: &[Vec<f64>]) -> Result<Vec<usize>, FreeError> {
+    fn new_placements(
+        &mut self,
+        place: usize,
+        travels: &[Vec<f64>],
+    ) -> Result<Vec<usize>, FreeError> {
         let mut new = Vec::new();
-        let came = self.places[place].before.map(|(_, step)| step.group);
+        let came = self.placements[place].before.map(|(_, step)| step.group);
         for k in 0..self.directions.len() {
-            for (group, turned) in self.groups(&rooms[k], self.scale.step) {
-                if came == Some(group) && self.places[place].axis == Some(k / 2) {
+            for (group, reversed) in self.moving_groups(&travels[k], self.scale.step) {
+                if came == Some(group) && self.placements[place].axis == Some(k / 2) {
                     continue;
                 }
-                if self.is_spent() {
+                if self.is_limit_reached() {
                     return Ok(new);
                 }
-                let along = if turned { k ^ 1 } else { k };
-                let pairs = self.border(group);
-                let room = |&[i, j]: &[usize; 2]| rooms[along][i * self.count + j];
-                let room = pairs.iter().map(room).fold(self.scale.far, f64::min);
-                for t in self.stops(place, &pairs, along, room)? {
-                    new.extend(self.reach(place, group, (along, t)));
+                let along = if reversed { k ^ 1 } else { k };
+                let pairs = self.moving_pairs(group);
+                let travel = |&[i, j]: &[usize; 2]| travels[along][i * self.count + j];
+                let travel = pairs.iter().map(travel).fold(self.scale.far, f64::min);
+                for t in self.stop_positions(place, &pairs, along, travel)? {
+                    new.extend(self.placement_after(place, group, (along, t)));
                 }
             }
         }
@@ -409,19 +418,19 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Returns all pairs of a body in a group and a body outside it.
-    pub(super) fn border(&self, group: Group) -> Vec<[usize; 2]> {
-        border(group, self.count)
+    pub(super) fn moving_pairs(&self, group: Group) -> Vec<[usize; 2]> {
+        moving_pairs(group, self.count)
     }
 
-    /// Returns the positions at which a group with free travel `room` along a direction may stop.
-    fn stops(
+    /// Returns the positions at which a group with free travel `travel` along a direction may stop.
+    fn stop_positions(
         &mut self,
         place: usize,
         pairs: &[[usize; 2]],
         d: usize,
-        room: f64,
+        travel: f64,
     ) -> Result<Vec<f64>, QueryError> {
-        let Scale { far, step, off, .. } = self.scale;
+        let SearchScale { far, step, off, .. } = self.scale;
         let mut stops = Vec::new();
         for e in 0..self.directions.len() {
             if e / 2 == d / 2 {
@@ -432,77 +441,82 @@ impl<'s, 'a> Search<'s, 'a> {
             for far in [8.0 * far, 5.0 * step, step] {
                 let mut joint = Vec::new();
                 for (pair, own) in pairs.iter().zip(&mut own) {
-                    let blocked = self.blocked(place, *pair, [d, e], [room, far])?;
+                    let blocked = self.blocked_intervals(place, *pair, [d, e], [travel, far])?;
                     if pairs.len() > 1 {
-                        put(&open(&blocked, room), off, step, own);
+                        add_stops(&complement(&blocked, travel), off, step, own);
                     }
                     for span in blocked {
-                        add(&mut joint, span);
+                        insert_interval(&mut joint, span);
                     }
                 }
-                put(&open(&joint, room), off, step, &mut shared);
+                add_stops(&complement(&joint, travel), off, step, &mut shared);
             }
             stops.extend(shared.into_iter().chain(own.into_iter().flatten()));
         }
-        if room < far {
-            stops.push(room - off);
+        if travel < far {
+            stops.push(travel - off);
         }
-        stops.retain(|&t| t > off && t <= room - 0.5 * off);
+        stops.retain(|&t| t > off && t <= travel - 0.5 * off);
         Ok(stops)
     }
 
-    fn blocked(
+    fn blocked_intervals(
         &mut self,
         place: usize,
         [i, j]: [usize; 2],
         [d, e]: [usize; 2],
         lengths: [f64; 2],
     ) -> Result<Vec<[f64; 2]>, QueryError> {
-        let at = &self.places[place].at;
-        // The second of a pair goes against the directions of the first.
+        let at = &self.placements[place].at;
         // The second body of a pair moves opposite to the directions of the first one.
+        let turn = usize::from(i > j);
         let (low, high) = (i.min(j), i.max(j));
         let numbers = [d ^ turn, e ^ turn];
         let along = numbers.map(|k| self.directions[k]);
         let pair = &mut self.pairs[high * (high - 1) / 2 + low];
         let by = at[low] - at[high];
-        Ok(pair.blocked(by, numbers, along, lengths, &mut self.searched)?.to_vec())
+        Ok(pair.blocked_intervals(by, numbers, along, lengths, &mut self.searched)?.to_vec())
     }
 
     /// Returns the placement after a motion of length `t` of a group along a direction. Returns `None` if it
     /// is not new.
-    fn reach(&mut self, place: usize, group: Group, (d, t): (usize, f64)) -> Option<usize> {
+    fn placement_after(
+        &mut self,
+        place: usize,
+        group: Group,
+        (d, t): (usize, f64),
+    ) -> Option<usize> {
         let grid = self.scale.grid;
         let motion = (self.directions[d] * t).map(|x| (x / grid).round() * grid);
         let moved = |(k, at): (usize, &DVec3)| if group >> k & 1 == 1 { *at + motion } else { *at };
-        let at: Vec<DVec3> = self.places[place].at.iter().enumerate().map(moved).collect();
+        let at: Vec<DVec3> = self.placements[place].at.iter().enumerate().map(moved).collect();
         let fine = 2.5 * self.scale.off;
-        let key = at.iter().map(|v| bits((*v / fine).round())).collect();
-        let legs = self.places[place].legs + 1;
-        if motion == DVec3::ZERO || !is_new(&mut self.seen, key, legs) {
+        let key = at.iter().map(|v| bit_key((*v / fine).round())).collect();
+        let legs = self.placements[place].legs + 1;
+        if motion == DVec3::ZERO || !is_improvement(&mut self.seen, key, legs) {
             return None;
         }
         let before = Some((place, Move { group, motion }));
-        self.places.push(Place { at, before, axis: Some(d / 2), legs });
-        Some(self.places.len() - 1)
+        self.placements.push(Placement { at, before, axis: Some(d / 2), legs });
+        Some(self.placements.len() - 1)
     }
 
     /// Returns the identity of a placement.
-    fn key(&self, place: usize, rooms: &[Vec<f64>]) -> Key {
+    fn placement_key(&self, place: usize, travels: &[Vec<f64>]) -> PlacementKey {
         let mut ways = DefaultHasher::new();
-        for rooms in rooms {
-            for room in rooms {
-                (*room >= self.scale.step).hash(&mut ways);
+        for travels in travels {
+            for travel in travels {
+                (*travel >= self.scale.step).hash(&mut ways);
             }
         }
-        let cell = |v: &DVec3| bits((*v / self.scale.grain).round());
-        (self.places[place].at.iter().map(cell).collect(), ways.finish())
+        let cell = |v: &DVec3| bit_key((*v / self.scale.grain).round());
+        (self.placements[place].at.iter().map(cell).collect(), ways.finish())
     }
 
     /// Returns the moves to a placement, followed by the last one.
-    fn moves(&self, mut place: usize, last: Move) -> Vec<Move> {
+    fn moves_to(&self, mut place: usize, last: Move) -> Vec<Move> {
         let mut moves = vec![last];
-        while let Some((before, step)) = self.places[place].before {
+        while let Some((before, step)) = self.placements[place].before {
             moves.push(step);
             place = before;
         }
@@ -512,7 +526,7 @@ impl<'s, 'a> Search<'s, 'a> {
 }
 
 /// Records the number of legs by which a key was reached. Returns `true` if it is smaller than all before.
-fn is_new<K: Eq + Hash>(reached: &mut HashMap<K, usize>, key: K, legs: usize) -> bool {
+fn is_improvement<K: Eq + Hash>(reached: &mut HashMap<K, usize>, key: K, legs: usize) -> bool {
     let fewest = reached.entry(key).or_insert(usize::MAX);
     let new = legs < *fewest;
     *fewest = legs.min(*fewest);
@@ -521,7 +535,7 @@ fn is_new<K: Eq + Hash>(reached: &mut HashMap<K, usize>, key: K, legs: usize) ->
 
 /// Returns some free directions: centers of all regions, isolated directions, directions of arcs, and free
 /// directions in undecided cells.
-fn some_of(free: &FreeDirections<'_>) -> Vec<DVec3> {
+fn sample_free_directions(free: &FreeDirections<'_>) -> Vec<DVec3> {
     let mut some: Vec<DVec3> = free.regions().iter().map(|region| region.center).collect();
     some.extend(free.points().iter().map(|point| point.direction));
     some.extend(free.arcs().iter().flat_map(|arc| arc.along.clone()));
@@ -530,7 +544,7 @@ fn some_of(free: &FreeDirections<'_>) -> Vec<DVec3> {
 }
 
 /// Returns all pairs of a body in a group and a body outside it.
-pub(super) fn border(group: Group, count: usize) -> Vec<[usize; 2]> {
+pub(super) fn moving_pairs(group: Group, count: usize) -> Vec<[usize; 2]> {
     let within = |k: &usize| group >> k & 1 == 1;
     let outside = move |i: usize| (0..count).filter(move |j| !within(j)).map(move |j| [i, j]);
     (0..count).filter(within).flat_map(outside).collect()
@@ -538,7 +552,7 @@ pub(super) fn border(group: Group, count: usize) -> Vec<[usize; 2]> {
 
 /// Adds stops to the openings that contain none: a point near the end if the opening begins with the leg,
 /// otherwise its center and, for a wide opening, points near both ends.
-fn put(openings: &[[f64; 2]], off: f64, step: f64, stops: &mut Vec<f64>) {
+fn add_stops(openings: &[[f64; 2]], off: f64, step: f64, stops: &mut Vec<f64>) {
     for &[low, high] in openings {
         if stops.iter().any(|t| (low..=high).contains(t)) {
             continue;

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::answer::{MOST_BODIES, WayOut};
-use super::proof::{LegProof, members, of_leg, passes};
-use super::search::border;
+use super::answer::{MAX_BODIES, WayOut};
+use super::proof::{LegProof, group_members, leg_cast, proves_leg};
+use super::search::moving_pairs;
 use crate::free::FreeError;
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::Placed;
@@ -27,19 +27,21 @@ impl WayOut {
             let last = k + 1 == self.legs.len();
             let travel = if last { f64::INFINITY } else { leg.motion.length() };
             let told_well = leg.travel == travel && leg.direction == leg.motion.normalize();
-            let all = (1..=MOST_BODIES).contains(&bodies.len());
+            let all = (1..=MAX_BODIES).contains(&bodies.len());
             let own = leg.bodies.iter().filter(|&&b| all && b < bodies.len());
             let group = own.fold(0, |mask, &b| mask | 1 << b);
-            let pairs = border(group, bodies.len());
+            let pairs = moving_pairs(group, bodies.len());
             let told: Vec<[usize; 2]> = leg.proofs.iter().map(|proof| proof.bodies).collect();
-            if pairs.is_empty() || told != pairs || !told_well || leg.bodies != members(group) {
+            if pairs.is_empty() || told != pairs || !told_well || leg.bodies != group_members(group)
+            {
                 return Err(CertificateError::Cover { entry: 0 }.into());
             }
             for LegProof { bodies: [i, j], certificate } in &leg.proofs {
                 let by = at[*i] - at[*j];
-                let cast = of_leg([bodies[*i], bodies[*j]], by, leg.motion, last, self.tolerance)?;
+                let cast =
+                    leg_cast([bodies[*i], bodies[*j]], by, leg.motion, last, self.tolerance)?;
                 cast.verify(certificate)?;
-                if !passes(certificate, last) {
+                if !proves_leg(certificate, last) {
                     let claimed = if last { f64::INFINITY } else { 1.0 };
                     let proven = certificate.lower;
                     return Err(CertificateError::Bound { proven, claimed }.into());

@@ -1,5 +1,4 @@
-//! Free directions: closed forms, casts in random directions, brute force over all cones in fractions, and proofs
-//! that were changed.
+//! Free directions against closed forms, casts in random directions and exact cones; modified proofs.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,18 +21,18 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
     Solid::from_convex(&body).unwrap()
 }
 
-fn joined(pieces: &[Solid]) -> Solid {
+fn union_of(pieces: &[Solid]) -> Solid {
     Solid::from_pieces(pieces).unwrap()
 }
 
-fn free<'a>(a: &'a Solid, b: &'a Solid, options: FreeOptions) -> FreeDirections<'a> {
+fn free_directions<'a>(a: &'a Solid, b: &'a Solid, options: FreeOptions) -> FreeDirections<'a> {
     let all = FreeDirections::of(&a.at(Pose::IDENTITY), &b.at(Pose::IDENTITY), options).unwrap();
     all.verify().unwrap();
     all
 }
 
-/// How long arcs are together.
-fn length(free: &FreeDirections) -> f64 {
+/// Returns the total length of the arcs.
+fn arc_length(free: &FreeDirections) -> f64 {
     let turns = free.arcs().iter().flat_map(|arc| arc.along.windows(2));
     turns.map(|ends| ends[0].angle_between(ends[1])).sum()
 }
@@ -46,10 +45,10 @@ fn assert_area(free: &FreeDirections, expected: f64) {
 }
 
 #[test]
-fn a_lid_on_a_box_is_free_along_half_of_all_directions() {
+fn lid_on_table_is_free_in_half_space() {
     let (lid, table) =
         (cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]), cuboid([-3.0, -2.0, -1.0], [2.0, 5.0, 0.0]));
-    let all = free(&lid, &table, EXACT);
+    let all = free_directions(&lid, &table, EXACT);
     assert_area(&all, TAU);
     assert_eq!(all.says(DVec3::new(0.3, -5.0, 0.0)), Ok(Verdict::Free));
     assert!(matches!(all.says(DVec3::new(0.3, -5.0, -1e-60)), Ok(Verdict::Blocked(_))));
@@ -58,27 +57,27 @@ fn a_lid_on_a_box_is_free_along_half_of_all_directions() {
 }
 
 #[test]
-fn a_cube_in_a_corner_is_free_along_an_octant() {
+fn cube_in_corner_is_free_in_octant() {
     let cube = cuboid([0.0; 3], [1.0; 3]);
-    let walls = joined(&[
+    let walls = union_of(&[
         cuboid([-1.0, -1.0, -1.0], [5.0, 5.0, 0.0]),
         cuboid([-1.0, -1.0, 0.0], [0.0, 5.0, 5.0]),
         cuboid([0.0, -1.0, 0.0], [5.0, 0.0, 5.0]),
     ]);
-    let all = free(&cube, &walls, EXACT);
+    let all = free_directions(&cube, &walls, EXACT);
     assert_area(&all, PI / 2.0);
 }
 
 #[test]
-fn a_rail_has_two_directions() {
+fn bar_in_rail_has_two_isolated_directions() {
     let bar = cuboid([0.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
-    let rail = joined(&[
+    let rail = union_of(&[
         cuboid([-1.0, -1.0, -1.0], [7.0, 2.0, 0.0]),
         cuboid([-1.0, -1.0, 1.0], [7.0, 2.0, 2.0]),
         cuboid([-1.0, -1.0, 0.0], [7.0, 0.0, 1.0]),
         cuboid([-1.0, 1.0, 0.0], [7.0, 2.0, 1.0]),
     ]);
-    let all = free(&bar, &rail, EXACT);
+    let all = free_directions(&bar, &rail, EXACT);
     assert_area(&all, 0.0);
     assert!(all.regions().is_empty() && all.arcs().is_empty());
     let points = all.points();
@@ -91,8 +90,8 @@ fn a_rail_has_two_directions() {
         }
         assert_eq!(all.says(d), Ok(Verdict::Free));
     }
-    // With a tolerance of roundings they are regions, narrower than sides are told apart.
-    let all = free(&bar, &rail, FreeOptions::DEFAULT.with_tolerance(1e-13));
+    // With a tolerance near rounding they are regions that are narrower than the limit for distinct corners.
+    let all = free_directions(&bar, &rail, FreeOptions::DEFAULT.with_tolerance(1e-13));
     assert_eq!(all.regions().len(), 2);
     for region in all.regions() {
         assert!(region.margin < 1e-12 && !region.corners.is_empty(), "{region:?}");
@@ -100,19 +99,19 @@ fn a_rail_has_two_directions() {
 }
 
 #[test]
-fn a_plate_between_two_others_has_a_circle() {
+fn plate_between_plates_has_full_circle() {
     let plate = cuboid([0.0; 3], [1.0; 3]);
-    let stack = joined(&[
+    let stack = union_of(&[
         cuboid([-5.0, -5.0, -1.0], [5.0, 5.0, 0.0]),
         cuboid([-5.0, -5.0, 1.0], [5.0, 5.0, 2.0]),
     ]);
-    let all = free(&plate, &stack, EXACT);
+    let all = free_directions(&plate, &stack, EXACT);
     assert_area(&all, 0.0);
     assert!(all.points().is_empty());
     let arcs = all.arcs();
     assert!(arcs.len() == 1 && arcs[0].ends.is_none(), "{arcs:?}");
     assert_eq!(arcs[0].along.first(), arcs[0].along.last());
-    assert!((length(&all) - TAU).abs() < 1e-12, "{}", length(&all));
+    assert!((arc_length(&all) - TAU).abs() < 1e-12, "{}", arc_length(&all));
     for (d, expected) in
         [([3.0, 7.0, 0.0], true), ([-0.1, 0.3, 0.0], true), ([1.0, 1.0, 1e-50], false)]
     {
@@ -121,9 +120,9 @@ fn a_plate_between_two_others_has_a_circle() {
 }
 
 #[test]
-fn a_bar_in_a_vee_has_half_a_sector() {
-    // A bar with a square section on its edge, in a groove of two planes at right angles, with ends closed: it can
-    // go up between the planes, and no more.
+fn bar_in_closed_v_groove_has_quarter_arc() {
+    // A bar with a square section stands on its edge in a V-groove with closed ends. It can only move up between the
+    // two planes.
     let turn = DMat3::from_cols(
         DVec3::new(3.0, 4.0, 0.0) / 5.0,
         DVec3::new(-4.0, 3.0, 0.0) / 5.0,
@@ -131,15 +130,15 @@ fn a_bar_in_a_vee_has_half_a_sector() {
     );
     let pose = Pose::from_matrix(turn, DVec3::ZERO).unwrap();
     let bar = cuboid([0.0, 0.0, 0.0], [1.0, 1.0, 2.0]);
-    let groove = joined(&[
+    let groove = union_of(&[
         cuboid([-1.0, -1.0, -1.0], [9.0, 0.0, 3.0]),
         cuboid([-1.0, 0.0, -1.0], [0.0, 9.0, 3.0]),
         cuboid([0.0, 0.0, -1.0], [9.0, 9.0, 0.0]),
         cuboid([0.0, 0.0, 2.0], [9.0, 9.0, 3.0]),
     ]);
-    let all = free(&bar, &groove, EXACT);
+    let all = free_directions(&bar, &groove, EXACT);
     assert_area(&all, 0.0);
-    assert!((length(&all) - PI / 2.0).abs() < 1e-12, "{}", length(&all));
+    assert!((arc_length(&all) - PI / 2.0).abs() < 1e-12, "{}", arc_length(&all));
     assert!(all.points().is_empty());
     let [arc] = all.arcs() else { panic!("{:?}", all.arcs()) };
     for (d, expected) in [
@@ -157,13 +156,13 @@ fn a_bar_in_a_vee_has_half_a_sector() {
     turned.verify().unwrap();
     assert_area(&turned, 0.0);
     assert!(turned.arcs().len() == 1 && turned.points().is_empty(), "{:?}", turned.arcs());
-    assert!((length(&turned) - PI / 2.0).abs() < 1e-12, "{}", length(&turned));
+    assert!((arc_length(&turned) - PI / 2.0).abs() < 1e-12, "{}", arc_length(&turned));
 }
 
 #[test]
-fn nothing_leaves_a_closed_box() {
+fn closed_box_blocks_all_directions() {
     let cube = cuboid([1.0; 3], [2.0; 3]);
-    let cavity = joined(&[
+    let cavity = union_of(&[
         cuboid([0.0, 0.0, 0.0], [3.0, 3.0, 0.5]),
         cuboid([0.0, 0.0, 2.5], [3.0, 3.0, 3.0]),
         cuboid([0.0, 0.0, 0.5], [0.5, 3.0, 2.5]),
@@ -171,13 +170,13 @@ fn nothing_leaves_a_closed_box() {
         cuboid([0.5, 0.0, 0.5], [2.5, 0.5, 2.5]),
         cuboid([0.5, 2.5, 0.5], [2.5, 3.0, 2.5]),
     ]);
-    let all = free(&cube, &cavity, EXACT);
+    let all = free_directions(&cube, &cavity, EXACT);
     assert!(all.is_blocked());
     assert_area(&all, 0.0);
 }
 
 #[test]
-fn overlaps_and_open_shells_are_refused() {
+fn overlap_open_shell_and_negative_tolerance_are_rejected() {
     let cube = cuboid([0.0; 3], [1.0; 3]);
     let other = cuboid([0.5; 3], [2.0; 3]);
     let place =
@@ -192,8 +191,8 @@ fn overlaps_and_open_shells_are_refused() {
 
 #[test]
 #[ignore = "long: exact fractions"]
-fn casts_and_fractions_agree_and_changed_proofs_are_refused() {
-    // So thin that a larger tolerance leaves nothing of it.
+fn answers_agree_with_casts_and_exact_cones_and_mutants_are_rejected() {
+    // The bodies are so thin that a larger tolerance makes them vanish.
     let mut thin = Tally::default();
     examine("tetrahedra", 416_611_827_720, 4, &mut thin).unwrap();
     assert_eq!([thin.get("settings"), thin.get("overlapping")], [1, 0]);
@@ -208,15 +207,15 @@ fn casts_and_fractions_agree_and_changed_proofs_are_refused() {
 }
 
 #[test]
-fn bodies_turned_together_say_the_same() {
+fn common_rotation_keeps_free_area() {
     let q = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.9);
     let turned = Pose::new(q, DVec3::new(1.0, 2.0, 3.0)).unwrap();
     let cube = cuboid([0.0; 3], [1.0; 3]);
-    let wall = joined(&[
+    let wall = union_of(&[
         cuboid([-1.0, -1.0, -1.0], [5.0, 5.0, 0.0]),
         cuboid([-1.0, -1.0, 0.0], [-0.125, 5.0, 5.0]),
     ]);
-    let plain = free(&cube, &wall, FreeOptions::default());
+    let plain = free_directions(&cube, &wall, FreeOptions::default());
     let all =
         FreeDirections::of(&cube.at(turned), &wall.at(turned), FreeOptions::default()).unwrap();
     all.verify().unwrap();
@@ -225,10 +224,10 @@ fn bodies_turned_together_say_the_same() {
     assert!(all.undecided_area() < 1e-9);
 }
 
-/// A bar in a tube with some play, and the tube.
+/// Returns a bar in a longer tube, and the tube.
 fn bar_in_tube() -> [Solid; 2] {
     let bar = cuboid([0.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
-    let tube = joined(&[
+    let tube = union_of(&[
         cuboid([-1.0, -1.0, -1.0], [7.0, 2.0, 0.0]),
         cuboid([-1.0, -1.0, 1.0], [7.0, 2.0, 2.0]),
         cuboid([-1.0, -1.0, 0.0], [7.0, 0.0, 1.0]),
@@ -238,9 +237,10 @@ fn bar_in_tube() -> [Solid; 2] {
 }
 
 #[test]
-fn a_larger_tolerance_frees_more_and_nothing_less() {
+fn free_directions_grow_with_tolerance() {
     let [bar, tube] = bar_in_tube();
-    let all = [0.0, 0.001, 0.01, 0.1].map(|length| free(&bar, &tube, EXACT.with_tolerance(length)));
+    let all = [0.0, 0.001, 0.01, 0.1]
+        .map(|length| free_directions(&bar, &tube, EXACT.with_tolerance(length)));
     for pair in all.windows(2) {
         assert!(pair[0].free_area()[1] <= pair[1].free_area()[0]);
         for cell in pair[0].cells() {
@@ -253,16 +253,16 @@ fn a_larger_tolerance_frees_more_and_nothing_less() {
 }
 
 #[test]
-fn regions_have_the_corners_that_one_sees() {
+fn regions_of_bar_in_tube_have_four_corners() {
     let [bar, tube] = bar_in_tube();
-    let all = free(&bar, &tube, EXACT.with_tolerance(0.1));
+    let all = free_directions(&bar, &tube, EXACT.with_tolerance(0.1));
     let regions = all.regions();
     assert_eq!(regions.len(), 2, "one at each end of the tube");
     for (region, sign) in regions.iter().zip([-1.0, 1.0]) {
         assert_eq!(region.corners.len(), 4, "{region:?}");
         assert!((region.center.x - sign).abs() < 1e-6);
         assert_eq!(all.says(region.center), Ok(Verdict::Free));
-        // The bar, shrunk, has a play of 0.1 on each side in all, and leaves by 4.9 or 6.9.
+        // The offset bar has a total play of 0.1 on each side, and leaves after 4.9 or 6.9.
         let slope = if sign < 0.0 { 0.1 / 4.9 } else { 0.1 / 6.9 };
         for corner in &region.corners {
             assert!((corner.y.abs() - slope).abs() < 0.01, "{corner}");
@@ -274,11 +274,11 @@ fn regions_have_the_corners_that_one_sees() {
 }
 
 #[test]
-fn little_is_looked_at_where_little_blocks() {
+fn work_is_bounded_for_bar_in_tube_and_limit_leaves_all_undecided() {
     let [bar, tube] = bar_in_tube();
-    let [cells, looks] = free(&bar, &tube, EXACT).work();
+    let [cells, looks] = free_directions(&bar, &tube, EXACT).work();
     assert!(cells <= 6 && looks < 20_000, "{cells} {looks}");
-    let [cells, looks] = free(&bar, &tube, EXACT.with_tolerance(0.01)).work();
+    let [cells, looks] = free_directions(&bar, &tube, EXACT.with_tolerance(0.01)).work();
     assert!(cells <= 24 && looks < 60_000, "{cells} {looks}");
     let none =
         FreeDirections::of(&bar.at(Pose::IDENTITY), &tube.at(Pose::IDENTITY), EXACT.with_looks(0));
@@ -289,7 +289,7 @@ fn little_is_looked_at_where_little_blocks() {
 }
 
 #[test]
-fn tetrahedra_in_any_place_say_what_casts_say() {
+fn random_tetrahedra_agree_with_casts() {
     let mut rng = Random::new(29);
     let mut judged = [0_u32; 2];
     for _ in 0..60 {
@@ -318,15 +318,15 @@ fn tetrahedra_in_any_place_say_what_casts_say() {
 }
 
 #[test]
-fn boxes_inside_block_what_small_facets_block_together() {
-    // A ring with play around a rod, both of facets that are small against the play.
+fn inner_boxes_block_cells_of_finely_tessellated_bodies() {
+    // A ring around a rod, with facets that are small compared with the gap.
     let [ring, rod] =
         [([0.0, 1.0], 10, Some(3.0)), ([-1.0, 2.0], 30, None)].map(|(heights, rows, outer)| {
             let radius = if outer.is_some() { 1.25 } else { 1.0 };
             let mesh = thread([radius, 0.0, 1.0], heights, [48, rows], outer);
             Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap()
         });
-    let all = free(&ring, &rod, EXACT.with_depth(3));
+    let all = free_directions(&ring, &rod, EXACT.with_depth(3));
     assert!(all.undecided_area() < 0.05 * 2.0 * TAU && all.work()[1] < 1_500_000);
     let proof = all.proof();
     let inner = proof.cells.iter().filter(|cell| matches!(cell, CellProof::Inner(_))).count();
@@ -346,7 +346,7 @@ fn boxes_inside_block_what_small_facets_block_together() {
     for side in 0..2 {
         for at in 0..proof.boxes[side].len() {
             for k in 0..3 {
-                // Larger, so that it leaves the body; outside; and inside out.
+                // A larger box leaves the body. Then a box outside, and an inverted one.
                 let mut other = proof.clone();
                 other.boxes[side][at].high[k] += 8.0;
                 assert!(refused(&other));
@@ -359,11 +359,11 @@ fn boxes_inside_block_what_small_facets_block_together() {
         }
     }
     let ignored = FreeProof { start_overlap: StartOverlap::Ignore, ..proof };
-    assert!(refused(&ignored), "an overlap that is ignored does not block by what is inside");
+    assert!(refused(&ignored), "boxes inside do not block if the start overlap is ignored");
 }
 
 #[test]
-fn convex_bodies_are_free_where_no_pair_of_facets_blocks() {
+fn free_directions_of_hulls_match_brute_force_over_facets() {
     let mut rng = Random::new(2903);
     let mut judged = [0_u32; 2];
     for count in [4, 8, 20, 40] {
@@ -396,34 +396,34 @@ fn convex_bodies_are_free_where_no_pair_of_facets_blocks() {
 }
 
 #[test]
-fn the_largest_margin_is_in_the_middle() {
+fn region_center_maximises_margin() {
     let (lid, table) =
         (cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]), cuboid([-3.0, -2.0, -1.0], [2.0, 5.0, 0.0]));
-    let half = &free(&lid, &table, EXACT).regions()[0];
+    let half = &free_directions(&lid, &table, EXACT).regions()[0];
     assert!(half.center.z > 0.999 && (half.margin - PI / 2.0).abs() < 0.05, "{half:?}");
     let border: f64 = half.border.iter().map(|[a, b]| a.angle_between(*b)).sum();
     assert!((border - TAU).abs() < 1e-9, "{border}");
     let [bar, tube] = bar_in_tube();
-    let all = free(&bar, &tube, EXACT.with_tolerance(0.1));
+    let all = free_directions(&bar, &tube, EXACT.with_tolerance(0.1));
     for region in all.regions() {
-        // A square of directions: the margin is half its side.
+        // For a square of directions the margin is half of its side.
         assert!(region.center.x.abs() > 0.999_99, "{}", region.center);
         let nearest = region.corners.iter().map(|c| c.normalize().distance(region.center));
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         assert!(region.margin < nearest && region.margin > 0.69 * nearest, "{region:?}");
     }
-    // All is free but what is beneath, seen as a square: the border is far on the other side.
+    // All directions are free except a square below, so the farthest direction is on the opposite side.
     let (high, small) = (cuboid([0.0, 0.0, 9.0], [1.0, 1.0, 10.0]), cuboid([0.0; 3], [1.0; 3]));
-    let most = &free(&high, &small, EXACT).regions()[0];
+    let most = &free_directions(&high, &small, EXACT).regions()[0];
     assert!(most.margin > 2.5 && most.center.z > 0.9, "{} {}", most.margin, most.center);
 }
 
 #[test]
-fn a_window_is_measured_alike_however_it_is_turned() {
-    // A cube in a room with a window: one convex region, cut by sides of cells in every rotation elsewhere.
+fn window_margin_and_corners_are_rotation_invariant() {
+    // A cube in a room with a window has one convex region. Each rotation divides it at other cell sides.
     let cube = cuboid([-0.2; 3], [0.2; 3]);
-    let room = joined(&ROOM_WITH_WINDOW.map(|[low, high]| cuboid(low, high)));
-    // The cube's upper edge passes the window's in front, its lower edge behind: z / x lies between
+    let room = union_of(&ROOM_WITH_WINDOW.map(|[low, high]| cuboid(low, high)));
+    // The cube's upper edge passes the window's front edge, its lower edge the back edge: z / x is between
     // 0.7 / 1.8 and 1.1 / 2.4, y / x between -0.6 / 2.4 and 0.6 / 2.4.
     let (low, high) = ((0.7_f64 / 1.8).atan(), (1.1_f64 / 2.4).atan());
     let mut random = Random::new(5);
@@ -435,7 +435,7 @@ fn a_window_is_measured_alike_however_it_is_turned() {
         assert_eq!(regions.len(), 1, "{round}");
         let region = &regions[0];
         assert_eq!(all.says(region.center), Ok(Verdict::Free), "{round}");
-        // Between two planes that are turned against each other about y, nowhere farther than half.
+        // The region lies between two planes that are rotated about y. The margin is at most half of their angle.
         let half = (high - low) / 2.0;
         assert!((0.99 * half..1.001 * half).contains(&region.margin), "{round} {}", region.margin);
         assert_eq!(region.corners.len(), 4, "{round} {:?}", region.corners);
@@ -444,23 +444,23 @@ fn a_window_is_measured_alike_however_it_is_turned() {
 
 #[test]
 #[ignore = "long: exact fractions in every rotation"]
-fn what_is_free_without_an_area_is_the_same_in_every_rotation() {
+fn arcs_and_points_are_rotation_invariant() {
     let [bar, tube] = bar_in_tube();
     let plate = cuboid([0.0; 3], [1.0; 3]);
     let slabs = [([-5.0, -5.0, -1.0], [5.0, 5.0, 0.0]), ([-5.0, -5.0, 1.0], [5.0, 5.0, 2.0])];
-    // A stop on one side takes half of the circle, and one with a gap beside it less.
+    // A stop on one side takes half of the circle. A stop at a distance takes less.
     let stop = ([-2.0, -5.0, 0.0], [0.0, 5.0, 1.0]);
     let far = ([-2.0, -2.0, 0.0], [-1.0, 3.0, 1.0]);
     let stack = |more: &[_]| {
         let all: Vec<Solid> =
             slabs.iter().chain(more).map(|(low, high)| cuboid(*low, *high)).collect();
-        joined(&all)
+        union_of(&all)
     };
     let cases = [
         (&bar, tube, 2, 0.0, 0),
         (&plate, stack(&[]), 0, TAU, 1),
         (&plate, stack(&[stop]), 0, PI, 1),
-        // Seen from the plate it is 1 away and reaches by 3 to either side.
+        // The stop is at distance 1 from the plate and extends by 3 to each side.
         (&plate, stack(&[far]), 0, TAU - 2.0 * (3.0_f64).atan(), 1),
     ];
     let mut random = Random::new(71);
@@ -473,7 +473,7 @@ fn what_is_free_without_an_area_is_the_same_in_every_rotation() {
             all.verify().unwrap();
             assert_area(&all, 0.0);
             assert_eq!((all.points().len(), all.arcs().len()), (*points, *arcs), "{round}");
-            assert!((length(&all) - long).abs() < 1e-9, "{round}: {} {long}", length(&all));
+            assert!((arc_length(&all) - long).abs() < 1e-9, "{round}: {} {long}", arc_length(&all));
             judge(&all, [a, b]).unwrap_or_else(|e| panic!("{round}: {e}"));
         }
     }

@@ -1,4 +1,4 @@
-//! Ways out in several moves: closed forms, proofs that are checked and refused, counts of work.
+//! Removal paths: closed forms, checks of proofs and of modified proofs, limits of work.
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Placed, Pose};
 use colltrans_removal::free::FreeError;
@@ -9,17 +9,18 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::TRAY_WITH_GROOVES;
 use glam::{DMat3, DVec3, EulerRot};
 
-fn solid(blocks: &[[[f64; 3]; 2]]) -> Solid {
+fn union_of_blocks(blocks: &[[[f64; 3]; 2]]) -> Solid {
     let block = |[low, high]: &[[f64; 3]; 2]| {
         ConvexPolyhedron::cuboid(DVec3::from(*low), DVec3::from(*high)).unwrap()
     };
     Solid::from_pieces(&blocks.iter().map(block).collect::<Vec<_>>()).unwrap()
 }
 
-/// A T-slot along x, closed at both ends, whose lips are open for `window`; and a bar with a stem in it, 2 long.
-fn slot(window: [f64; 2]) -> [Solid; 2] {
+/// Returns a bar of length 2 with a stem, and a T-slot along x with closed ends. The lips of the slot are
+/// open in `window`.
+fn key_and_slot(window: [f64; 2]) -> [Solid; 2] {
     let [from, to] = window;
-    let plate = solid(&[
+    let plate = union_of_blocks(&[
         [[-1.0, -3.0, -1.0], [21.0, 3.0, 0.0]],
         [[-1.0, -3.0, 0.0], [0.0, 3.0, 2.0]],
         [[20.0, -3.0, 0.0], [21.0, 3.0, 2.0]],
@@ -30,11 +31,14 @@ fn slot(window: [f64; 2]) -> [Solid; 2] {
         [[to, -2.0, 1.0], [20.0, -1.0, 2.0]],
         [[to, 1.0, 1.0], [20.0, 2.0, 2.0]],
     ]);
-    let key = solid(&[[[0.5, -1.5, 0.2], [2.5, 1.5, 0.8]], [[0.5, -0.5, 0.5], [2.5, 0.5, 3.0]]]);
+    let key = union_of_blocks(&[
+        [[0.5, -1.5, 0.2], [2.5, 1.5, 0.8]],
+        [[0.5, -0.5, 0.5], [2.5, 0.5, 3.0]],
+    ]);
     [key, plate]
 }
 
-fn found(bodies: &[Solid; 2], pose: Pose, options: &WayOptions) -> Option<WayOut> {
+fn find_path(bodies: &[Solid; 2], pose: Pose, options: &WayOptions) -> Option<WayOut> {
     let [a, b] = bodies.each_ref().map(|solid| solid.at(pose));
     match WaysOut::of(&a, &b, options).unwrap() {
         WaysOut::Found(way) => {
@@ -46,12 +50,12 @@ fn found(bodies: &[Solid; 2], pose: Pose, options: &WayOptions) -> Option<WayOut
 }
 
 #[test]
-fn a_key_leaves_where_its_slot_is_open() {
-    let bodies = slot([14.0, 17.0]);
-    let way = found(&bodies, Pose::IDENTITY, &WayOptions::default()).unwrap();
+fn key_leaves_through_window_in_two_legs() {
+    let bodies = key_and_slot([14.0, 17.0]);
+    let way = find_path(&bodies, Pose::IDENTITY, &WayOptions::default()).unwrap();
     assert_eq!(way.legs.len(), 2);
     assert_eq!(way.legs[0].direction, DVec3::X);
-    // The bar from 0.5 to 2.5 is under the window.
+    // The bar, which extends from 0.5 to 2.5, is below the window.
     assert!((13.5..=14.5).contains(&way.legs[0].travel), "{}", way.legs[0].travel);
     assert_eq!((way.legs[1].direction, way.legs[1].travel), (DVec3::Z, f64::INFINITY));
     let searched = way.searched;
@@ -59,40 +63,41 @@ fn a_key_leaves_where_its_slot_is_open() {
 }
 
 #[test]
-fn a_window_as_long_as_the_key_is_found_in_any_rotation() {
-    let bodies = slot([14.0, 16.0]);
+fn window_as_long_as_key_is_found_when_rotated() {
+    let bodies = key_and_slot([14.0, 16.0]);
     let turn = DMat3::from_euler(EulerRot::XYZ, 0.3, 0.6, 0.9);
     for pose in [Pose::IDENTITY, Pose::from_matrix(turn, DVec3::ZERO).unwrap()] {
-        let way = found(&bodies, pose, &WayOptions::default().with_tolerance(1e-5)).unwrap();
+        let way = find_path(&bodies, pose, &WayOptions::default().with_tolerance(1e-5)).unwrap();
         assert_eq!(way.legs.len(), 2);
         assert!((way.legs[0].travel - 13.5).abs() <= 1e-5, "{}", way.legs[0].travel);
     }
 }
 
 #[test]
-fn a_window_that_is_too_short_is_no_way_which_is_proven() {
-    let bodies = slot([14.0, 15.9]);
+fn path_through_short_window_is_proven_impossible() {
+    let bodies = key_and_slot([14.0, 15.9]);
     let [a, b] = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
-    let proof = no_way(&a, &b);
+    let proof = prove_no_path(&a, &b);
     assert!(proof.cells() < 4_000, "{}", proof.cells());
-    // Without cells it is said what was searched, and nothing more.
+    // Without cells the answer only reports the amounts of work.
     let options = WayOptions::default().with_places(20).with_cells(0);
     let WaysOut::NotFound { searched } = WaysOut::of(&a, &b, &options).unwrap() else {
-        panic!("it is closed in")
+        panic!("no path exists")
     };
     assert!(searched.places > 0 && searched.directions == 6, "{searched:?}");
 }
 
-fn no_way(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoWay {
+fn prove_no_path(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoWay {
     let WaysOut::Proven(proof) = WaysOut::of(a, b, &WayOptions::default()).unwrap() else {
-        panic!("it is closed in")
+        panic!("no path exists")
     };
     proof.verify(a, b).unwrap();
     proof
 }
 
-/// Within the walls of a proof two bodies overlap, wherever: at one corner of every other, and somewhere in the others.
-fn overlap_in_walls(proof: &NoWay, a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) {
+/// Checks that the bodies overlap in blocked cells: at the lowest corner of every second cell, and at a
+/// random point of the others.
+fn assert_overlap_in_blocked_cells(proof: &NoWay, a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) {
     let mut random = Random::new(7);
     for (k, &(cell, _)) in proof.walls.iter().enumerate() {
         let [low, high] = proof.room.corners(cell);
@@ -105,8 +110,9 @@ fn overlap_in_walls(proof: &NoWay, a: &Placed<'_, Solid>, b: &Placed<'_, Solid>)
     }
 }
 
-/// A closed box around a room from 0 to 4, with another one behind a wall at `x` from 4 to 5 if there are two; holes
-/// are square, in the middle: of the first room's roof, of the wall between and of the second room's roof.
+/// Builds a closed box around a room from 0 to 4. With `two`, a second room follows behind a wall at `x` from
+/// 4 to 5. The square holes are centered in the first room's roof, the wall between the rooms, and the second
+/// room's roof.
 fn chambers(two: bool, holes: [f64; 3]) -> Solid {
     let far = if two { 9.0 } else { 4.0 };
     let mut blocks = vec![
@@ -142,12 +148,12 @@ fn chambers(two: bool, holes: [f64; 3]) -> Solid {
             ]);
         }
     }
-    solid(&blocks)
+    union_of_blocks(&blocks)
 }
 
 #[test]
-fn a_cube_in_a_box_leaves_through_holes_that_are_large_enough_and_else_it_is_proven() {
-    let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
+fn cube_leaves_chambers_through_large_holes_and_small_ones_are_proven_closed() {
+    let cube = union_of_blocks(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
     let at = Pose::IDENTITY;
     for (two, holes) in [
         (false, [0.0, 0.0, 0.0]),
@@ -156,13 +162,13 @@ fn a_cube_in_a_box_leaves_through_holes_that_are_large_enough_and_else_it_is_pro
         (true, [0.0, 0.9, 1.5]),
     ] {
         let walls = chambers(two, holes);
-        let proof = no_way(&cube.at(at), &walls.at(at));
+        let proof = prove_no_path(&cube.at(at), &walls.at(at));
         assert!(proof.cells() < 4_000, "{holes:?}: {}", proof.cells());
-        overlap_in_walls(&proof, &cube.at(at), &walls.at(at));
+        assert_overlap_in_blocked_cells(&proof, &cube.at(at), &walls.at(at));
     }
-    // Where two coordinates have to be right at once, cells in which nothing meets lead there.
+    // If two coordinates must be right at once, cells without contact lead to the hole.
     for (two, holes, legs) in [(false, [1.1, 0.0, 0.0], 3), (true, [0.0, 1.1, 1.5], 5)] {
-        let found = found(&[cube.clone(), chambers(two, holes)], at, &WayOptions::default());
+        let found = find_path(&[cube.clone(), chambers(two, holes)], at, &WayOptions::default());
         let way = found.expect("a way");
         assert!((2..=legs).contains(&way.legs.len()), "{holes:?}: {:?}", way.legs.len());
     }
@@ -170,13 +176,13 @@ fn a_cube_in_a_box_leaves_through_holes_that_are_large_enough_and_else_it_is_pro
 
 #[test]
 #[ignore = "long: rooms in every rotation"]
-fn bodies_that_are_turned_are_proven_to_stay_as_well() {
-    let cube = solid(&[[[-0.5; 3], [0.5; 3]]]);
+fn rotated_bodies_in_closed_rooms_have_proof() {
+    let cube = union_of_blocks(&[[[-0.5; 3], [0.5; 3]]]);
     let mut random = Random::new(11);
     for (two, holes) in [(false, [0.0; 3]), (false, [0.9, 0.0, 0.0]), (true, [0.0, 1.1, 0.0])] {
         let walls = chambers(two, holes);
         for round in 0..4 {
-            // Turned together by a quarter about the middle of the first room, and the cube alone by a little.
+            // Even rounds rotate both bodies by a quarter turn, odd ones rotate the cube slightly.
             let quarter = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
             let little = DMat3::from_axis_angle(random.direction(), 0.1);
             let room = if round % 2 == 0 { quarter } else { DMat3::IDENTITY };
@@ -184,10 +190,10 @@ fn bodies_that_are_turned_are_proven_to_stay_as_well() {
             let middle = room * DVec3::splat(2.0);
             let [p, q] = [(turns[0], middle), (turns[1], DVec3::ZERO)]
                 .map(|(turn, by)| Pose::from_matrix(turn, by).unwrap());
-            let proof = no_way(&cube.at(p), &walls.at(q));
+            let proof = prove_no_path(&cube.at(p), &walls.at(q));
             assert!(proof.cells() < 20_000, "{holes:?} {round}: {}", proof.cells());
-            overlap_in_walls(&proof, &cube.at(p), &walls.at(q));
-            // Of a body that stands elsewhere it is no proof.
+            assert_overlap_in_blocked_cells(&proof, &cube.at(p), &walls.at(q));
+            // The proof does not hold for a body in another place.
             let other = Pose::from_matrix(turns[0], middle + room * DVec3::X * 1.25).unwrap();
             let elsewhere = proof.verify(&cube.at(other), &walls.at(q));
             assert!(matches!(elsewhere, Err(FreeError::NotProven(_))), "{holes:?} {round}");
@@ -197,8 +203,8 @@ fn bodies_that_are_turned_are_proven_to_stay_as_well() {
 
 #[test]
 #[ignore = "long: rooms in every rotation"]
-fn rooms_that_are_slanted_are_proven_closed_and_left_by_their_windows() {
-    let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
+fn randomly_rotated_rooms_are_proven_closed_or_left() {
+    let cube = union_of_blocks(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
     let mut random = Random::new(29);
     for (two, holes, closed) in [
         (false, [0.0; 3], true),
@@ -212,15 +218,15 @@ fn rooms_that_are_slanted_are_proven_closed_and_left_by_their_windows() {
             let pose = Pose::new(random.rotation(), 3.0 * random.direction()).unwrap();
             let (a, b) = (cube.at(pose), walls.at(pose));
             if !closed {
-                let found = found(&[cube.clone(), walls.clone()], pose, &WayOptions::default());
+                let found = find_path(&[cube.clone(), walls.clone()], pose, &WayOptions::default());
                 assert!(found.is_some(), "{holes:?} {round}");
                 continue;
             }
-            let proof = no_way(&a, &b);
-            // As many as along the axes, or nearly.
+            let proof = prove_no_path(&a, &b);
+            // About as many cells as for axis-aligned rooms.
             assert!(proof.cells() < 4_000, "{holes:?} {round}: {}", proof.cells());
-            overlap_in_walls(&proof, &a, &b);
-            // The same cells along other axes, or along such as lie in a plane, are no proof.
+            assert_overlap_in_blocked_cells(&proof, &a, &b);
+            // The same cells along other axes, or along dependent ones, prove nothing.
             let [x, y, z] = [0, 1, 2].map(|k| proof.room.axes.col(k));
             for axes in [
                 DMat3::IDENTITY,
@@ -241,8 +247,8 @@ fn rooms_that_are_slanted_are_proven_closed_and_left_by_their_windows() {
 
 #[test]
 #[ignore = "long: rooms in every rotation"]
-fn a_room_whose_walls_are_askew_to_each_other_is_proven_closed() {
-    // A room whose walls are sheared, and a cube in it; with a hole in the roof that is as wide as the cube it leaves.
+fn sheared_room_is_proven_closed_or_left_through_hole() {
+    // A room with sheared walls and a cube in it. The cube leaves through a hole in the roof of its own width.
     let sheared = |[low, high]: [[f64; 3]; 2]| {
         let corner = |k: usize| {
             [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] })
@@ -252,7 +258,7 @@ fn a_room_whose_walls_are_askew_to_each_other_is_proven_closed() {
     };
     let turn = DMat3::from_euler(EulerRot::XYZ, 0.4, 0.7, 0.2);
     let pose = Pose::from_matrix(turn, DVec3::ZERO).unwrap();
-    let cube = solid(&[[[1.5, 1.0, 1.5], [2.0, 1.5, 2.0]]]);
+    let cube = union_of_blocks(&[[[1.5, 1.0, 1.5], [2.0, 1.5, 2.0]]]);
     for open in [false, true] {
         let mut blocks = vec![
             [[-1.0, -1.0, -1.0], [5.0, 5.0, 0.0]],
@@ -270,21 +276,23 @@ fn a_room_whose_walls_are_askew_to_each_other_is_proven_closed() {
             Solid::from_pieces(&blocks.into_iter().map(sheared).collect::<Vec<_>>()).unwrap();
         let (a, b) = (cube.at(pose), walls.at(pose));
         if open {
-            assert!(found(&[cube.clone(), walls.clone()], pose, &WayOptions::default()).is_some());
+            assert!(
+                find_path(&[cube.clone(), walls.clone()], pose, &WayOptions::default()).is_some()
+            );
         } else {
-            let proof = no_way(&a, &b);
+            let proof = prove_no_path(&a, &b);
             assert!(proof.cells() < 4_000, "{}", proof.cells());
-            overlap_in_walls(&proof, &a, &b);
+            assert_overlap_in_blocked_cells(&proof, &a, &b);
         }
     }
 }
 
 #[test]
-fn proofs_of_no_way_that_were_changed_are_refused() {
-    let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
+fn modified_no_path_proof_is_rejected() {
+    let cube = union_of_blocks(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
     let (walls, at) = (chambers(false, [0.9, 0.0, 0.0]), Pose::IDENTITY);
     let (a, b) = (cube.at(at), walls.at(at));
-    let proof = no_way(&a, &b);
+    let proof = prove_no_path(&a, &b);
     let refused = |change: &dyn Fn(&mut NoWay)| {
         let mut changed = proof.clone();
         change(&mut changed);
@@ -310,15 +318,15 @@ fn proofs_of_no_way_that_were_changed_are_refused() {
     refused(&|proof| proof.room.side = f64::NAN);
     refused(&|proof| proof.room.low.x -= 3.0);
     refused(&|proof| proof.room.axes.x_axis = proof.room.axes.y_axis);
-    // A hole that lets the cube through is another body.
+    // A room with a hole that lets the cube through is another body.
     let open = chambers(false, [1.1, 0.0, 0.0]);
     assert!(matches!(proof.verify(&a, &open.at(at)), Err(FreeError::NotProven(_))));
 }
 
 #[test]
-fn legs_that_were_changed_are_refused() {
-    let bodies = slot([14.0, 17.0]);
-    let way = found(&bodies, Pose::IDENTITY, &WayOptions::default()).unwrap();
+fn modified_leg_is_rejected() {
+    let bodies = key_and_slot([14.0, 17.0]);
+    let way = find_path(&bodies, Pose::IDENTITY, &WayOptions::default()).unwrap();
     let placed = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
     let refused = |change: &dyn Fn(&mut WayOut)| {
         let mut changed = way.clone();
@@ -338,15 +346,15 @@ fn legs_that_were_changed_are_refused() {
 }
 
 #[test]
-fn another_body_moves_aside_first() {
-    // A cube in a box whose lid slides in grooves.
-    let cube = solid(&[[[1.0, 1.0, 0.5], [2.0, 2.0, 1.5]]]);
-    let lid = solid(&[[[0.1, -0.4, 2.2], [3.9, 3.4, 2.8]]]);
-    let tray = solid(&TRAY_WITH_GROOVES);
+fn blocking_body_is_moved_first() {
+    // A cube in a box with a lid that slides in grooves.
+    let cube = union_of_blocks(&[[[1.0, 1.0, 0.5], [2.0, 2.0, 1.5]]]);
+    let lid = union_of_blocks(&[[[0.1, -0.4, 2.2], [3.9, 3.4, 2.8]]]);
+    let tray = union_of_blocks(&TRAY_WITH_GROOVES);
     let placed = [&cube, &lid, &tray].map(|solid| solid.at(Pose::IDENTITY));
     let WaysOut::Found(way) = WaysOut::among(&placed, &[2], &WayOptions::default(), None).unwrap()
     else {
-        panic!("the lid goes aside, then the cube up")
+        panic!("the lid moves sideways, then the cube moves up")
     };
     way.verify(&placed).unwrap();
     assert_eq!(way.legs[0].bodies, [1]);
@@ -354,17 +362,18 @@ fn another_body_moves_aside_first() {
 }
 
 #[test]
-fn what_is_cancelled_says_so() {
-    let bodies = slot([14.0, 17.0]);
+fn cancelled_search_returns_error() {
+    let bodies = key_and_slot([14.0, 17.0]);
     let placed = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
     let flag = std::sync::atomic::AtomicBool::new(true);
     let answer = WaysOut::among(&placed, &[1], &WayOptions::default(), Some(&flag));
     assert_eq!(answer, Err(FreeError::Cancelled));
 }
 
-/// A channel along x with a block in it, whose only way out is a shaft that leads up askew at its far end.
+/// Returns a block in a channel along x, and the channel. The only path out is a slanted shaft at its far
+/// end.
 fn skew_shaft() -> [Solid; 2] {
-    // The shaft's walls are sheared by (0.3, 0.2) for 1 of z, in a roof 3 thick.
+    // The walls of the shaft are sheared by (0.3, 0.2) per unit of z, in a roof of thickness 3.
     let at = |x: f64, y: f64, z: f64| DVec3::new(x + 0.3 * (z - 1.2), y + 0.2 * (z - 1.2), z);
     let sheared = |low: [f64; 2], high: [f64; 2]| {
         let corners = [1.2, 4.2].map(|z| {
@@ -387,17 +396,18 @@ fn skew_shaft() -> [Solid; 2] {
         sheared([6.0, -1.0], [7.2, 0.0]),
         sheared([6.0, 1.2], [7.2, 2.2]),
     ];
-    [solid(&[[[0.1, 0.1, 0.1], [0.7, 0.7, 1.1]]]), Solid::from_pieces(&walls).unwrap()]
+    [union_of_blocks(&[[[0.1, 0.1, 0.1], [0.7, 0.7, 1.1]]]), Solid::from_pieces(&walls).unwrap()]
 }
 
 #[test]
-fn a_last_leg_that_no_candidate_has_is_found_among_free_directions() {
+fn skew_last_leg_is_found_in_free_directions() {
     let [cube, channel] = skew_shaft();
     let at = Pose::IDENTITY;
-    // Candidates are the normals of walls; the shaft's direction is across two of them, unless only axes are given.
+    // With axes as the only candidates, the direction of the shaft is not a candidate.
     let axes = vec![DVec3::X, DVec3::Y, DVec3::Z];
     let options = WayOptions::default().with_directions(axes).with_legs(2);
-    let way = found(&[cube, channel], at, &options).expect("along the channel, then up askew");
+    let way =
+        find_path(&[cube, channel], at, &options).expect("along the channel, then up the shaft");
     assert_eq!(way.legs.len(), 2);
     let last = way.legs[1].direction;
     assert!(last.x > 0.2 && last.y > 0.1 && last.z > 0.8, "{last}");
@@ -405,32 +415,32 @@ fn a_last_leg_that_no_candidate_has_is_found_among_free_directions() {
 }
 
 #[test]
-fn either_order_finds_ways() {
+fn both_orders_find_two_leg_path() {
     for order in [Order::FewestLegs, Order::NewestFirst] {
         let options = WayOptions::default().with_order(order);
-        let way = found(&slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
+        let way = find_path(&key_and_slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
         assert_eq!(way.legs.len(), 2);
     }
 }
 
 #[test]
-fn a_way_through_the_cells_of_a_proof_is_not_taken_where_one_of_fewer_legs_is_looked_for() {
-    // A proof is tried while there are places left, and its cells lead out in four legs.
+fn fewest_legs_order_prefers_shorter_path_to_path_through_cells() {
+    // A proof is attempted while unexplored placements remain, and its cells lead outside in four legs.
     let cubes = Cubes::random(&mut Random::new(450_971_566_688));
     let [a, b] = &cubes.solids()[..] else { panic!("two bodies") };
     let options =
         WayOptions::default().with_order(Order::FewestLegs).with_tolerance(1e-5).with_cells(2_000);
     let placed = [a.at(Pose::IDENTITY), b.at(Pose::IDENTITY)];
     let WaysOut::Found(way) = WaysOut::among(&placed, &[], &options, None).unwrap() else {
-        panic!("there is one")
+        panic!("a path exists")
     };
     assert_eq!(way.legs.len(), cubes.level().unwrap().moves);
     assert_eq!(way.legs.len(), 3);
 }
 
 #[test]
-fn what_is_asked_wrongly_is_refused_as_it_was_asked() {
-    let [key, plate] = slot([14.0, 17.0]);
+fn zero_direction_and_negative_tolerance_are_rejected_with_given_value() {
+    let [key, plate] = key_and_slot([14.0, 17.0]);
     let placed = [key.at(Pose::IDENTITY), plate.at(Pose::IDENTITY)];
     let refused = |options: &WayOptions| {
         WaysOut::among(&placed, &[], options, None).expect_err("refused").to_string()
@@ -442,14 +452,14 @@ fn what_is_asked_wrongly_is_refused_as_it_was_asked() {
 }
 
 #[test]
-fn bodies_that_overlap_move_as_one_unless_there_are_two() {
-    let [key, plate] = slot([14.0, 17.0]);
-    // A knob that is pressed onto the key's stem.
-    let knob = solid(&[[[0.4, -0.6, 2.5], [2.6, 0.6, 3.5]]]);
+fn overlapping_bodies_move_together_in_groups_of_three() {
+    let [key, plate] = key_and_slot([14.0, 17.0]);
+    // A knob that overlaps the key's stem.
+    let knob = union_of_blocks(&[[[0.4, -0.6, 2.5], [2.6, 0.6, 3.5]]]);
     let placed = [&key, &knob, &plate].map(|solid| solid.at(Pose::IDENTITY));
     let WaysOut::Found(way) = WaysOut::among(&placed, &[], &WayOptions::default(), None).unwrap()
     else {
-        panic!("as the key alone")
+        panic!("the knob leaves together with the key")
     };
     way.verify(&placed).unwrap();
     assert!(way.legs.iter().all(|leg| leg.bodies == [0, 1]), "{:?}", way.legs);

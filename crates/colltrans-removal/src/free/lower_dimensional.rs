@@ -19,15 +19,15 @@ use super::bodies::Bodies;
 use super::cell::Cell;
 use super::cone::Cone;
 use super::line::{Line, PlaneVertex, Ray, orientation};
-use super::proof::Fate;
-use super::rest::{Outline, Turn};
-use super::verify::rest_of;
+use super::proof::CellState;
+use super::remainder::{Outline, OutlineCorner};
+use super::verify::remainder_of;
 
 /// Enlargement of boxes of directions, because corners are rounded.
-const SLACK: f64 = 1e-9;
+const BOX_SLACK: f64 = 1e-9;
 
 /// Maximum number of pairs of pieces that are compared. For more pairs no arcs or points are reported.
-const MOST: usize = 20_000_000;
+const MAX_COMPARISONS: usize = 20_000_000;
 
 /// Plane of directions that bounds the cone of a pair of facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ pub struct FreeArc {
 
 /// All arcs and isolated directions.
 #[derive(Debug, Default)]
-pub(super) struct Thin {
+pub(super) struct LowerDimensional {
     pub(super) arcs: Vec<FreeArc>,
     pub(super) points: Vec<FreePoint>,
     /// Corners of arcs and points for which a neighbouring region is undecided.
@@ -86,8 +86,8 @@ pub(super) struct Thin {
 }
 
 /// Piece of the remainder of a cell.
-struct Part {
-    corners: Vec<Turn>,
+struct SpherePiece {
+    corners: Vec<OutlineCorner>,
     /// Lines, each with the side on which the piece lies. Together they define the piece.
     sides: Vec<(Line, Ordering)>,
     /// Line from each corner to the next one.
@@ -97,7 +97,7 @@ struct Part {
     known: bool,
 }
 
-impl Part {
+impl SpherePiece {
     fn new(bodies: &Bodies, outline: Outline, known: bool) -> Self {
         let Outline { corners, edges } = outline;
         let side_of = |line: &Line| {
@@ -107,14 +107,14 @@ impl Part {
         let lines = match corners.len() {
             1 => corners[0].lines.to_vec(),
             2 => {
-                let own = |corner: &Turn| corner.lines.into_iter();
+                let own = |corner: &OutlineCorner| corner.lines.into_iter();
                 let across = corners.iter().flat_map(own).filter(|line| side_of(line) != Equal);
                 across.chain([edges[0]]).collect()
             }
             _ => edges.clone(),
         };
         let sides = lines.into_iter().map(|line| (line, side_of(&line))).collect();
-        let around = around(corners.iter().map(|corner| corner.direction));
+        let around = bounding_box(corners.iter().map(|corner| corner.direction));
         Self { corners, sides, edges, around, known }
     }
 
@@ -126,92 +126,96 @@ impl Part {
         self.known && self.corners.len() == 2
     }
 
-    fn holds(&self, bodies: &Bodies, at: &Turn) -> bool {
+    fn contains_direction(&self, bodies: &Bodies, at: &OutlineCorner) -> bool {
         let within = |(line, side): &(Line, Ordering)| {
             let found = line.side_of_ray(bodies, &at.ray);
             found == Equal || found == *side
         };
-        is_around(&self.around, at.direction) && self.sides.iter().all(within)
+        is_in_box(&self.around, at.direction) && self.sides.iter().all(within)
     }
 }
 
 /// Returns a bounding box of directions on the cube, slightly enlarged.
-fn around(directions: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+fn bounding_box(directions: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let [low, high] = directions.fold(none, |[low, high], d| [low.min(d), high.max(d)]);
-    [low - SLACK, high + SLACK]
+    [low - BOX_SLACK, high + BOX_SLACK]
 }
 
-fn is_around([low, high]: &[DVec3; 2], d: DVec3) -> bool {
+fn is_in_box([low, high]: &[DVec3; 2], d: DVec3) -> bool {
     low.cmple(d).all() && high.cmpge(d).all()
 }
 
 /// Direction on a circle: the cross product of the form of the circle and that of the line `across`.
 #[derive(Clone, Copy)]
-struct Mark {
-    at: Turn,
+struct CircleMark {
+    at: OutlineCorner,
     across: Line,
 }
 
 /// Cell that is not blocked, and the pairs that block some of its directions.
-struct Around<'f> {
+struct CellBounds<'f> {
     bounds: [DVec3; 2],
     pairs: &'f [[u32; 2]],
 }
 
-struct Thinning<'s, 'a> {
+struct LowerDimensionalSearch<'s, 'a> {
     bodies: &'s Bodies<'a>,
-    cells: Vec<Around<'s>>,
-    parts: Vec<Part>,
+    cells: Vec<CellBounds<'s>>,
+    pieces: Vec<SpherePiece>,
 }
 
 /// Finds the arcs and points of all cells.
-pub(super) fn thin<'s>(
+pub(super) fn find_lower_dimensional<'s>(
     bodies: &'s Bodies<'_>,
-    leaves: impl Iterator<Item = (Cell, &'s Fate)>,
-) -> Thin {
+    leaves: impl Iterator<Item = (Cell, &'s CellState)>,
+) -> LowerDimensional {
     let (mut cells, mut rests) = (Vec::new(), Vec::new());
-    for (cell, fate) in leaves {
-        let (Fate::Open(pairs) | Fate::Undecided(pairs)) = fate else { continue };
-        let Ok(rest) = rest_of(bodies, cell, pairs) else { continue };
-        cells.push(Around { bounds: around(cell.corners().into_iter()), pairs });
-        rests.push((rest, matches!(fate, Fate::Open(_))));
+    for (cell, state) in leaves {
+        let (CellState::Open(pairs) | CellState::Undecided(pairs)) = state else { continue };
+        let Ok(remainder) = remainder_of(bodies, cell, pairs) else { continue };
+        cells
+            .push(CellBounds { bounds: bounding_box(cell.corner_directions().into_iter()), pairs });
+        rests.push((remainder, matches!(state, CellState::Open(_))));
     }
-    if rests
-        .iter()
-        .all(|(rest, known)| !known || rest.pieces.iter().all(super::rest::Piece::is_region))
-    {
-        return Thin::default();
+    if rests.iter().all(|(remainder, known)| {
+        !known || remainder.pieces.iter().all(super::remainder::Piece::is_region)
+    }) {
+        return LowerDimensional::default();
     }
-    let of_rest = |(rest, known): &(super::rest::Rest, bool)| -> Vec<Part> {
-        rest.pieces.iter().map(|piece| Part::new(bodies, rest.outline(piece), *known)).collect()
+    let of_rest = |(remainder, known): &(super::remainder::Remainder, bool)| -> Vec<SpherePiece> {
+        remainder
+            .pieces
+            .iter()
+            .map(|piece| SpherePiece::new(bodies, remainder.outline(piece), *known))
+            .collect()
     };
-    let parts = rests.iter().flat_map(of_rest).collect();
-    let thinning = Thinning { bodies, cells, parts };
-    let mut thin = Thin::default();
-    let some = thinning.parts.iter().filter(|part| part.is_point() || part.is_arc());
-    if some.clone().count() * thinning.parts.len() > MOST {
-        thin.unclear.extend(some.map(|part| part.corners[0].direction));
-        return thin;
+    let pieces = rests.iter().flat_map(of_rest).collect();
+    let search = LowerDimensionalSearch { bodies, cells, pieces };
+    let mut lower_dimensional = LowerDimensional::default();
+    let some = search.pieces.iter().filter(|part| part.is_point() || part.is_arc());
+    if some.clone().count() * search.pieces.len() > MAX_COMPARISONS {
+        lower_dimensional.unclear.extend(some.map(|part| part.corners[0].direction));
+        return lower_dimensional;
     }
-    thinning.arcs(&mut thin);
-    thinning.points(&mut thin);
-    thin
+    search.find_arcs(&mut lower_dimensional);
+    search.find_points(&mut lower_dimensional);
+    lower_dimensional
 }
 
-impl Thinning<'_, '_> {
-    fn points(&self, thin: &mut Thin) {
-        let mut seen: Vec<&Part> = Vec::new();
-        for part in self.parts.iter().filter(|part| part.is_point()) {
+impl LowerDimensionalSearch<'_, '_> {
+    fn find_points(&self, lower_dimensional: &mut LowerDimensional) {
+        let mut found: Vec<&SpherePiece> = Vec::new();
+        for part in self.pieces.iter().filter(|part| part.is_point()) {
             let at = &part.corners[0];
-            if seen.iter().any(|other| other.holds(self.bodies, at)) {
+            if found.iter().any(|other| other.contains_direction(self.bodies, at)) {
                 continue;
             }
-            seen.push(part);
-            let mut others = self.parts.iter().filter(|other| !other.is_point());
-            match others.find(|other| other.holds(self.bodies, at)) {
-                None => thin.points.extend(self.point(at)),
-                Some(other) if !other.known => thin.unclear.push(at.direction),
+            found.push(part);
+            let mut others = self.pieces.iter().filter(|other| !other.is_point());
+            match others.find(|other| other.contains_direction(self.bodies, at)) {
+                None => lower_dimensional.points.extend(self.build_point(at)),
+                Some(other) if !other.known => lower_dimensional.unclear.push(at.direction),
                 Some(_) => (),
             }
         }
@@ -219,22 +223,26 @@ impl Thinning<'_, '_> {
 
     /// Builds an isolated direction from two planes through it. Returns `None` if two such planes are not
     /// found.
-    fn point(&self, at: &Turn) -> Option<FreePoint> {
+    fn build_point(&self, at: &OutlineCorner) -> Option<FreePoint> {
         let mut planes = self.lines_through(at).into_iter();
         let (first, triangles) = planes.next()?;
-        let (second, others) = planes.find(|(line, _)| !line.is_along(self.bodies, &first))?;
-        let second = turned(self.bodies, &first, &second, at)?;
+        let (second, others) =
+            planes.find(|(line, _)| !line.is_same_circle(self.bodies, &first))?;
+        let second = oriented_line(self.bodies, &first, &second, at)?;
         Some(FreePoint {
             direction: at.direction,
-            planes: [FreePlane::of(&first, triangles), FreePlane::of(&second, others)],
+            planes: [
+                FreePlane::from_line(&first, triangles),
+                FreePlane::from_line(&second, others),
+            ],
         })
     }
 
     /// Returns lines through a direction, with the pairs whose cones they bound, over all cells whose box
     /// contains the direction. Lines of cones with the direction on their boundary come first.
-    fn lines_through(&self, at: &Turn) -> Vec<(Line, [u32; 2])> {
+    fn lines_through(&self, at: &OutlineCorner) -> Vec<(Line, [u32; 2])> {
         let (mut touching, mut others) = (Vec::new(), Vec::new());
-        let cells = self.cells.iter().filter(|cell| is_around(&cell.bounds, at.direction));
+        let cells = self.cells.iter().filter(|cell| is_in_box(&cell.bounds, at.direction));
         for pair in cells.flat_map(|cell| cell.pairs) {
             let cone = Cone::new(self.bodies, *pair);
             let sides = cone.lines.iter().map(|line| line.side_of_ray(self.bodies, &at.ray));
@@ -247,51 +255,59 @@ impl Thinning<'_, '_> {
         touching
     }
 
-    fn arcs(&self, thin: &mut Thin) {
-        let mut todo: Vec<&Part> = self.parts.iter().filter(|part| part.is_arc()).collect();
+    fn find_arcs(&self, lower_dimensional: &mut LowerDimensional) {
+        let mut todo: Vec<&SpherePiece> = self.pieces.iter().filter(|part| part.is_arc()).collect();
         while let Some(first) = todo.first() {
             let circle = first.edges[0];
             let (own, others): (Vec<_>, Vec<_>) =
-                todo.iter().partition(|part| self.are_on(&circle, &part.corners));
+                todo.iter().partition(|part| self.are_on_circle(&circle, &part.corners));
             // The first arc is on its own circle. In any case at least one arc is removed.
             todo = if own.is_empty() { todo[1..].to_vec() } else { others };
-            self.arcs_of(&circle, &own, thin);
+            self.find_arcs_on(&circle, &own, lower_dimensional);
         }
     }
 
-    fn are_on(&self, circle: &Line, corners: &[Turn]) -> bool {
+    fn are_on_circle(&self, circle: &Line, corners: &[OutlineCorner]) -> bool {
         corners.iter().all(|corner| circle.side_of_ray(self.bodies, &corner.ray) == Equal)
     }
 
     /// Finds the arcs on one circle.
-    fn arcs_of(&self, circle: &Line, own: &[&Part], thin: &mut Thin) {
-        let span = |a: &Turn, b: &Turn| {
-            let [a, b] = [self.mark(circle, a)?, self.mark(circle, b)?];
-            Some(if self.after(&a, &b) == Less { [b, a] } else { [a, b] })
+    fn find_arcs_on(
+        &self,
+        circle: &Line,
+        own: &[&SpherePiece],
+        lower_dimensional: &mut LowerDimensional,
+    ) {
+        let span = |a: &OutlineCorner, b: &OutlineCorner| {
+            let [a, b] = [self.mark_at(circle, a)?, self.mark_at(circle, b)?];
+            Some(if self.order_around(&a, &b) == Less { [b, a] } else { [a, b] })
         };
-        let arcs: Vec<[Mark; 2]> =
+        let arcs: Vec<[CircleMark; 2]> =
             own.iter().filter_map(|part| span(&part.corners[0], &part.corners[1])).collect();
-        let mut taken: Vec<([Mark; 2], bool)> = Vec::new();
-        for part in self.parts.iter().filter(|part| !part.is_arc() && !part.is_point()) {
+        let mut taken: Vec<([CircleMark; 2], bool)> = Vec::new();
+        for part in self.pieces.iter().filter(|part| !part.is_arc() && !part.is_point()) {
             let corners = &part.corners;
             for (k, a) in corners.iter().enumerate() {
                 let b = &corners[(k + 1) % corners.len()];
-                let near = |at: &Turn| {
+                let near = |at: &OutlineCorner| {
                     own.iter().any(|arc| {
-                        overlap(&arc.around, &around([at.direction, b.direction].into_iter()))
+                        boxes_overlap(
+                            &arc.around,
+                            &bounding_box([at.direction, b.direction].into_iter()),
+                        )
                     })
                 };
-                if corners.len() > 1 && near(a) && self.are_on(circle, &[*a, *b]) {
+                if corners.len() > 1 && near(a) && self.are_on_circle(circle, &[*a, *b]) {
                     taken.extend(span(a, b).map(|span| (span, part.known)));
                 }
             }
         }
-        let marks = self.in_order(
+        let marks = self.sorted_marks(
             arcs.iter().chain(taken.iter().map(|(span, _)| span)).flatten().copied().collect(),
         );
-        let number = |mark: &Mark| marks.iter().position(|other| self.is_same(mark, other));
+        let number = |mark: &CircleMark| marks.iter().position(|other| self.is_same(mark, other));
         let count = marks.len();
-        let between = |[from, to]: &[Mark; 2]| -> Vec<usize> {
+        let between = |[from, to]: &[CircleMark; 2]| -> Vec<usize> {
             let (Some(from), Some(to)) = (number(from), number(to)) else { return Vec::new() };
             (0..(to + count - from) % count).map(|k| (from + k) % count).collect()
         };
@@ -302,7 +318,7 @@ impl Thinning<'_, '_> {
         for (span, known) in &taken {
             for k in between(span) {
                 if alone[k] && !known {
-                    thin.unclear.push(marks[k].at.direction);
+                    lower_dimensional.unclear.push(marks[k].at.direction);
                 }
                 alone[k] = false;
             }
@@ -310,78 +326,94 @@ impl Thinning<'_, '_> {
         let starts: Vec<usize> =
             (0..count).filter(|&k| alone[k] && !alone[(k + count - 1) % count]).collect();
         if starts.is_empty() && alone.contains(&true) {
-            thin.arcs.extend(self.arc(circle, &marks, 0, count));
+            lower_dimensional.arcs.extend(self.build_arc(circle, &marks, 0, count));
         }
         for start in starts {
             let length = (0..count).take_while(|k| alone[(start + k) % count]).count();
-            thin.arcs.extend(self.arc(circle, &marks, start, length));
+            lower_dimensional.arcs.extend(self.build_arc(circle, &marks, start, length));
         }
     }
 
     /// Builds the arc of `length` consecutive stretches between marks.
-    fn arc(&self, circle: &Line, marks: &[Mark], start: usize, length: usize) -> Option<FreeArc> {
+    fn build_arc(
+        &self,
+        circle: &Line,
+        marks: &[CircleMark],
+        start: usize,
+        length: usize,
+    ) -> Option<FreeArc> {
         let mark = |k: usize| &marks[(start + k) % marks.len()];
         let own = self.lines_through(&mark(0).at);
         let (line, triangles) =
-            own.into_iter().find(|(line, _)| line.is_along(self.bodies, circle))?;
+            own.into_iter().find(|(line, _)| line.is_same_circle(self.bodies, circle))?;
         let line = if line.form.dot(circle.form) < 0.0 { line.reversed() } else { line };
-        let plane = FreePlane::of(&line, triangles);
-        let end = |mark: &Mark| FreePoint {
+        let plane = FreePlane::from_line(&line, triangles);
+        let end = |mark: &CircleMark| FreePoint {
             direction: mark.at.direction,
-            planes: [plane, self.across(circle, mark)],
+            planes: [plane, self.plane_across(circle, mark)],
         };
         let ends = (length < marks.len()).then(|| [end(mark(0)), end(mark(length))]);
         Some(FreeArc { plane, ends, along: (0..=length).map(|k| mark(k).at.direction).collect() })
     }
 
     /// Returns the plane that crosses a circle at an end.
-    fn across(&self, circle: &Line, mark: &Mark) -> FreePlane {
+    fn plane_across(&self, circle: &Line, mark: &CircleMark) -> FreePlane {
         let lines = self.lines_through(&mark.at).into_iter();
-        let mut others = lines.filter(|(line, _)| !line.is_along(self.bodies, circle));
+        let mut others = lines.filter(|(line, _)| !line.is_same_circle(self.bodies, circle));
         let found = others.find_map(|(line, triangles)| {
-            Some(FreePlane::of(&turned(self.bodies, circle, &line, &mark.at)?, triangles))
+            Some(FreePlane::from_line(
+                &oriented_line(self.bodies, circle, &line, &mark.at)?,
+                triangles,
+            ))
         });
         found.unwrap_or(FreePlane { normal: mark.across.form + 0.0, of: None })
     }
 
-    fn mark(&self, circle: &Line, at: &Turn) -> Option<Mark> {
-        let across = at.lines.iter().find(|line| !line.is_along(self.bodies, circle))?;
-        Some(Mark { at: *at, across: turned(self.bodies, circle, across, at)? })
+    fn mark_at(&self, circle: &Line, at: &OutlineCorner) -> Option<CircleMark> {
+        let across = at.lines.iter().find(|line| !line.is_same_circle(self.bodies, circle))?;
+        Some(CircleMark { at: *at, across: oriented_line(self.bodies, circle, across, at)? })
     }
 
     /// Returns `Greater` if mark `b` is within half a turn after mark `a`, and `Less` if it is within half a
     /// turn before it.
-    fn after(&self, a: &Mark, b: &Mark) -> Ordering {
+    fn order_around(&self, a: &CircleMark, b: &CircleMark) -> Ordering {
         a.across.side_of_ray(self.bodies, &b.at.ray).reverse()
     }
 
-    fn is_same(&self, a: &Mark, b: &Mark) -> bool {
-        self.after(a, b) == Equal && a.at.direction.dot(b.at.direction) > 0.0
+    fn is_same(&self, a: &CircleMark, b: &CircleMark) -> bool {
+        self.order_around(a, b) == Equal && a.at.direction.dot(b.at.direction) > 0.0
     }
 
     /// Sorts marks around a circle, starting with the first one, and removes duplicates.
-    fn in_order(&self, mut marks: Vec<Mark>) -> Vec<Mark> {
+    fn sorted_marks(&self, mut marks: Vec<CircleMark>) -> Vec<CircleMark> {
         let Some(&first) = marks.first() else { return marks };
-        let is_late = |mark: &Mark| match self.after(&first, mark) {
+        let is_late = |mark: &CircleMark| match self.order_around(&first, mark) {
             Greater => false,
             Less => true,
             Equal => !self.is_same(&first, mark),
         };
-        marks.sort_by(|a, b| is_late(a).cmp(&is_late(b)).then_with(|| self.after(a, b).reverse()));
+        marks.sort_by(|a, b| {
+            is_late(a).cmp(&is_late(b)).then_with(|| self.order_around(a, b).reverse())
+        });
         marks.dedup_by(|a, b| self.is_same(a, b));
         marks
     }
 }
 
-fn overlap([a, b]: &[DVec3; 2], [c, d]: &[DVec3; 2]) -> bool {
+fn boxes_overlap([a, b]: &[DVec3; 2], [c, d]: &[DVec3; 2]) -> bool {
     a.cmple(*d).all() && c.cmple(*b).all()
 }
 
 /// Returns a line, possibly reversed, so that the cross product of the circle's form and its own form has the
 /// given direction. Returns `None` if the sign of the product is zero or cannot be computed.
-fn turned(bodies: &Bodies, circle: &Line, across: &Line, at: &Turn) -> Option<Line> {
+fn oriented_line(
+    bodies: &Bodies,
+    circle: &Line,
+    across: &Line,
+    at: &OutlineCorner,
+) -> Option<Line> {
     let main = at.direction.abs().max_position();
-    let axis = Line::exactly(DVec3::AXES[main] * at.direction[main].signum());
+    let axis = Line::from_exact_form(DVec3::AXES[main] * at.direction[main].signum());
     match orientation(bodies, [circle, across, &axis])? {
         Greater => Some(*across),
         Less => Some(across.reversed()),
@@ -390,8 +422,8 @@ fn turned(bodies: &Bodies, circle: &Line, across: &Line, at: &Turn) -> Option<Li
 }
 
 impl FreePlane {
-    fn of(line: &Line, triangles: [u32; 2]) -> Self {
-        match line.vertices() {
+    fn from_line(line: &Line, triangles: [u32; 2]) -> Self {
+        match line.spanning_vertices() {
             Some(vertices) => Self {
                 normal: line.form.normalize() + 0.0,
                 of: Some(PlaneFacets { triangles, vertices }),
@@ -401,20 +433,20 @@ impl FreePlane {
     }
 
     /// Returns the line of the plane. Returns `None` if a vertex does not exist or the normal is not finite.
-    fn line(&self, bodies: &Bodies) -> Option<Line> {
+    fn exact_line(&self, bodies: &Bodies) -> Option<Line> {
         let Some(PlaneFacets { vertices, .. }) = self.of else {
-            return Some(Line::exactly(self.normal)).filter(|_| self.normal.is_finite());
+            return Some(Line::from_exact_form(self.normal)).filter(|_| self.normal.is_finite());
         };
-        let exists = |spot: &PlaneVertex| bodies.has(*spot);
-        vertices.iter().all(exists).then(|| Line::of(bodies, vertices))
+        let exists = |vertex: &PlaneVertex| bodies.has_vertex(*vertex);
+        vertices.iter().all(exists).then(|| Line::through(bodies, vertices))
     }
 }
 
 impl FreePoint {
     /// Checks exactly whether a direction is this one.
-    pub(super) fn is(&self, bodies: &Bodies, d: DVec3) -> bool {
+    pub(super) fn has_direction(&self, bodies: &Bodies, d: DVec3) -> bool {
         let on = |plane: &FreePlane| {
-            plane.line(bodies).is_some_and(|line| line.side(bodies, d) == Equal)
+            plane.exact_line(bodies).is_some_and(|line| line.side_of_direction(bodies, d) == Equal)
         };
         self.direction.dot(d) > 0.0 && self.planes.iter().all(on)
     }
@@ -422,16 +454,17 @@ impl FreePoint {
 
 impl FreeArc {
     /// Checks exactly whether a direction is on the arc.
-    pub(super) fn has(&self, bodies: &Bodies, d: DVec3) -> bool {
-        let Some(circle) = self.plane.line(bodies) else { return false };
-        if circle.side(bodies, d) != Equal {
+    pub(super) fn has_direction(&self, bodies: &Bodies, d: DVec3) -> bool {
+        let Some(circle) = self.plane.exact_line(bodies) else { return false };
+        if circle.side_of_direction(bodies, d) != Equal {
             return false;
         }
         let Some(ends) = &self.ends else { return true };
-        let [Some(from), Some(to)] = ends.map(|end| end.planes[1].line(bodies)) else {
+        let [Some(from), Some(to)] = ends.map(|end| end.planes[1].exact_line(bodies)) else {
             return false;
         };
-        let (behind, before) = (from.side(bodies, d) != Greater, to.side(bodies, d) != Less);
+        let (behind, before) =
+            (from.side_of_direction(bodies, d) != Greater, to.side_of_direction(bodies, d) != Less);
         let is_long = from.side_of_ray(bodies, &Ray::Crossing([circle, to])) == Greater;
         if is_long { behind || before } else { behind && before }
     }

@@ -10,22 +10,22 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 use glam::DVec3;
 
 use super::bodies::Bodies;
-use super::cell::{Cell, Side, solid_angle};
+use super::cell::{Cell, CubeSide, solid_angle};
 use super::cone::Cone;
-use super::line::{Line, PlaneVertex, Ray, orientation, wide_cross};
+use super::line::{Line, PlaneVertex, Ray, exact_cross, orientation};
 use super::window::Window;
 use colltrans_kernel::integer::{Integer, LARGE, SMALL};
 
 /// Error of a place above which it is computed from exact integers.
-const ROUGH: f64 = 1e-14;
+const MAX_PLACE_ERROR: f64 = 1e-14;
 
 /// Error: a number is too large for the exact arithmetic, or there are too many pieces.
-pub(super) struct TooMuch;
+pub(super) struct LimitExceeded;
 
 /// Corner of a piece.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
-    at: At,
+struct PieceCorner {
+    at: CornerDirection,
     /// Two lines that intersect in the corner.
     lines: [u32; 2],
     place: [f64; 2],
@@ -35,7 +35,7 @@ struct Corner {
 
 /// Exact direction of a corner.
 #[derive(Debug, Clone, Copy)]
-enum At {
+enum CornerDirection {
     OfCell(DVec3),
     /// The cross product of the forms of its lines, or its opposite.
     Crossing {
@@ -49,13 +49,13 @@ enum At {
 /// Convex part of a cell.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
-    corners: Vec<Corner>,
+    corners: Vec<PieceCorner>,
     /// Line from each corner to the next one.
     edges: Vec<u32>,
 }
 
 impl Piece {
-    pub(super) fn places(&self) -> Vec<[f64; 2]> {
+    pub(super) fn corner_places(&self) -> Vec<[f64; 2]> {
         self.corners.iter().map(|corner| corner.place).collect()
     }
 
@@ -65,12 +65,12 @@ impl Piece {
     }
 
     pub(super) fn area(&self) -> f64 {
-        if self.is_region() { solid_angle(&self.places()) } else { 0.0 }
+        if self.is_region() { solid_angle(&self.corner_places()) } else { 0.0 }
     }
 
     /// Returns an upper bound on the error of the area.
     pub(super) fn area_error(&self) -> f64 {
-        let places = self.places();
+        let places = self.corner_places();
         let [mut around, mut error] = [0.0_f64; 2];
         for (k, [u, v]) in places.iter().enumerate() {
             let [s, t] = places[(k + 1) % places.len()];
@@ -91,14 +91,14 @@ impl Piece {
 
 /// Piece with its lines, which later exact tests need.
 pub(super) struct Outline {
-    pub(super) corners: Vec<Turn>,
+    pub(super) corners: Vec<OutlineCorner>,
     /// Line from each corner to the next one; an arc has the same line twice.
     pub(super) edges: Vec<Line>,
 }
 
 /// Corner of an outline.
 #[derive(Clone, Copy)]
-pub(super) struct Turn {
+pub(super) struct OutlineCorner {
     pub(super) ray: Ray,
     /// Two lines that intersect in the corner.
     pub(super) lines: [Line; 2],
@@ -108,25 +108,26 @@ pub(super) struct Turn {
 
 /// Remainder of a cell outside some cones.
 #[derive(Debug)]
-pub(super) struct Rest {
+pub(super) struct Remainder {
     cell: Cell,
     lines: Vec<Line>,
     pub(super) pieces: Vec<Piece>,
 }
 
-impl Rest {
+impl Remainder {
     /// Returns a remainder that consists of the whole cell.
-    pub(super) fn whole(cell: Cell) -> Self {
+    pub(super) fn of_cell(cell: Cell) -> Self {
         let [_, i, j] = cell.side.axes();
         let across = DVec3::AXES[cell.side.axes()[0]] * cell.side.sign();
-        let [u, v] = [cell.range(0), cell.range(1)];
+        let [u, v] = [cell.coordinate_range(0), cell.coordinate_range(1)];
         // The edges in cyclic order: lower v, upper u, upper v, lower u.
         let bounds = [(j, v[0]), (i, u[1]), (j, v[1]), (i, u[0])];
-        let lines =
-            bounds.map(|(axis, at)| Line::exactly(DVec3::AXES[axis] - across * at)).to_vec();
-        let places = cell.places();
-        let corner = |k: usize| Corner {
-            at: At::OfCell(cell.side.direction(places[k])),
+        let lines = bounds
+            .map(|(axis, at)| Line::from_exact_form(DVec3::AXES[axis] - across * at))
+            .to_vec();
+        let places = cell.corner_places();
+        let corner = |k: usize| PieceCorner {
+            at: CornerDirection::OfCell(cell.side.direction_at(places[k])),
             lines: [(k as u32 + 3) % 4, k as u32],
             place: places[k],
             error: 0.0,
@@ -136,18 +137,18 @@ impl Rest {
     }
 
     /// Returns a remainder with one of the pieces alone.
-    pub(super) fn only(&self, piece: &Piece) -> Self {
+    pub(super) fn with_piece(&self, piece: &Piece) -> Self {
         Self { cell: self.cell, lines: self.lines.clone(), pieces: vec![piece.clone()] }
     }
 
     /// Returns the bounding rectangle of a piece.
-    pub(super) fn window(&self, piece: &Piece) -> Window {
+    pub(super) fn bounding_window(&self, piece: &Piece) -> Window {
         let around = |axis: usize| {
             let ends =
                 piece.corners.iter().map(|c| (c.place[axis] - c.error, c.place[axis] + c.error));
             let (low, high) =
                 ends.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
-            let [least, most] = self.cell.range(axis);
+            let [least, most] = self.cell.coordinate_range(axis);
             [low.max(least), high.min(most)]
         };
         Window::new(self.cell.side, around(0), around(1))
@@ -156,17 +157,17 @@ impl Rest {
     /// Returns a piece with its lines.
     pub(super) fn outline(&self, piece: &Piece) -> Outline {
         let form = |k: u32| self.lines[k as usize];
-        let turn = |corner: &Corner| Turn {
+        let turn = |corner: &PieceCorner| OutlineCorner {
             ray: match corner.at {
-                At::OfCell(d) => Ray::Exactly(d),
-                At::Toward(ends) => Ray::Toward(ends),
-                At::Crossing { against } => {
+                CornerDirection::OfCell(d) => Ray::Exactly(d),
+                CornerDirection::Toward(ends) => Ray::Toward(ends),
+                CornerDirection::Crossing { against } => {
                     let [a, b] = corner.lines.map(form);
                     Ray::Crossing(if against { [b, a] } else { [a, b] })
                 }
             },
             lines: corner.lines.map(form),
-            direction: self.cell.side.direction(corner.place) + 0.0,
+            direction: self.cell.side.direction_at(corner.place) + 0.0,
         };
         Outline {
             corners: piece.corners.iter().map(turn).collect(),
@@ -176,16 +177,16 @@ impl Rest {
 
     /// Subtracts a cone. Returns `true` if the cone contains a direction of a piece. Returns an error for
     /// more than `most` pieces.
-    pub(super) fn cut(
+    pub(super) fn subtract_cone(
         &mut self,
         bodies: &Bodies,
         cone: &Cone,
         most: usize,
-    ) -> Result<bool, TooMuch> {
+    ) -> Result<bool, LimitExceeded> {
         let mut changed = false;
         let mut numbers = Vec::new();
         for at in (0..self.pieces.len()).rev() {
-            if self.misses(bodies, at, cone)? {
+            if self.cone_misses_piece(bodies, at, cone)? {
                 continue;
             }
             if !changed {
@@ -194,14 +195,19 @@ impl Rest {
                 changed = true;
             }
             let piece = self.pieces.swap_remove(at);
-            self.subtract(bodies, piece, &numbers)?;
+            self.subtract_from_piece(bodies, piece, &numbers)?;
         }
-        if self.pieces.len() > most { Err(TooMuch) } else { Ok(changed) }
+        if self.pieces.len() > most { Err(LimitExceeded) } else { Ok(changed) }
     }
 
     /// Checks whether a cone contains no direction of a piece: one of its sides has the whole piece on it or
     /// behind it, or nothing of the piece is left on the inner sides of all.
-    fn misses(&mut self, bodies: &Bodies, at: usize, cone: &Cone) -> Result<bool, TooMuch> {
+    fn cone_misses_piece(
+        &mut self,
+        bodies: &Bodies,
+        at: usize,
+        cone: &Cone,
+    ) -> Result<bool, LimitExceeded> {
         let first = self.lines.len();
         self.lines.extend_from_slice(&cone.lines);
         let missed = self.is_outside(bodies, &self.pieces[at], first);
@@ -209,11 +215,16 @@ impl Rest {
         missed
     }
 
-    fn is_outside(&self, bodies: &Bodies, piece: &Piece, first: usize) -> Result<bool, TooMuch> {
+    fn is_outside(
+        &self,
+        bodies: &Bodies,
+        piece: &Piece,
+        first: usize,
+    ) -> Result<bool, LimitExceeded> {
         let lines = first as u32..self.lines.len() as u32;
         let mut mixed = Vec::new();
         for line in lines.clone() {
-            let sides = self.sides(bodies, piece, line)?;
+            let sides = self.corner_sides(bodies, piece, line)?;
             if !sides.contains(&Greater) {
                 return Ok(true);
             }
@@ -226,14 +237,14 @@ impl Rest {
         }
         let mut inner = piece.clone();
         for line in mixed {
-            let sides = self.sides(bodies, &inner, line)?;
+            let sides = self.corner_sides(bodies, &inner, line)?;
             if !sides.contains(&Greater) {
                 return Ok(true);
             }
-            inner = self.part(bodies, &inner, line, &sides)?;
+            inner = self.inner_part(bodies, &inner, line, &sides)?;
         }
         for line in lines {
-            if !self.sides(bodies, &inner, line)?.contains(&Greater) {
+            if !self.corner_sides(bodies, &inner, line)?.contains(&Greater) {
                 return Ok(true);
             }
         }
@@ -243,10 +254,15 @@ impl Rest {
     /// Subtracts a cone, given by the indices of its lines, from a piece. Each step splits off the part
     /// outside the next line. An arc or a point that lies on an earlier line is not kept, because an earlier
     /// part contains it.
-    fn subtract(&mut self, bodies: &Bodies, piece: Piece, lines: &[u32]) -> Result<(), TooMuch> {
+    fn subtract_from_piece(
+        &mut self,
+        bodies: &Bodies,
+        piece: Piece,
+        lines: &[u32],
+    ) -> Result<(), LimitExceeded> {
         let mut inner = piece;
         for (k, &line) in lines.iter().enumerate() {
-            let sides = self.sides(bodies, &inner, line)?;
+            let sides = self.corner_sides(bodies, &inner, line)?;
             if !sides.contains(&Greater) {
                 self.pieces.push(inner);
                 return Ok(());
@@ -254,22 +270,27 @@ impl Rest {
             if sides.iter().all(|side| *side == Greater) {
                 continue;
             }
-            let turned: Vec<Ordering> = sides.iter().map(|side| side.reverse()).collect();
-            let outer = self.part(bodies, &inner, line, &turned)?;
+            let reversed: Vec<Ordering> = sides.iter().map(|side| side.reverse()).collect();
+            let outer = self.inner_part(bodies, &inner, line, &reversed)?;
             if outer.is_region() || !self.is_on_one_of(bodies, &outer, &lines[..k])? {
                 self.pieces.push(outer);
             }
             if sides.contains(&Less) {
-                inner = self.part(bodies, &inner, line, &sides)?;
+                inner = self.inner_part(bodies, &inner, line, &sides)?;
             }
         }
         Ok(())
     }
 
     /// Checks whether all corners of a piece lie on one of the lines.
-    fn is_on_one_of(&self, bodies: &Bodies, piece: &Piece, lines: &[u32]) -> Result<bool, TooMuch> {
+    fn is_on_one_of(
+        &self,
+        bodies: &Bodies,
+        piece: &Piece,
+        lines: &[u32],
+    ) -> Result<bool, LimitExceeded> {
         for &line in lines {
-            if self.sides(bodies, piece, line)?.iter().all(|side| *side == Equal) {
+            if self.corner_sides(bodies, piece, line)?.iter().all(|side| *side == Equal) {
                 return Ok(true);
             }
         }
@@ -277,19 +298,30 @@ impl Rest {
     }
 
     /// Returns the side of a line for each corner of a piece.
-    fn sides(&self, bodies: &Bodies, piece: &Piece, line: u32) -> Result<Vec<Ordering>, TooMuch> {
-        piece.corners.iter().map(|corner| self.side(bodies, corner, line)).collect()
+    fn corner_sides(
+        &self,
+        bodies: &Bodies,
+        piece: &Piece,
+        line: u32,
+    ) -> Result<Vec<Ordering>, LimitExceeded> {
+        piece.corners.iter().map(|corner| self.corner_side(bodies, corner, line)).collect()
     }
 
-    fn side(&self, bodies: &Bodies, corner: &Corner, line: u32) -> Result<Ordering, TooMuch> {
+    fn corner_side(
+        &self,
+        bodies: &Bodies,
+        corner: &PieceCorner,
+        line: u32,
+    ) -> Result<Ordering, LimitExceeded> {
         let form = |k: u32| &self.lines[k as usize];
         match corner.at {
-            At::OfCell(d) => Ok(form(line).side(bodies, d)),
-            At::Toward(ends) => Ok(form(line).side_of(bodies, ends)),
-            At::Crossing { .. } if corner.lines.contains(&line) => Ok(Equal),
-            At::Crossing { against } => {
+            CornerDirection::OfCell(d) => Ok(form(line).side_of_direction(bodies, d)),
+            CornerDirection::Toward(ends) => Ok(form(line).side_of_displacement(bodies, ends)),
+            CornerDirection::Crossing { .. } if corner.lines.contains(&line) => Ok(Equal),
+            CornerDirection::Crossing { against } => {
                 let [a, b] = corner.lines;
-                let side = orientation(bodies, [form(a), form(b), form(line)]).ok_or(TooMuch)?;
+                let side =
+                    orientation(bodies, [form(a), form(b), form(line)]).ok_or(LimitExceeded)?;
                 Ok(if against { side.reverse() } else { side })
             }
         }
@@ -297,13 +329,13 @@ impl Rest {
 
     /// Returns the part of a piece on the inner side of a line or on it. `sides` holds the sides of the
     /// corners.
-    fn part(
+    fn inner_part(
         &self,
         bodies: &Bodies,
         piece: &Piece,
         line: u32,
         sides: &[Ordering],
-    ) -> Result<Piece, TooMuch> {
+    ) -> Result<Piece, LimitExceeded> {
         let count = piece.corners.len();
         let (mut corners, mut edges) =
             (Vec::with_capacity(count + 1), Vec::with_capacity(count + 1));
@@ -316,7 +348,7 @@ impl Rest {
             // An arc has one edge, traversed in both directions.
             let crosses = own != Equal && next == own.reverse() && (count != 2 || k == 0);
             if crosses {
-                corners.push(self.crossing(bodies, edge, line)?);
+                corners.push(self.intersection(bodies, edge, line)?);
                 edges.push(if own == Greater { line } else { edge });
             }
         }
@@ -327,81 +359,94 @@ impl Rest {
     }
 
     /// Returns the intersection of two lines within the cell.
-    fn crossing(&self, bodies: &Bodies, a: u32, b: u32) -> Result<Corner, TooMuch> {
+    fn intersection(&self, bodies: &Bodies, a: u32, b: u32) -> Result<PieceCorner, LimitExceeded> {
         let (p, q) = (&self.lines[a as usize], &self.lines[b as usize]);
-        if let Some(ends) = p.shared(q) {
-            return self.toward(bodies, [a, b], ends);
+        if let Some(ends) = p.shared_vertices(q) {
+            return self.intersection_of_sharing_lines(bodies, [a, b], ends);
         }
-        let way = p.form.cross(q.form);
+        let vector = p.form.cross(q.form);
         let (m, n) = (p.form.abs().max_element(), q.form.abs().max_element());
         let error =
             2.02 * (p.error * n + q.error * m + p.error * q.error) + 4.0 * f64::EPSILON * m * n;
         let side = self.cell.side;
         let [k, i, j] = side.axes();
-        let main = way[k] * side.sign();
+        let main = vector[k] * side.sign();
         // A place is at most 1 from the center of the side.
         let off = 2.02 * error / (main.abs() - error) + 4.0 * f64::EPSILON;
-        if main.abs() > error && off <= ROUGH {
-            let (at, place) =
-                (At::Crossing { against: main < 0.0 }, [way[i] / main, way[j] / main]);
-            return Ok(Corner { at, lines: [a, b], place, error: off });
+        if main.abs() > error && off <= MAX_PLACE_ERROR {
+            let (at, place) = (
+                CornerDirection::Crossing { against: main < 0.0 },
+                [vector[i] / main, vector[j] / main],
+            );
+            return Ok(PieceCorner { at, lines: [a, b], place, error: off });
         }
-        let small = self.crossing_exactly::<SMALL>(bodies, [a, b], side);
-        small.or_else(|| self.crossing_exactly::<LARGE>(bodies, [a, b], side)).ok_or(TooMuch)
+        let small = self.exact_intersection::<SMALL>(bodies, [a, b], side);
+        small
+            .or_else(|| self.exact_intersection::<LARGE>(bodies, [a, b], side))
+            .ok_or(LimitExceeded)
     }
 
     /// Returns the intersection of two lines that share two vertices: the difference of these, with the sign
     /// that lies within the cell.
-    fn toward(
+    fn intersection_of_sharing_lines(
         &self,
         bodies: &Bodies,
         lines: [u32; 2],
         [a, b]: [PlaneVertex; 2],
-    ) -> Result<Corner, TooMuch> {
+    ) -> Result<PieceCorner, LimitExceeded> {
         let side = self.cell.side;
         let [k, i, j] = side.axes();
-        let (way, doubt) = bodies.way([a, b]);
-        let main = way[k] * side.sign();
+        let (vector, doubt) = bodies.displacement([a, b]);
+        let main = vector[k] * side.sign();
         let off = 2.02 * doubt / (main.abs() - doubt) + 4.0 * f64::EPSILON;
-        if main.abs() > doubt && off <= ROUGH {
+        if main.abs() > doubt && off <= MAX_PLACE_ERROR {
             let ends = if main > 0.0 { [a, b] } else { [b, a] };
-            return Ok(Corner {
-                at: At::Toward(ends),
+            return Ok(PieceCorner {
+                at: CornerDirection::Toward(ends),
                 lines,
-                place: [way[i] / main, way[j] / main],
+                place: [vector[i] / main, vector[j] / main],
                 error: off,
             });
         }
-        let small = || placed(&bodies.wide_way::<SMALL>([a, b]), side);
-        let large = || placed(&bodies.wide_way::<LARGE>([a, b]), side);
-        let (ends, place) = small().or_else(large).ok_or(TooMuch)?;
+        let small = || place_on_side(&bodies.exact_displacement::<SMALL>([a, b]), side);
+        let large = || place_on_side(&bodies.exact_displacement::<LARGE>([a, b]), side);
+        let (ends, place) = small().or_else(large).ok_or(LimitExceeded)?;
         let ends = if ends { [b, a] } else { [a, b] };
-        Ok(Corner { at: At::Toward(ends), lines, place, error: 8.0 * f64::EPSILON })
+        Ok(PieceCorner {
+            at: CornerDirection::Toward(ends),
+            lines,
+            place,
+            error: 8.0 * f64::EPSILON,
+        })
     }
 
-    fn crossing_exactly<const N: usize>(
+    fn exact_intersection<const N: usize>(
         &self,
         bodies: &Bodies,
         lines: [u32; 2],
-        side: Side,
-    ) -> Option<Corner> {
-        let [p, q] = lines.map(|k| self.lines[k as usize].wide::<N>(bodies));
-        let (against, place) = placed(&wide_cross(&p, &q), side)?;
-        let at = At::Crossing { against };
-        Some(Corner { at, lines, place, error: 8.0 * f64::EPSILON })
+        side: CubeSide,
+    ) -> Option<PieceCorner> {
+        let [p, q] = lines.map(|k| self.lines[k as usize].exact_form::<N>(bodies));
+        let (against, place) = place_on_side(&exact_cross(&p, &q), side)?;
+        let at = CornerDirection::Crossing { against };
+        Some(PieceCorner { at, lines, place, error: 8.0 * f64::EPSILON })
     }
 }
 
 /// Computes the place where the line along a direction intersects a side of the cube, and whether the
 /// direction points away from this side. Returns `None` if a number is too large, or the direction is
 /// parallel to the side.
-fn placed<const N: usize>(way: &[Integer<N>; 3], side: Side) -> Option<(bool, [f64; 2])> {
+fn place_on_side<const N: usize>(
+    vector: &[Integer<N>; 3],
+    side: CubeSide,
+) -> Option<(bool, [f64; 2])> {
     let [k, i, j] = side.axes();
-    let main: Integer<N> = if side.sign() > 0.0 { way[k] } else { Integer::ZERO.subtract(&way[k]) };
+    let main: Integer<N> =
+        if side.sign() > 0.0 { vector[k] } else { Integer::ZERO.subtract(&vector[k]) };
     let against = match main.sign()? {
         Less => true,
         Greater => false,
         Equal => return None,
     };
-    Some((against, [way[i].ratio(&main)?, way[j].ratio(&main)?]))
+    Some((against, [vector[i].ratio(&main)?, vector[j].ratio(&main)?]))
 }

@@ -1,9 +1,9 @@
-//! Answers about collision translations as front ends write them ([`record`]), and proofs of answers with all that they
-//! are about, as files.
+//! Answers as the front ends write them ([`record`]), and proofs of answers as files that contain the bodies
+//! and the query.
 
 #![allow(
     rustdoc::private_intra_doc_links,
-    reason = "hidden modules are read with their private parts"
+    reason = "the documentation of hidden modules is read together with private items"
 )]
 
 #[cfg(feature = "json")]

@@ -1,9 +1,10 @@
-//! Answers as the command line, batches, Python and the page write them: one flat object of JSON,
-//! described by `docs/answers.schema.json`.
+//! Answers as the command line, batches, Python and the page write them: one flat JSON object, described by
+//! `docs/answers.schema.json`.
 //!
-//! A record, one struct for each question, holds what people and programs want of an answer: numbers with their proven
-//! bounds, points and normals in the world, features by the numbers of the input. What checks a proof is not in it: for
-//! that there are the answers themselves, which the feature `serde` writes whole, and `ProofFile`.
+//! Each query has a record, a struct with the values that users and programs need: numbers with their proven
+//! bounds, points and normals in the world frame, and features by the indices of the input. A record contains
+//! no certificates. The answer types themselves, which the feature `serde` serialises completely, and
+//! `ProofFile` contain them.
 
 mod cast;
 mod free;
@@ -38,8 +39,8 @@ pub use placed::{DepthRecord, DistanceRecord};
 pub use scene::{NearestRecord, SceneClearanceRecord, SceneWithinRecord};
 pub use ways::{LegRecord, WaysRecord};
 
-/// Defines a record. Its fields are those of the JSON, in this order; values that are absent ([`Field::is_absent`]) are
-/// left out. The last field, after `..`, is a record whose own fields follow.
+/// Defines a record. Its fields are those of the JSON object, in the same order. Absent values
+/// ([`Field::is_absent`]) are omitted. The last field, after `..`, is a record whose own fields follow.
 macro_rules! record {
     ($(#[$about:meta])* pub struct $name:ident {
         $($(#[$doc:meta])* pub $field:ident: $type:ty,)*
@@ -67,9 +68,9 @@ macro_rules! record {
 }
 use record;
 
-/// A value of a field that may be absent.
+/// Value of a field that may be absent.
 trait Field {
-    /// Checks whether the field is left out.
+    /// Checks whether the field is omitted.
     fn is_absent(&self) -> bool {
         false
     }
@@ -93,151 +94,154 @@ impl<K, V> Field for BTreeMap<K, V> {
     }
 }
 
-macro_rules! always_there {
+macro_rules! always_present {
     ($($type:ty),*) => { $(impl Field for $type {})* };
 }
-always_there!(Ending, ObstacleId, f64, u32, usize, &str);
+always_present!(Ending, ObstacleId, f64, u32, usize, &str);
 
-/// The answer of any question about two bodies: a line of a batch.
+/// Answer to any query about two bodies, for example a line of a batch.
 ///
-/// Fields that do not apply are left out, numbers that are infinite are `null`. Translations, the `distance` of a
-/// clearance and their bounds are in multiples of the direction, other lengths in the unit of the bodies.
+/// Fields that do not apply are omitted. Infinite numbers are `null`. Translations, the `distance` of a
+/// clearance and their bounds are multiples of the direction. Other lengths have the unit of the bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Record {
-    /// Where convex bodies meet along a direction.
+    /// First and last contact of convex bodies along a direction.
     Cast(CastRecord),
-    /// How far a convex body can move.
+    /// Clearance of a convex body.
     Clearance(ClearanceRecord),
-    /// How far a solid can move.
+    /// Clearance of a solid.
     SolidClearance(SolidClearanceRecord),
-    /// How far bodies are apart, or whether they are closer than a length.
+    /// Distance of two bodies, or its comparison with a length.
     Distance(DistanceRecord),
-    /// How deep bodies overlap.
+    /// Overlap of two bodies.
     Depth(DepthRecord),
-    /// When bodies that turn first meet, or how far they can go.
+    /// First contact or clearance along a motion.
     Motion(MotionRecord),
-    /// No answer.
+    /// Failed query.
     Error(ErrorRecord),
 }
 
 record! {
-    /// A query that has no answer.
+    /// Query that has no answer.
     #[non_exhaustive]
     pub struct ErrorRecord {
-        /// `error`.
+        /// Always `error`.
         pub outcome: Ending,
-        /// Of one query among several directions: the direction as it was read.
+        /// The direction as it was read, for one of several directions.
         pub direction: Option<[f64; 3]>,
     }
 }
 
 record! {
-    /// Depths to which the surfaces of meshes that are convex only to within the tolerance lie below their hulls, which
-    /// stand for these meshes in the answer.
+    /// Depths to which the surfaces of meshes lie below their convex hulls. The hulls replace meshes that are
+    /// convex only within the tolerance.
     #[derive(Copy)]
     pub struct Dents {
-        /// Depth of the moving body's dent, a length; `None` where the precision of its file explains it.
+        /// Depth of the moving body's dent, a length. It is `None` if the precision of its file explains the
+        /// dent.
         pub moving: Option<f64>,
-        /// Depth of the fixed body's dent, a length; `None` where the precision of its file explains it.
+        /// Depth of the fixed body's dent, a length. It is `None` if the precision of its file explains the
+        /// dent.
         pub fixed: Option<f64>,
     }
 }
 
 impl Dents {
-    /// Collects the dents of the moving and of the fixed body; returns `None` if neither body has one.
+    /// Collects the dents of both bodies. Returns `None` if neither body has one.
     pub fn of([moving, fixed]: [Option<f64>; 2]) -> Option<Self> {
         (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed })
     }
 }
 
-/// How a query ended, in a word.
+/// Outcome of a query, in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// The bodies meet along the direction, somewhere.
+    /// The bodies meet along the direction.
     Contact,
-    /// Their shadows overlap by no more than the graze tolerance.
+    /// The shadows overlap by no more than the graze tolerance.
     Grazing,
-    /// They never meet.
+    /// The bodies never meet.
     Separated,
-    /// Nothing stops a solid.
+    /// Nothing blocks a solid.
     Free,
-    /// It can go so far.
+    /// A body is blocked after a finite distance.
     Blocked,
-    /// Nothing stops a convex body: it slides along the other.
+    /// Nothing blocks a convex body, because it slides along the other one.
     Slides,
-    /// Nothing stops a convex body: they only meet behind.
+    /// Nothing blocks a convex body, because the only contacts are behind it.
     Behind,
-    /// They overlap now.
+    /// The bodies overlap at the start.
     Overlapping,
-    /// They have no point in common.
+    /// The bodies have no common point.
     Apart,
-    /// They touch, or overlap by less than rounding can tell.
+    /// The bodies touch, or overlap by less than the rounding error.
     Touching,
-    /// They touch or overlap: `upper` is 0 where that is proven, else what rounding leaves.
+    /// The bodies touch or overlap. `upper` is 0 if this is proven, otherwise a bound on the rounding error.
     Meeting,
-    /// They are at most the length apart.
+    /// The distance is at most the given length.
     Closer,
-    /// They are farther apart than the length.
+    /// The distance is larger than the given length.
     Farther,
-    /// The length lies between the bounds of their distance. Of a motion or a path: the search took its maximum number of
-    /// steps.
+    /// The given length lies between the bounds of the distance. For a motion or a path: the search took its
+    /// maximum number of steps.
     Undecided,
-    /// There is no answer.
+    /// The query has no answer.
     #[default]
     Error,
 }
 
 record! {
-    /// Two solids that overlap where they are, or two pieces of them by their names.
+    /// Overlap of two solids at the start, or of two pieces of them.
     pub struct StartOverlapRecord {
-        /// The name of the moving piece.
+        /// Name of the moving piece.
         pub moving: Option<String>,
-        /// The name of the fixed piece.
+        /// Name of the fixed piece.
         pub fixed: Option<String>,
-        /// The least tolerance with which they would not overlap, if there is one.
+        /// Smallest tolerance at which the pieces do not overlap; absent if there is none.
         pub least_tolerance: Option<f64>,
     }
 }
 
 impl StartOverlapRecord {
-    /// Returns the overlap of two bodies as a list, without names.
-    fn parted_by(least_tolerance: Option<f64>) -> Vec<Self> {
+    /// Returns a list with the overlap of two bodies, without names.
+    fn with_least_tolerance(least_tolerance: Option<f64>) -> Vec<Self> {
         vec![Self { least_tolerance, ..Self::default() }]
     }
 }
 
 record! {
-    /// One of many bodies, and how far it is.
+    /// One of several obstacles, and its distance.
     pub struct NearbyRecord {
-        /// Its number.
+        /// Index of the obstacle.
         pub obstacle: ObstacleId,
-        /// Its name.
+        /// Name of the obstacle.
         pub fixed: Option<String>,
-        /// A length that the distance is not below, where it was looked for.
+        /// Lower bound of the distance, if it was computed.
         pub lower: Option<f64>,
-        /// One that it is not above.
+        /// Upper bound of the distance.
         pub upper: f64,
-        /// Points of the moving and of this body that are so far apart, in the world, rounded.
+        /// Rounded points of the moving body and of this obstacle at the distance `upper`, in the world
+        /// frame.
         pub points: Option<[[f64; 3]; 2]>,
-        /// Depth of this body's dent, a length, where its mesh is convex only to within the tolerance.
+        /// Depth of the dent of a mesh that is convex only within the tolerance, a length.
         pub dent: Option<f64>,
     }
 }
 
-/// The features of both bodies in the contact plane.
+/// Features of both bodies in the contact plane.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FeaturesRecord {
-    /// Of the moving body.
+    /// Feature of the moving body.
     pub moving: FeatureRecord,
-    /// Of the fixed body.
+    /// Feature of the fixed body.
     pub fixed: FeatureRecord,
 }
 
 impl FeaturesRecord {
-    /// Of two bodies.
-    pub(crate) fn of<B: Body>(features: Features, [moving, fixed]: [&B; 2]) -> Self {
+    /// Converts the features of two bodies.
+    pub(crate) fn of_bodies<B: Body>(features: Features, [moving, fixed]: [&B; 2]) -> Self {
         Self {
             moving: FeatureRecord::of(features.moving, moving),
             fixed: FeatureRecord::of(features.fixed, fixed),
@@ -245,17 +249,17 @@ impl FeaturesRecord {
     }
 }
 
-/// A feature by the vertices of the input.
+/// Feature, given by vertices of the input.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FeatureRecord {
     /// `vertex`, `edge` or `face`.
     pub kind: &'static str,
-    /// Its vertices: one, two, or the corners of a face.
+    /// Indices of its vertices: one, two, or the corners of a face.
     pub vertices: Vec<InputVertex>,
 }
 
-/// A question about two convex bodies and a direction, by its name: what command lines, batches and the
-/// page ask. Solids are asked for their clearance.
+/// Query about two convex bodies and a direction. Its name is used by the command line, batches and the page.
+/// Queries about solids compute their clearance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Question {
@@ -265,42 +269,42 @@ pub enum Question {
     Clearance,
 }
 
-/// The answer of a [`Question`].
+/// Answer to a [`Question`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Answer {
-    /// Where they meet.
+    /// Range of translations with contact.
     Contact(ContactRange),
-    /// How far one can go.
+    /// Clearance.
     Clearance(Clearance),
 }
 
-/// A question about two bodies where they are, without a direction.
+/// Query about two bodies in their given poses, without a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PairQuestion {
     /// [`Pair::distance`].
     Distance,
-    /// [`Pair::depth`]; of solids `SolidPair::overlap_depth`.
+    /// [`Pair::depth`], or `SolidPair::overlap_depth` for solids.
     Depth,
-    /// [`Pair::within`] a length.
+    /// [`Pair::within`] with a length.
     Within(f64),
 }
 
-/// The answer of a [`PairQuestion`].
+/// Answer to a [`PairQuestion`].
 #[derive(Debug, Serialize, Deserialize)]
 #[derive_where(Clone, PartialEq)]
 #[serde(rename_all = "snake_case", bound = "")]
 pub enum PairAnswer<B: Body = ConvexPolyhedron> {
-    /// How far they are apart.
+    /// Distance of the bodies.
     Distance(Distance<B>),
-    /// Which translation parts convex bodies.
+    /// Penetration depth of convex bodies, with the translation that separates them.
     Depth(Depth),
-    /// How deep solids overlap.
+    /// Overlap depth of solids.
     OverlapDepth(OverlapDepth),
-    /// Whether they are closer than a length.
+    /// Comparison of the distance with a length.
     Within {
-        /// What [`Pair::within`] says.
+        /// Answer of [`Pair::within`].
         answer: Within<B>,
-        /// How much work it was.
+        /// Amounts of work.
         steps: B::Steps,
     },
 }
@@ -328,18 +332,19 @@ named!(
 );
 
 impl Question {
-    /// The answer.
+    /// Computes the answer for a cast.
     ///
     /// # Errors
-    /// As the question itself.
+    /// Returns the errors of the query's method.
     pub fn ask(self, cast: &Cast) -> Result<Answer, QueryError> {
         self.ask_observed(cast, &mut NoObserver)
     }
 
-    /// The same, with an observer, as for [`Cast::first_contact_observed`].
+    /// Computes the answer for a cast and reports events to an observer, like
+    /// [`Cast::first_contact_observed`].
     ///
     /// # Errors
-    /// As the question itself.
+    /// Returns the errors of the query's method.
     pub fn ask_observed<O: Observer>(
         self,
         cast: &Cast,
@@ -353,7 +358,7 @@ impl Question {
 }
 
 impl Answer {
-    /// As front ends write it; `cast` is the one that was asked.
+    /// Converts the answer to a record. `cast` must be the cast of the query.
     pub fn record(&self, cast: &Cast) -> Record {
         match self {
             Self::Contact(range) => CastRecord::of_range(range, cast).into(),
@@ -361,7 +366,7 @@ impl Answer {
         }
     }
 
-    /// Its proof as a file; `cast` is the one that was asked.
+    /// Builds the proof file of the answer. `cast` must be the cast of the query.
     #[cfg(feature = "json")]
     pub fn proof(&self, cast: &Cast<'_>) -> crate::ProofFile {
         match self {
@@ -372,35 +377,36 @@ impl Answer {
 }
 
 impl PairQuestion {
-    /// The answer of convex bodies.
+    /// Computes the answer for convex bodies.
     ///
     /// # Errors
-    /// As the question itself.
+    /// Returns the errors of the query's method.
     pub fn ask(self, pair: &Pair) -> Result<PairAnswer, QueryError> {
         Ok(match self {
             Self::Distance => PairAnswer::Distance(pair.distance()?),
             Self::Depth => PairAnswer::Depth(pair.depth()?),
-            Self::Within(length) => PairAnswer::within(pair.within_counted(length)?),
+            Self::Within(length) => PairAnswer::within_answer(pair.within_counted(length)?),
         })
     }
 
-    /// The answer of solids.
+    /// Computes the answer for solids.
     ///
     /// # Errors
-    /// As the question itself.
+    /// Returns the errors of the query's method.
     pub fn ask_solids(self, pair: &Pair<'_, Solid>) -> Result<PairAnswer<Solid>, QueryError> {
         Ok(match self {
             Self::Distance => PairAnswer::Distance(pair.distance()?),
             Self::Depth => PairAnswer::OverlapDepth(pair.overlap_depth()?),
-            Self::Within(length) => PairAnswer::within(pair.within_counted(length)?),
+            Self::Within(length) => PairAnswer::within_answer(pair.within_counted(length)?),
         })
     }
 
-    /// The answer of solids and its proof as a file, if it has one: see
+    /// Computes the answer for solids, and its proof file unless it is an overlap depth. See
     /// [`ProofFile::with_solid_distance`](crate::ProofFile::with_solid_distance).
     ///
     /// # Errors
-    /// As the question itself; a body that its own facets do not make once more.
+    /// Returns the errors of the query's method, and an error for a body that cannot be rebuilt from its own
+    /// facets.
     #[cfg(feature = "json")]
     pub fn prove_solids(
         self,
@@ -416,20 +422,20 @@ impl PairQuestion {
             Self::Depth => (PairAnswer::OverlapDepth(pair.overlap_depth()?), None),
             Self::Within(length) => {
                 let (within, proof) = ProofFile::with_solid_within(pair, pieces, length)?;
-                (PairAnswer::within(within), Some(proof))
+                (PairAnswer::within_answer(within), Some(proof))
             }
         })
     }
 }
 
 impl<B: Body> PairAnswer<B> {
-    fn within((answer, steps): (Within<B>, B::Steps)) -> Self {
+    fn within_answer((answer, steps): (Within<B>, B::Steps)) -> Self {
         Self::Within { answer, steps }
     }
 }
 
 impl PairAnswer {
-    /// As front ends write it; `pair` is the one that was asked.
+    /// Converts the answer to a record. `pair` must be the pair of the query.
     pub fn record(&self, pair: &Pair) -> Record {
         match self {
             Self::Distance(distance) => DistanceRecord::of(distance, pair).into(),
@@ -441,7 +447,8 @@ impl PairAnswer {
         }
     }
 
-    /// Its proof as a file; `pair` is the one that was asked.
+    /// Builds the proof file of the answer. `pair` must be the pair of the query. Returns `None` for an
+    /// overlap depth.
     #[cfg(feature = "json")]
     pub fn proof(&self, pair: &Pair<'_>) -> Option<crate::ProofFile> {
         match self {
@@ -454,12 +461,12 @@ impl PairAnswer {
 }
 
 impl PairAnswer<Solid> {
-    /// As front ends write it; `pair` is the one that was asked.
+    /// Converts the answer to a record. `pair` must be the pair of the query.
     ///
     /// # Errors
-    /// As the question itself.
+    /// Returns an error if the points of the answer cannot be computed.
     pub fn record(&self, pair: &Pair<'_, Solid>) -> Result<Record, QueryError> {
-        let surfaces = open_ones(pair.moving(), pair.fixed());
+        let surfaces = open_bodies(pair.moving(), pair.fixed());
         Ok(match self {
             Self::Distance(distance) => DistanceRecord::of_solids(distance, pair).into(),
             Self::Depth(depth) => DepthRecord { surfaces, ..DepthRecord::of(depth) }.into(),
@@ -470,7 +477,7 @@ impl PairAnswer<Solid> {
 }
 
 impl Record {
-    /// Returns how the query ended.
+    /// Returns the outcome of the query.
     pub const fn outcome(&self) -> Ending {
         match self {
             Self::Cast(of) => of.outcome,
@@ -483,7 +490,7 @@ impl Record {
         }
     }
 
-    /// Returns the contact of convex bodies along a direction; `None` for other questions.
+    /// Returns the contact of convex bodies along a direction, and `None` for other queries.
     pub const fn contact(&self) -> Option<&ContactRecord> {
         match self {
             Self::Cast(CastRecord { contact, .. })
@@ -492,7 +499,7 @@ impl Record {
         }
     }
 
-    /// Adds the direction, one among several; questions without a direction stay as they are.
+    /// Returns the record with a direction. Records of queries without a direction are returned unchanged.
     #[must_use]
     pub fn with_direction(mut self, along: [f64; 3]) -> Self {
         match &mut self {
@@ -526,24 +533,24 @@ records!(
 );
 
 impl FeatureRecord {
-    /// A feature of a body.
+    /// Converts a feature of a body.
     pub fn of<B: Body>(feature: Feature, body: &B) -> Self {
         Self { kind: feature.kind(), vertices: feature.vertices(body) }
     }
 }
 
-/// Which of two solids are open, at least in part.
-fn open_ones(moving: &Solid, fixed: &Solid) -> Vec<&'static str> {
+/// Returns which of two solids are open, at least in part.
+fn open_bodies(moving: &Solid, fixed: &Solid) -> Vec<&'static str> {
     let sides = [("moving", moving), ("fixed", fixed)].into_iter();
     sides.filter(|(_, body)| !body.is_closed()).map(|(name, _)| name).collect()
 }
 
-/// Without -0.
-fn coordinates(v: DVec3) -> [f64; 3] {
+/// Returns the coordinates with -0 replaced by 0.
+fn without_negative_zeros(v: DVec3) -> [f64; 3] {
     v.to_array().map(|c| c + 0.0)
 }
 
-/// Returns the gap that is kept, if there is one.
-fn kept(gap: f64) -> Option<f64> {
+/// Returns the minimum gap, or `None` if it is 0.
+fn positive_gap(gap: f64) -> Option<f64> {
     (gap > 0.0).then_some(gap)
 }

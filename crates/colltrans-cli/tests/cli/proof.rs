@@ -60,7 +60,7 @@ fn a_saved_proof_holds_and_is_told_in_one_line() {
         (
             "clearance",
             "1",
-            "the bodies slide along each other, seen along the direction",
+            "the bodies slide along each other, their shadows overlap",
             "overlap",
         ),
     ] {

@@ -1,7 +1,7 @@
-//! Bodies as a file has them, exact in bits.
+//! Bodies of a file, exact in bits.
 //!
-//! A certificate between solids tells facets by their places in a tree, so it is made for the bodies as they are read
-//! back from the file.
+//! A certificate between solids identifies facets by their positions in a tree. Therefore it is computed for
+//! bodies that are rebuilt from the file.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,15 +15,15 @@ use colltrans_convex::cast::replay::BodyRecord;
 use colltrans_solid::body::{AsSolid, Solid, SolidError};
 use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
 
-/// A body, made of what is written of it.
+/// Body together with its form in a file.
 #[derive(Debug, Clone)]
 pub(super) struct StoredBody {
     pub(super) body: AnyBody,
-    /// Of a solid.
+    /// Pieces of a solid; empty for a convex body.
     pieces: Vec<PieceRecord>,
 }
 
-/// A body in a file.
+/// Body in a file.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum BodyFile {
@@ -32,39 +32,45 @@ pub(super) enum BodyFile {
 }
 
 impl StoredBody {
-    /// A convex body.
-    pub(super) fn convex(body: &ConvexPolyhedron) -> Self {
+    /// Stores a convex body.
+    pub(super) fn from_convex(body: &ConvexPolyhedron) -> Self {
         Self { body: AnyBody::from(body.clone()), pieces: Vec::new() }
     }
 
-    /// A solid that is the union of pieces, as it is read back from a file.
-    pub(super) fn union(
+    /// Stores a solid that is the union of pieces, as if read from a file. Returns an error if the result has
+    /// other facets than `expected`.
+    pub(super) fn from_pieces(
         pieces: &[&Solid],
-        asked: &Solid,
+        expected: &Solid,
         body: usize,
     ) -> Result<Self, ProofFileError> {
-        let pieces = pieces.iter().map(|piece| PieceRecord::of(piece)).collect();
-        let made = Self::solid(pieces, body)?;
-        if made.is_same(asked) { Ok(made) } else { Err(ProofFileError::Changed { body }) }
+        let pieces = pieces.iter().map(|piece| PieceRecord::of_solid(piece)).collect();
+        let made = Self::from_piece_records(pieces, body)?;
+        if made.has_same_facets(expected) {
+            Ok(made)
+        } else {
+            Err(ProofFileError::Changed { body })
+        }
     }
 
-    /// A body as it is read back from a file.
-    pub(super) fn again(placed: AnyPlaced<'_>, body: usize) -> Result<Self, ProofFileError> {
+    /// Stores a placed body, as if read from a file.
+    pub(super) fn rebuild(placed: AnyPlaced<'_>, body: usize) -> Result<Self, ProofFileError> {
         let solid = match placed {
-            ByKind::Convex(placed) => return Ok(Self::convex(placed.body)),
+            ByKind::Convex(placed) => return Ok(Self::from_convex(placed.body)),
             ByKind::Solid(placed) => placed.body,
         };
-        // Of a union whatever hangs together is a piece of its own.
-        let ways = [|of: &Solid| vec![PieceRecord::of(of)], PieceRecord::parts];
-        let mut made = ways.iter().filter_map(|pieces| Self::solid(pieces(solid), body).ok());
-        made.find(|made| made.is_same(solid)).ok_or(ProofFileError::Changed { body })
+        // For a union, each connected component is a piece of its own.
+        let ways = [|of: &Solid| vec![PieceRecord::of_solid(of)], PieceRecord::components];
+        let mut made =
+            ways.iter().filter_map(|pieces| Self::from_piece_records(pieces(solid), body).ok());
+        made.find(|made| made.has_same_facets(solid)).ok_or(ProofFileError::Changed { body })
     }
 
-    fn solid(pieces: Vec<PieceRecord>, body: usize) -> Result<Self, ProofFileError> {
-        Ok(Self { body: AnyBody::from(union(&pieces, body)?), pieces })
+    fn from_piece_records(pieces: Vec<PieceRecord>, body: usize) -> Result<Self, ProofFileError> {
+        Ok(Self { body: AnyBody::from(union_of_pieces(&pieces, body)?), pieces })
     }
 
-    pub(super) fn read(file: BodyFile, body: usize) -> Result<Self, ProofFileError> {
+    pub(super) fn from_file(file: BodyFile, body: usize) -> Result<Self, ProofFileError> {
         match file {
             BodyFile::Convex(record) => {
                 let made = record.body();
@@ -72,23 +78,23 @@ impl StoredBody {
                     made.map_err(|error| ProofFileError::Body { body, error: error.into() })?;
                 Ok(Self { body: AnyBody::from(made), pieces: Vec::new() })
             }
-            BodyFile::Pieces(pieces) => Self::solid(pieces, body),
+            BodyFile::Pieces(pieces) => Self::from_piece_records(pieces, body),
         }
     }
 
-    /// Returns the body of a file with a number.
-    pub(super) fn of(bodies: &[Self], body: usize) -> Result<&Self, ProofFileError> {
+    /// Returns the body with an index.
+    pub(super) fn at_index(bodies: &[Self], body: usize) -> Result<&Self, ProofFileError> {
         bodies.get(body).ok_or(ProofFileError::NoBody { body, known: bodies.len() })
     }
 
-    pub(super) fn file(&self) -> BodyFile {
+    pub(super) fn to_file(&self) -> BodyFile {
         match &self.body {
             ByKind::Convex(body) => BodyFile::Convex(BodyRecord::of(body)),
             ByKind::Solid(_) => BodyFile::Pieces(self.pieces.clone()),
         }
     }
 
-    /// Returns the solid that it is, if it is one.
+    /// Returns the solid, and `None` for a convex body.
     pub(super) fn as_solid(&self) -> Option<&Arc<Solid>> {
         match &self.body {
             ByKind::Convex(_) => None,
@@ -96,13 +102,13 @@ impl StoredBody {
         }
     }
 
-    /// Checks whether it has the same facets as a solid, in whatever order.
-    fn is_same(&self, other: &Solid) -> bool {
-        self.as_solid().is_some_and(|solid| is_same(solid, other))
+    /// Checks whether the body has the same facets as a solid, in any order.
+    fn has_same_facets(&self, other: &Solid) -> bool {
+        self.as_solid().is_some_and(|solid| have_same_facets(solid, other))
     }
 }
 
-/// A mesh that a solid is made of.
+/// Mesh of one piece of a solid.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PieceRecord {
@@ -113,7 +119,7 @@ pub(super) struct PieceRecord {
 }
 
 impl PieceRecord {
-    fn of(solid: &Solid) -> Self {
+    fn of_solid(solid: &Solid) -> Self {
         Self {
             vertices: solid.vertices().iter().map(DVec3::to_array).collect(),
             triangles: solid.triangles().to_vec(),
@@ -121,18 +127,18 @@ impl PieceRecord {
         }
     }
 
-    /// The parts of a solid that have no vertex in common, each by itself.
-    fn parts(solid: &Solid) -> Vec<Self> {
-        // Every vertex leads to a lower one that it hangs together with, the lowest to itself.
+    /// Splits a solid into components that have no vertex in common.
+    fn components(solid: &Solid) -> Vec<Self> {
+        // Union-find: each vertex refers to a smaller one of its component, the smallest one to itself.
         let mut lower: Vec<u32> = (0..solid.vertices().len() as u32).collect();
         for triangle in solid.triangles() {
-            let roots = triangle.map(|v| lowest(&lower, v));
+            let roots = triangle.map(|v| component_root(&lower, v));
             let least = roots.into_iter().min().unwrap_or_default();
             roots.into_iter().chain(*triangle).for_each(|v| lower[v as usize] = least);
         }
         let mut parts: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
         for triangle in solid.triangles() {
-            parts.entry(lowest(&lower, triangle[0])).or_default().push(*triangle);
+            parts.entry(component_root(&lower, triangle[0])).or_default().push(*triangle);
         }
         let part = |triangles: Vec<[u32; 3]>| {
             let (mut vertices, mut numbers) = (Vec::new(), BTreeMap::new());
@@ -148,7 +154,7 @@ impl PieceRecord {
         parts.into_values().map(part).collect()
     }
 
-    fn solid(&self) -> Result<Solid, SolidError> {
+    fn to_solid(&self) -> Result<Solid, SolidError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
         let count = vertices.len();
         if self.open && matches!((count, &self.triangles[..]), (1, [[0, 0, 0]]) | (2, [[0, 1, 1]]))
@@ -165,26 +171,26 @@ impl PieceRecord {
     }
 }
 
-/// The lowest vertex that one leads to.
-fn lowest(lower: &[u32], mut v: u32) -> u32 {
+/// Returns the smallest vertex that is reached from a vertex.
+fn component_root(lower: &[u32], mut v: u32) -> u32 {
     while lower[v as usize] != v {
         v = lower[v as usize];
     }
     v
 }
 
-/// Returns the solid that pieces make.
-fn union(pieces: &[PieceRecord], body: usize) -> Result<Solid, ProofFileError> {
+/// Builds the union of pieces.
+fn union_of_pieces(pieces: &[PieceRecord], body: usize) -> Result<Solid, ProofFileError> {
     let refused = |error: SolidError| ProofFileError::Body { body, error: error.into() };
     let made = |piece: &PieceRecord| {
-        // Statements may count vertices: none is left out of a piece.
+        // Statements may count vertices. Therefore a piece must not have unused ones.
         let mut is_used = vec![false; piece.vertices.len()];
         for v in piece.triangles.iter().flatten() {
             if let Some(used) = is_used.get_mut(*v as usize) {
                 *used = true;
             }
         }
-        let solid = piece.solid().map_err(refused)?;
+        let solid = piece.to_solid().map_err(refused)?;
         if is_used.contains(&false) { Err(ProofFileError::Changed { body }) } else { Ok(solid) }
     };
     let mut solids: Vec<Solid> = pieces.iter().map(made).collect::<Result<_, _>>()?;
@@ -194,16 +200,16 @@ fn union(pieces: &[PieceRecord], body: usize) -> Result<Solid, ProofFileError> {
     Solid::from_pieces(&solids).map_err(refused)
 }
 
-/// Whether two solids have the same facets, in whatever order.
-fn is_same(a: &Solid, b: &Solid) -> bool {
+/// Checks whether two solids have the same facets, in any order.
+fn have_same_facets(a: &Solid, b: &Solid) -> bool {
     let facets = |solid: &Solid| {
-        // Without -0.
+        // Replace -0 by 0.
         let corner = |v: u32| (solid.vertices()[v as usize] + 0.0).to_array().map(f64::to_bits);
-        let turned = |t: &[u32; 3]| {
+        let rotated = |t: &[u32; 3]| {
             let [a, b, c] = t.map(corner);
             [[a, b, c], [b, c, a], [c, a, b]].into_iter().min()
         };
-        let mut all: Vec<_> = solid.triangles().iter().map(turned).collect();
+        let mut all: Vec<_> = solid.triangles().iter().map(rotated).collect();
         all.sort_unstable();
         all
     };

@@ -1,20 +1,20 @@
-//! A question about a motion as a file.
+//! Queries about motions as files.
 
 use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::motion::{convex_cast, kept};
+use super::motion::{convex_cast, signed_min_gap};
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::cast::CaseError;
 use colltrans_convex::cast::replay::BodyRecord;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::{Motion, MotionCast, Moving};
 
-/// What a file of this version calls itself.
+/// Name of the format in this version.
 const FORMAT: &str = "colltrans motion case 1";
 
-/// A question about a motion that owns its bodies, read from a file.
+/// Query about a motion that owns its bodies. It can be written to a file and read from it.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -38,47 +38,48 @@ pub struct MotionCase {
 }
 
 impl MotionCase {
-    /// Of a question.
+    /// Copies the query of a cast.
     pub fn of(cast: &MotionCast) -> Self {
         Self {
             bodies: Box::new(cast.bodies().map(ConvexPolyhedron::clone)),
             motions: cast.motions().map(Motion::clone),
-            keep: kept(cast),
+            keep: signed_min_gap(cast),
         }
     }
 
-    /// The question.
+    /// Returns the cast of the query.
     ///
     /// # Panics
-    /// Never: the gap was checked when the question was made or read.
+    /// Never panics, because the minimum gap was checked when the query was built or read.
     pub fn cast(&self) -> MotionCast<'_> {
-        self.asked().expect("a gap that was checked")
+        self.checked_cast().expect("the gap was checked before")
     }
 
-    fn asked(&self) -> Result<MotionCast<'_>, QueryError> {
+    fn checked_cast(&self) -> Result<MotionCast<'_>, QueryError> {
         let side =
             |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
         convex_cast([side(0), side(1)], self.keep)
     }
 
-    /// As a file: bodies, their motions and what is to be kept, exact in bits. [`Self::from_json`] reads it.
+    /// Writes the bodies, their motions and the minimum gap as JSON, exact in bits. [`Self::from_json`] reads
+    /// the text.
     ///
     /// # Panics
-    /// Never: all numbers can be written.
+    /// Never panics, because all numbers can be written.
     pub fn to_json(&self) -> String {
         let [moving, fixed] = self.bodies.each_ref().map(BodyRecord::of);
         let [moving_motion, fixed_motion] = self.motions.clone();
         let (format, keep) = (FORMAT.into(), self.keep);
         let file = File { format, moving, moving_motion, fixed, fixed_motion, keep };
-        serde_json::to_string(&file).expect("numbers and names")
+        serde_json::to_string(&file).expect("numbers and names can be written")
     }
 
-    /// From what [`Self::to_json`] has written.
+    /// Reads the text that [`Self::to_json`] writes.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns the first problem of the text.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
-        // Some editors begin a file with a byte-order mark.
+        // Some editors write a byte-order mark at the start of a file.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let Named { format } = serde_json::from_str(text)?;
         if format != FORMAT {
@@ -91,12 +92,12 @@ impl MotionCase {
         };
         let bodies = Box::new([body(moving, "moving")?, body(fixed, "fixed")?]);
         let case = Self { bodies, motions: [moving_motion, fixed_motion], keep };
-        case.asked()?;
+        case.checked_cast()?;
         Ok(case)
     }
 }
 
-/// The format of a file.
+/// Header of a file.
 #[derive(Deserialize)]
 struct Named {
     format: String,

@@ -1,4 +1,4 @@
-//! Why a file is no proof, and what of a proof does not hold.
+//! Errors of proof files and of their checks.
 
 use thiserror::Error;
 
@@ -8,134 +8,134 @@ use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::MotionProofError;
 use colltrans_motion::path::{PathError, PathProofError};
 
-/// What a file calls itself.
+/// Name of the format.
 pub(super) const FORMAT: &str = "colltrans proof";
-/// The version of the format.
+/// Version of the format.
 pub(super) const VERSION: u64 = 2;
 
-/// Why a file is no proof, or an answer has none.
+/// Reason why a text is not a proof file, or an answer has no proof.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ProofFileError {
-    /// It is not JSON, or lacks something.
+    /// The text is not JSON, or a part is missing.
     #[error("not a saved proof: {}", json_error_message(.0))]
     Syntax(serde_json::Error),
-    /// An object has to name one thing, and names none or several.
+    /// An object that must have one of several keys has none or several of them.
     #[error(
-        "not a saved proof: line {}, column {}: an object names none or several things where it has to name one; \
+        "not a saved proof: line {}, column {}: the object needs exactly one key; \
          a proof has one placement, one query and one statement", .0.line(), .0.column()
     )]
     Choice(serde_json::Error),
-    /// It is a file of another kind.
+    /// The file has another format.
     #[error(
         "the format is {found:?}, not {:?}; --save-proof writes the files that are accepted",
         FORMAT
     )]
     Format {
-        /// The format that the file names.
+        /// Format that the file names.
         found: String,
     },
-    /// It was written by another version.
+    /// The file has another version.
     #[error("the version of the format is {}, not {}", .found.map_or("missing".into(), |of| of.to_string()), VERSION)]
     Version {
-        /// The version that the file names, if it does.
+        /// Version that the file names, if any.
         found: Option<u64>,
     },
-    /// A body is none.
+    /// A body is invalid.
     #[error("body {body}: {error}")]
     Body {
-        /// Its number in the file.
+        /// Index of the body in the file.
         body: usize,
-        /// What is wrong with it: a `BuildError` of a convex body, a `SolidError` of a solid.
+        /// The error: a `BuildError` of a convex body, or a `SolidError` of a solid.
         error: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// A solid that its own facets do not make once more.
+    /// A solid cannot be rebuilt from its own facets.
     #[error("body {body}: {}", CHANGED)]
     Changed {
-        /// Its number in the file: 0 is the moving one of two.
+        /// Index of the body in the file; 0 is the moving one of two.
         body: usize,
     },
-    /// A place is that of a body that is not there.
-    #[error("a place names the body {body}, and there are {known}, from 0 on")]
+    /// A place refers to a body that does not exist.
+    #[error("a place refers to body {body}; the file has {known} bodies, counted from 0")]
     NoBody {
-        /// The one that is named.
+        /// Index in the place.
         body: usize,
-        /// How many there are.
+        /// Number of bodies.
         known: usize,
     },
-    /// The direction or a choice is refused.
+    /// The direction or an option is rejected.
     #[error(transparent)]
     Query(#[from] QueryError),
-    /// A path is refused.
+    /// A path is rejected.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// The statement is not one of such a query, or of such bodies, or it says nothing.
+    /// The statement does not fit the query or the bodies, or claims nothing.
     #[error(
-        "the statement has to say something, and to fit the query, the placement and the bodies: a cast has \
+        "the statement must make a claim and fit the query, the placement and the bodies: a cast has \
          contacts or a separation of two convex bodies, or a clearance of two solids; a pair has a distance or a \
          depth of two convex bodies, or a solid_distance or free_directions of two solids; a scene has nearest, \
          within or scene_clearance; motions have motions, one for each pair; a path has a path"
     )]
     Statement,
-    /// There is no pair of bodies, so that nothing is said.
-    #[error("there is no pair of bodies; a proof is about at least one")]
+    /// The file has no pair of bodies, and therefore no claim.
+    #[error("there is no pair of bodies; a proof needs at least one")]
     NoPairs,
-    /// Proofs of several pairs are of several questions.
+    /// The proofs of several pairs belong to different queries.
     #[error(
-        "pair {pair} keeps another gap than the others, or is one of solids that a tolerance shrinks; several \
-         pairs are asked one question, of bodies as they are"
+        "pair {pair} has another minimum gap than the others, or is a pair of solids with a tolerance; \
+         several pairs need the same minimum gap and no tolerance"
     )]
     Pairs {
-        /// Its number.
+        /// Index of the pair.
         pair: usize,
     },
-    /// A name that none of the bodies has, or several.
+    /// A name belongs to no body, or to several.
     #[error(
-        "{name:?} is not the name of one of the bodies, or of several; each has one of its own"
+        "{name:?} does not name exactly one body; give each body a name of its own, and use these names"
     )]
     Name {
-        /// That name.
+        /// The name.
         name: String,
     },
 }
 
-/// What of a proof does not hold.
+/// Reason why a proof is not valid.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ProofError {
-    /// A certificate does not prove what is claimed.
+    /// A certificate does not prove its claim.
     #[error(transparent)]
     Certificate(#[from] CertificateError),
-    /// A proof of a motion does not.
+    /// A proof of a motion is not valid.
     #[error(transparent)]
     Motion(#[from] MotionProofError),
-    /// A proof of a path does not.
+    /// A proof of a path is not valid.
     #[error(transparent)]
     Path(#[from] PathProofError),
-    /// It says more than is proven.
+    /// A claim is stronger than the proof.
     #[error(
-        "it says that the first contact is between {} and {}, and proves {} and {}",
+        "the claimed bounds of the first contact are {} and {}, the proven ones {} and {}",
         .said[0], .said[1], .proven[0], .proven[1]
     )]
     Said {
-        /// What it says.
+        /// Claimed bounds.
         said: [f64; 2],
-        /// What it proves.
+        /// Proven bounds.
         proven: [f64; 2],
     },
-    /// The parts of a solid are not those that are made of its facets.
+    /// The parts of a solid differ from those that its facets determine.
     #[error("body {body}: {}", CHANGED)]
     Parts {
-        /// Its number in the file.
+        /// Index of the body in the file.
         body: usize,
     },
-    /// What it is about cannot be asked.
+    /// The bodies or the query are invalid.
     #[error("{0}")]
     Setting(String),
 }
 
 const CHANGED: &str =
-    "its facets, or the parts that it has, are not those that are made of its facets";
+    "its facets or its stored parts differ from those that are rebuilt from its facets";
 
 impl From<QueryError> for ProofError {
     fn from(error: QueryError) -> Self {

@@ -1,4 +1,4 @@
-//! The one file format of proofs: what it holds, written and read.
+//! The file format of proofs: its structure, writing and reading.
 
 use glam::DVec3;
 use serde::de::{DeserializeOwned, Error as _};
@@ -24,20 +24,20 @@ struct File {
     statement: Statement,
 }
 
-/// Where bodies are.
+/// Placement of the bodies.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Placement {
-    /// Of the moving body, then of the fixed one, or of the obstacles in the order of their numbers.
+    /// Poses of the moving body and then of the fixed one, or of the obstacles in the order of their indices.
     Poses(Vec<Place>),
-    /// Of the moving and of the fixed body of each pair.
+    /// Motions of the moving and of the fixed body of each pair.
     Motions(Vec<[Mover; 2]>),
-    /// Of bodies that the frames of a mechanism carry.
+    /// Bodies that are attached to frames of a mechanism.
     Robot(Robot),
 }
 
 impl Placement {
-    /// Places two bodies: the first of the file is the moving one.
+    /// Places two bodies, of which the first one in the file is the moving one.
     pub(super) fn of_two([moving, fixed]: [Pose; 2]) -> Self {
         Self::Poses(vec![Place { body: 0, pose: moving }, Place { body: 1, pose: fixed }])
     }
@@ -65,7 +65,7 @@ pub(super) struct Robot {
     pub(super) bodies: Vec<Link>,
 }
 
-/// A body, and which frame carries it.
+/// Body of a mechanism, and the frame that carries it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Link {
@@ -76,23 +76,23 @@ pub(super) struct Link {
     pub(super) pose: Pose,
 }
 
-/// What is asked of bodies.
+/// Query of a file.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Query {
-    /// How far the moving body gets along a direction.
+    /// Contacts or clearance along a direction.
     Cast(Along),
-    /// How two bodies are to each other where they are.
+    /// Distance, depth or free directions of two bodies in their given poses.
     Pair,
-    /// How one body is to many obstacles.
+    /// Query about one body in a scene.
     Scene(Choices),
-    /// When the bodies of each pair first meet.
-    Motions(Vec<Timed>),
-    /// When bodies of a mechanism first meet.
+    /// First contact of each pair of moving bodies.
+    Motions(Vec<PairOptions>),
+    /// First contact of bodies of a mechanism.
     Path(Joints),
 }
 
-/// The direction, and the gap that is kept.
+/// Direction, and minimum gap.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Along {
@@ -101,7 +101,7 @@ pub(super) struct Along {
     pub(super) keep: f64,
 }
 
-/// The choices that count in a proof about a scene.
+/// Options of a scene query on which its proof depends.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Choices {
@@ -114,16 +114,16 @@ pub(super) struct Choices {
     pub(super) start_overlap: StartOverlap,
 }
 
-/// The gap that two bodies keep, less the depth that is tolerated of convex ones; the tolerance of solids.
+/// Minimum gap of two bodies, minus the tolerated depth of convex ones; tolerance of solids.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Timed {
+pub(super) struct PairOptions {
     pub(super) keep: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) tolerance: Option<f64>,
 }
 
-/// A path of joints, and the gap that is kept on it.
+/// Path of joints, and minimum gap.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Joints {
@@ -133,51 +133,51 @@ pub(super) struct Joints {
 }
 
 impl ProofFile {
-    /// As a file: numbers that read back as the same bits.
+    /// Writes the proof as JSON. Numbers are read back with the same bits.
     ///
     /// # Panics
-    /// Never: all numbers can be written.
+    /// Never panics, because all numbers can be written.
     pub fn to_json(&self) -> String {
         let file = File {
             format: FORMAT.into(),
             version: VERSION,
-            bodies: self.bodies.iter().map(StoredBody::file).collect(),
+            bodies: self.bodies.iter().map(StoredBody::to_file).collect(),
             placement: self.placement.clone(),
             query: self.query.clone(),
             statement: self.statement.clone(),
         };
-        serde_json::to_string(&file).expect("numbers and names")
+        serde_json::to_string(&file).expect("numbers and names can be written")
     }
 
-    /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
+    /// Reads the text that [`Self::to_json`] writes. The claims are not verified; see [`Self::check`].
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns the first problem of the text.
     pub fn from_json(text: &str) -> Result<Self, ProofFileError> {
-        // Some editors begin a file with a byte-order mark.
+        // Some editors write a byte-order mark at the start of a file.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let Head { format, version } = nested(text).map_err(ProofFileError::Syntax)?;
+        let Head { format, version } = read_nested(text).map_err(ProofFileError::Syntax)?;
         if format != FORMAT {
             return Err(ProofFileError::Format { found: format });
         }
         if version != Some(VERSION) {
             return Err(ProofFileError::Version { found: version });
         }
-        let file: File = nested(text).map_err(|error| {
-            // It is JSON, as far as its head was read.
+        let file: File = read_nested(text).map_err(|error| {
+            // The text is JSON at least up to the end of its header.
             let is_choice = error.is_syntax() && error.to_string().starts_with("expected value");
             if is_choice { ProofFileError::Choice(error) } else { ProofFileError::Syntax(error) }
         })?;
         let File { bodies, placement, query, statement, .. } = file;
-        let bodies = bodies.into_iter().enumerate().map(|(k, body)| StoredBody::read(body, k));
+        let bodies = bodies.into_iter().enumerate().map(|(k, body)| StoredBody::from_file(body, k));
         let bodies = bodies.collect::<Result<_, _>>()?;
         let proof = Self { bodies, placement, query, statement };
-        drop(proof.claim()?);
+        drop(proof.join_claim()?);
         Ok(proof)
     }
 }
 
-/// What tells files apart.
+/// Header that identifies the format.
 #[derive(Deserialize)]
 struct Head {
     format: String,
@@ -185,14 +185,14 @@ struct Head {
     version: Option<u64>,
 }
 
-/// Lists and objects within each other in a file of proof, at most: the cover of two bodies of a million facets takes
-/// 250 of them.
-const MOST_NESTED: usize = 400;
+/// Maximum nesting depth of lists and objects in a file. The cover of two bodies with a million facets needs
+/// 250.
+const MAX_NESTING: usize = 400;
 
-/// Reads a file whose covers are nested as trees of parts are: deeper than `serde_json` reads by itself.
-fn nested<T: DeserializeOwned>(text: &str) -> Result<T, serde_json::Error> {
-    if depth_of(text) > MOST_NESTED {
-        let reason = format!("lists and objects are nested more than {MOST_NESTED} deep");
+/// Reads a file whose covers are nested like trees, which exceeds the default limit of `serde_json`.
+fn read_nested<T: DeserializeOwned>(text: &str) -> Result<T, serde_json::Error> {
+    if nesting_depth(text) > MAX_NESTING {
+        let reason = format!("lists and objects are nested more than {MAX_NESTING} deep");
         return Err(serde_json::Error::custom(reason));
     }
     let mut reader = serde_json::Deserializer::from_str(text);
@@ -202,8 +202,8 @@ fn nested<T: DeserializeOwned>(text: &str) -> Result<T, serde_json::Error> {
     Ok(read)
 }
 
-/// Returns how deep lists and objects of JSON are nested, at least.
-fn depth_of(text: &str) -> usize {
+/// Returns a lower bound of the nesting depth of lists and objects in a JSON text.
+fn nesting_depth(text: &str) -> usize {
     let (mut depth, mut deepest) = (0_usize, 0);
     let (mut in_text, mut escaped) = (false, false);
     for byte in text.bytes() {
@@ -226,7 +226,8 @@ fn write_frames<S: Serializer>(of: &Mechanism, to: S) -> Result<S::Ok, S::Error>
     of.frames().serialize(to)
 }
 
-/// Reads frames whose axes are unit vectors: frames would be elsewhere by what rounding makes of others.
+/// Reads frames. Returns an error for an axis that is not a unit vector, because normalising it would change
+/// the frames by rounding.
 fn read_frames<'de, D: Deserializer<'de>>(from: D) -> Result<Mechanism, D::Error> {
     let frames = Vec::<Frame>::deserialize(from)?;
     for (frame, of) in frames.iter().enumerate() {

@@ -1,10 +1,13 @@
-//! A proof with all that it is about, as one file.
+//! Proofs as files that contain the bodies and the query.
 //!
-//! Bodies are written as they are, exact in bits; then where they are, what was asked of them, and one statement with
-//! its certificates.
+//! A file contains the bodies, exact in bits, then their placement, the query, and one statement with its
+//! certificates.
 //!
-//! [`file`] is the format, [`body`] the bodies in it; [`statement`], [`scene`], [`motion`] and [`path`] are what can be
-//! said of them, and what [`proven`] is of it; [`verify`] joins them and checks; [`words`] tell them. [`case`] is a question about a motion.
+//! - [`file`] is the format, [`body`] the bodies in it.
+//! - [`statement`], [`scene`], [`motion`] and [`path`] are the statements, [`proven`] the results of their
+//!   checks.
+//! - [`verify`] joins a statement with its bodies and checks it. [`text`] renders statements as text.
+//! - [`case`] stores a query about a motion.
 
 mod body;
 mod case;
@@ -15,8 +18,8 @@ mod path;
 mod proven;
 mod scene;
 mod statement;
+mod text;
 mod verify;
-mod words;
 
 use std::collections::HashMap;
 
@@ -44,39 +47,39 @@ pub use motion::{MotionStatement, SolidMotionStatement};
 pub use path::PathStatement;
 pub use proven::{Proven, Verify};
 pub use statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Stop};
-use statement::{in_file, options};
+use statement::{solid_options, with_file_facets};
 
-/// What a [`ProofFile`](crate::ProofFile) says of its bodies.
+/// Statement of a [`ProofFile`](crate::ProofFile) about its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Statement {
-    /// Where convex bodies meet first, or last, or both.
+    /// First contact of convex bodies, last contact, or both.
     Contacts(Contacts),
-    /// That convex bodies never meet.
+    /// Convex bodies never meet.
     Separation(Separation),
-    /// How far a solid can move from where it is.
+    /// Clearance of a solid.
     Clearance(SolidStatement),
-    /// How far convex bodies are apart where they are.
+    /// Distance of convex bodies in their given poses.
     Distance(DistanceStatement),
-    /// How deep convex bodies overlap where they are.
+    /// Penetration depth of convex bodies in their given poses.
     Depth(Depth),
-    /// How far solids are apart where they are.
+    /// Distance of solids in their given poses.
     SolidDistance(DistanceCertificate),
-    /// Along which directions a solid can leave.
+    /// Free directions of a solid.
     FreeDirections(FreeStatement),
-    /// Which of many obstacles is nearest.
+    /// Nearest of several obstacles.
     Nearest(NearestProof),
-    /// Which of many obstacles are closer than a length.
+    /// Obstacles that are closer than a length.
     Within(NearbyProof),
-    /// Which of many obstacles stops the moving body, and where.
+    /// Obstacle that blocks the moving body, and the position.
     SceneClearance(ClearanceProof),
-    /// When the bodies of each pair first meet.
+    /// First contact of the bodies of each pair along their motions.
     Motions(Vec<MotionStatement>),
-    /// When bodies of a mechanism first meet.
+    /// First contact of bodies of a mechanism.
     Path(PathStatement),
 }
 
-/// A proof that owns its bodies: whoever has the file can check what it says, without a search.
+/// Proof that owns its bodies. A reader of the file can check it without a search.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -102,35 +105,39 @@ pub struct ProofFile {
 }
 
 impl ProofFile {
-    /// Of an answer of [`Cast::first_contact`]; `cast` is the one that was asked.
+    /// Builds the proof of an answer of [`Cast::first_contact`]. `cast` must be the cast of the query.
     pub fn of_outcome(cast: &Cast<'_>, outcome: &Outcome) -> Self {
         let statement = match outcome {
             Outcome::Contact(contact) => {
-                Statement::Contacts(Contacts::between(Some(contact), None))
+                Statement::Contacts(Contacts::from_contacts(Some(contact), None))
             }
             Outcome::Grazing(grazing) => {
-                Statement::Contacts(Contacts::sliding(cast, grazing, None))
+                Statement::Contacts(Contacts::from_grazing(cast, grazing, None))
             }
             Outcome::Separated(separated) => Statement::Separation(separated.certificate),
         };
         Self::of_convex(cast, statement)
     }
 
-    /// Of an answer of [`Cast::contact_range`]; `cast` is the one that was asked.
+    /// Builds the proof of an answer of [`Cast::contact_range`]. `cast` must be the cast of the query.
     pub fn of_range(cast: &Cast<'_>, range: &ContactRange) -> Self {
         let contacts = match range {
-            ContactRange::Contact { first, last } => Contacts::between(Some(first), Some(last)),
-            ContactRange::Grazing { first, last } => Contacts::sliding(cast, first, Some(last)),
+            ContactRange::Contact { first, last } => {
+                Contacts::from_contacts(Some(first), Some(last))
+            }
+            ContactRange::Grazing { first, last } => {
+                Contacts::from_grazing(cast, first, Some(last))
+            }
             ContactRange::Separated(of) => return Self::of_outcome(cast, &Outcome::Separated(*of)),
         };
         Self::of_convex(cast, Statement::Contacts(contacts))
     }
 
-    /// Of an answer of [`Cast::clearance`]; `cast` is the one that was asked.
+    /// Builds the proof of an answer of [`Cast::clearance`]. `cast` must be the cast of the query.
     pub fn of_clearance(cast: &Cast<'_>, clearance: &Clearance) -> Self {
         let outcome = |of| Self::of_outcome(cast, &of);
         let ends = |first, last| {
-            Self::of_convex(cast, Statement::Contacts(Contacts::between(first, last)))
+            Self::of_convex(cast, Statement::Contacts(Contacts::from_contacts(first, last)))
         };
         match clearance {
             Clearance::Blocked { contact, .. } => outcome(Outcome::Contact(*contact)),
@@ -142,18 +149,20 @@ impl ProofFile {
     }
 
     fn of_convex(cast: &Cast<'_>, statement: Statement) -> Self {
-        let bodies = vec![StoredBody::convex(cast.moving()), StoredBody::convex(cast.fixed())];
+        let bodies =
+            vec![StoredBody::from_convex(cast.moving()), StoredBody::from_convex(cast.fixed())];
         let along = Along { direction: cast.direction(), keep: cast.options().keep };
         let poses = [cast.moving_pose(), cast.fixed_pose()];
         Self { bodies, placement: Placement::of_two(poses), query: Query::Cast(along), statement }
     }
 
-    /// Of an answer of [`Pair::distance`] or [`Pair::within`]; `pair` is the one that was asked.
+    /// Builds the proof of an answer of [`Pair::distance`] or [`Pair::within`]. `pair` must be the pair of
+    /// the query.
     pub fn of_distance(pair: &Pair<'_>, answer: impl Into<DistanceStatement>) -> Self {
         Self::of_pair(pair, Statement::Distance(answer.into()))
     }
 
-    /// Of an answer of [`Pair::depth`]; `pair` is the one that was asked.
+    /// Builds the proof of an answer of [`Pair::depth`]. `pair` must be the pair of the query.
     pub fn of_depth(pair: &Pair<'_>, depth: &Depth) -> Self {
         let mut depth = depth.clone();
         depth.steps = Steps::default();
@@ -161,37 +170,39 @@ impl ProofFile {
     }
 
     fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
-        let bodies = vec![StoredBody::convex(pair.moving()), StoredBody::convex(pair.fixed())];
+        let bodies =
+            vec![StoredBody::from_convex(pair.moving()), StoredBody::from_convex(pair.fixed())];
         let placement = Placement::of_two([pair.moving_pose(), pair.fixed_pose()]);
         Self { bodies, placement, query: Query::Pair, statement }
     }
 
-    /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
-    /// each body is the union of ([`Solid::from_pieces`]), or the body itself. Of the choices, the
-    /// tolerance and what an overlap means count.
+    /// Computes [`Cast::clearance`] of solids again, with its proof. Each body is the union of its `pieces`
+    /// ([`Solid::from_pieces`]), or itself its only piece. Of the options, only the start overlap, the
+    /// tolerance and the minimum gap are used.
     ///
     /// # Errors
-    /// A body that its own facets do not make once more.
+    /// Returns an error for a body that cannot be rebuilt from its own facets.
     pub fn of_solids(
         cast: &Cast<'_, Solid>,
         pieces: [&[&Solid]; 2],
     ) -> Result<Self, ProofFileError> {
-        let made = MadeSolids::of(pieces, [cast.moving(), cast.fixed()])?;
-        let [moving, fixed] = made.bodies()?;
+        let made = RebuiltSolids::rebuild(pieces, [cast.moving(), cast.fixed()])?;
+        let [moving, fixed] = made.solids()?;
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
         let keep = cast.options().keep;
-        let options = options(cast.options().start_overlap, cast.tolerance(), keep);
+        let options = solid_options(cast.options().start_overlap, cast.tolerance(), keep);
         let again = Cast::new(moving.at(poses[0]), fixed.at(poses[1]), direction)?;
         let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
         let (placement, query) = (Placement::of_two(poses), Query::Cast(Along { direction, keep }));
         Ok(Self { bodies: made.0.into(), placement, query, statement })
     }
 
-    /// Of the distance of solids, asked with its proof: of [`Pair::distance`], or of
-    /// [`Pair::within`] a length, which may prove one bound alone. `pieces` as in [`Self::of_solids`].
+    /// Computes the distance of solids with its proof: [`Pair::distance`], or [`Pair::within`] for a length,
+    /// which may prove only one bound. `pieces` has the meaning that it has for [`Self::of_solids`].
     ///
     /// # Errors
-    /// A body that its own facets do not make once more; a length that is negative or not a number.
+    /// Returns an error for a body that cannot be rebuilt from its own facets, and for a length that is
+    /// negative or not a number.
     pub fn of_solid_distance(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
@@ -203,62 +214,67 @@ impl ProofFile {
         })
     }
 
-    /// [`Pair::distance`] of solids, and its proof: of one search, unless a body's tree comes out otherwise from the
-    /// file, as it may of more than 4,096 facets; then the bodies of the file are asked as well. `pieces` as in
+    /// Computes [`Pair::distance`] of solids and its proof. `pieces` has the meaning that it has for
     /// [`Self::of_solids`].
     ///
+    /// One search suffices unless the tree of a body that is rebuilt from the file differs. Trees of more
+    /// than 4,096 facets may differ. Then the bodies of the file are searched as well.
+    ///
     /// # Errors
-    /// A body that its own facets do not make once more.
+    /// Returns an error for a body that cannot be rebuilt from its own facets.
     pub fn with_solid_distance(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
     ) -> Result<(Distance<Solid>, Self), ProofFileError> {
-        Self::of_search(pair, pieces, |pair| pair.ask(true))
+        Self::with_search(pair, pieces, |pair| pair.ask(true))
     }
 
-    /// The same of [`Pair::within`] a length.
+    /// Computes [`Pair::within`] of solids for a length, and its proof. See [`Self::with_solid_distance`].
     ///
     /// # Errors
-    /// As [`Self::with_solid_distance`]; a length that is negative or not a number.
+    /// Returns the errors of [`Self::with_solid_distance`], and an error for a length that is negative or not
+    /// a number.
     pub fn with_solid_within(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
         length: f64,
     ) -> Result<((Within<Solid>, SolidSteps), Self), ProofFileError> {
-        Self::of_search(pair, pieces, |pair| pair.decide(length, true))
+        Self::with_search(pair, pieces, |pair| pair.decide(length, true))
     }
 
-    /// An answer about bodies, and its proof about those that the file has.
-    fn of_search<T>(
+    /// Computes an answer about the given bodies, and its proof about the bodies of the file.
+    fn with_search<T>(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
         ask: impl Fn(&Pair<'_, Solid>) -> Result<(T, Unproven), QueryError>,
     ) -> Result<(T, Self), ProofFileError> {
         let bodies = [pair.moving(), pair.fixed()];
-        let made = MadeSolids::of(pieces, bodies)?;
-        let [moving, fixed] = made.bodies()?;
+        let made = RebuiltSolids::rebuild(pieces, bodies)?;
+        let [moving, fixed] = made.solids()?;
         let poses = [pair.moving_pose(), pair.fixed_pose()];
         let again = Pair::new(moving.at(poses[0]), fixed.at(poses[1]))?;
         let (answer, mut found) = ask(pair)?;
         if !(bodies[0].has_same_tree(moving) && bodies[1].has_same_tree(fixed)) {
             found = ask(&again)?.1;
         }
-        let statement = Statement::SolidDistance(in_file(again.prove(found)?, [moving, fixed]));
+        let statement =
+            Statement::SolidDistance(with_file_facets(again.prove(found)?, [moving, fixed]));
         let (placement, query) = (Placement::of_two(poses), Query::Pair);
         Ok((answer, Self { bodies: made.0.into(), placement, query, statement }))
     }
 
-    /// Of all free directions, asked once more of the bodies as a file has them. `pieces` as in [`Self::of_solids`].
+    /// Computes all free directions again, for the bodies as the file contains them. `pieces` has the meaning
+    /// that it has for [`Self::of_solids`].
     ///
     /// # Errors
-    /// A body that its own facets do not make once more.
+    /// Returns an error for a body that cannot be rebuilt from its own facets.
     pub fn of_free_directions(
         free: &FreeDirections<'_>,
         pieces: [&[&Solid]; 2],
     ) -> Result<Self, ProofFileError> {
         let cast = free.cast();
-        let made = MadeSolids::of(pieces, [cast.moving(), cast.fixed()])?;
-        let [moving, fixed] = made.bodies()?;
+        let made = RebuiltSolids::rebuild(pieces, [cast.moving(), cast.fixed()])?;
+        let [moving, fixed] = made.solids()?;
         let poses = [cast.moving_pose(), cast.fixed_pose()];
         let options = free.options().with_tolerance(free.tolerance());
         let again = FreeDirections::of(&moving.at(poses[0]), &fixed.at(poses[1]), options);
@@ -273,17 +289,18 @@ impl ProofFile {
         Ok(Self { bodies: made.0.into(), placement, query, statement })
     }
 
-    /// What it says; true if [`Self::check`] does not object.
+    /// Returns the statement. It is true if [`Self::check`] succeeds.
     pub const fn statement(&self) -> &Statement {
         &self.statement
     }
 
-    /// Returns the number of facets, of the moving bodies and of the fixed ones, that turn inside out or pass through
-    /// others when the solids are offset inwards by half the tolerance each
-    /// ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)). There the statement about the offset solids
-    /// says little about the solids themselves. A body that several pairs or places share counts once on each side.
+    /// Returns the number of facets, of the moving bodies and of the fixed ones, that turn inside out or pass
+    /// through others when the solids are offset inwards by half the tolerance each
+    /// ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)). At these facets the statement
+    /// about the offset solids does not describe the original ones. A body that several pairs or places share
+    /// counts once on each side.
     pub fn inverted(&self) -> [usize; 2] {
-        // The tolerance of each body on each side.
+        // The largest tolerance of each body on each side.
         let mut offset: [HashMap<usize, f64>; 2] = Default::default();
         let mut add = |side: usize, body: usize, tolerance: f64| {
             let known = offset[side].entry(body).or_default();
@@ -319,12 +336,12 @@ impl ProofFile {
         offset.map(|side| side.iter().filter_map(inverted).sum())
     }
 
-    /// The gap that the bodies of a cast are to keep, in world units; 0 if they may touch.
+    /// Returns the minimum gap of the bodies of a cast, in world units; 0 if they may touch.
     pub const fn keep(&self) -> f64 {
         if let Query::Cast(along) = &self.query { along.keep } else { 0.0 }
     }
 
-    /// Returns how many obstacles there are in a scene. `None` if it is not about one.
+    /// Returns the number of obstacles of a scene, and `None` for other queries.
     pub fn obstacles(&self) -> Option<usize> {
         match (&self.query, &self.placement) {
             (Query::Scene(_), Placement::Poses(places)) => places.len().checked_sub(1),
@@ -332,24 +349,24 @@ impl ProofFile {
         }
     }
 
-    /// Returns the moving and the fixed body, if there are just these two.
-    fn two(&self, places: &[Place]) -> Result<[AnyPlaced<'_>; 2], ProofFileError> {
+    /// Returns the moving and the fixed body. Returns an error unless there are exactly two places.
+    fn two_placed(&self, places: &[Place]) -> Result<[AnyPlaced<'_>; 2], ProofFileError> {
         let [moving, fixed] = places else { return Err(ProofFileError::Statement) };
-        let body = |of: &Place| StoredBody::of(&self.bodies, of.body);
+        let body = |of: &Place| StoredBody::at_index(&self.bodies, of.body);
         Ok([body(moving)?.body.at(moving.pose), body(fixed)?.body.at(fixed.pose)])
     }
 }
 
-/// Two solids made once more of their pieces, as they are read back from a file.
-struct MadeSolids([StoredBody; 2]);
+/// Two solids that are rebuilt from their pieces, as if read from a file.
+struct RebuiltSolids([StoredBody; 2]);
 
-impl MadeSolids {
-    fn of(pieces: [&[&Solid]; 2], asked: [&Solid; 2]) -> Result<Self, ProofFileError> {
-        let made = |k: usize| StoredBody::union(pieces[k], asked[k], k);
+impl RebuiltSolids {
+    fn rebuild(pieces: [&[&Solid]; 2], expected: [&Solid; 2]) -> Result<Self, ProofFileError> {
+        let made = |k: usize| StoredBody::from_pieces(pieces[k], expected[k], k);
         Ok(Self([made(0)?, made(1)?]))
     }
 
-    fn bodies(&self) -> Result<[&Solid; 2], ProofFileError> {
+    fn solids(&self) -> Result<[&Solid; 2], ProofFileError> {
         let body = |k: usize| self.0[k].as_solid().ok_or(ProofFileError::Changed { body: k });
         Ok([&**body(0)?, &**body(1)?])
     }

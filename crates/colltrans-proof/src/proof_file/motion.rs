@@ -1,4 +1,4 @@
-//! Proofs about pairs of bodies that turn: when two of them first meet.
+//! Proofs of the first contact of pairs of bodies along motions.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
-use super::file::{Mover, Placement, Query, Timed};
+use super::file::{Mover, PairOptions, Placement, Query};
 use super::proven::{Proven, Verify};
 use super::{ProofFile, Statement};
 use colltrans_convex::body::Body;
@@ -19,39 +19,40 @@ use colltrans_solid::body::Solid;
 use colltrans_solid::cast::StartProof;
 use colltrans_solid::kinds::ByKind;
 
-/// What is said of two bodies that turn.
+/// Statement about two bodies along motions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionStatement {
-    /// Of convex bodies.
+    /// Statement about convex bodies.
     Convex(MotionProof),
-    /// Of solids.
+    /// Statement about solids.
     Solids(SolidMotionStatement),
 }
 
-/// What is said of two solids that turn.
+/// Statement about two solids along motions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolidMotionStatement {
-    /// They are there for whoever has no such trees; they have to be those of these bodies.
+    /// Trees of both solids, for checkers that do not build trees. A check compares them with the trees of
+    /// the bodies.
     parts: [Parts; 2],
     /// The proof.
     pub proof: SolidMotionProof,
 }
 
-/// What was asked of two bodies of either kind.
+/// Query about two bodies of either kind.
 #[derive(Debug)]
 pub(super) enum PairCast<'a> {
     Convex(MotionCast<'a>),
     Solids(MotionCast<'a, Solid>, [usize; 2]),
 }
 
-/// Returns the gap that is to be kept, or less a depth that is tolerated.
-pub(super) fn kept(cast: &MotionCast<'_>) -> f64 {
+/// Returns the minimum gap minus the tolerated depth.
+pub(super) fn signed_min_gap(cast: &MotionCast<'_>) -> f64 {
     cast.keep() - cast.tolerance()
 }
 
-/// Returns what is asked of convex bodies, with the gap that is to be kept, or less a depth that is tolerated.
+/// Builds the query about convex bodies with a minimum gap, or with a tolerated depth if `keep` is negative.
 pub(super) fn convex_cast(
     [moving, fixed]: [Moving<'_>; 2],
     keep: f64,
@@ -60,7 +61,7 @@ pub(super) fn convex_cast(
     if keep < 0.0 { cast.tolerating(-keep) } else { cast.keeping(keep) }
 }
 
-/// Of questions about bodies that turn.
+/// Proofs of queries about motions.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -86,46 +87,49 @@ pub(super) fn convex_cast(
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 impl ProofFile {
-    /// Of an answer of [`MotionCast::first_contact`] about convex bodies; `cast` is the one that was asked. A proof about
-    /// the same bodies [as solids](MotionProof::solids) is the one of [`Self::with_solid_motion`].
+    /// Builds the proof of an answer of [`MotionCast::first_contact`] for convex bodies. `cast` must be the
+    /// cast of the query. If the proof treats the bodies [as solids](MotionProof::solids), builds that of
+    /// [`Self::with_solid_motion`].
     pub fn of_motion(cast: &MotionCast<'_>, outcome: &MotionOutcome) -> Self {
         let proof = outcome.proof();
         let solids = || Some(Self::with_solid_motion(&cast.between_solids().ok()?).ok()?.1);
         if let Some(file) = proof.solids.as_ref().and_then(|_| solids()) {
             return file;
         }
-        let bodies = cast.bodies().map(StoredBody::convex).into();
-        let asked = Timed { keep: kept(cast), tolerance: None };
-        Self::of_pair_of_motions(bodies, cast, asked, MotionStatement::Convex(proof.clone()))
+        let bodies = cast.bodies().map(StoredBody::from_convex).into();
+        let pair_options = PairOptions { keep: signed_min_gap(cast), tolerance: None };
+        Self::of_pair_of_motions(bodies, cast, pair_options, MotionStatement::Convex(proof.clone()))
     }
 
-    /// The first contact of solids, asked of the bodies as they are read back from the file, and its proof.
+    /// Computes the first contact of solids, for the bodies that are rebuilt from the file, and its
+    /// proof.
     ///
     /// # Errors
-    /// As [`MotionCast::certified_first_contact`], and a solid that its own facets do not make once more.
+    /// Returns the errors of [`MotionCast::certified_first_contact`], and an error for a solid that cannot be
+    /// rebuilt from its own facets.
     pub fn with_solid_motion(
         cast: &MotionCast<'_, Solid>,
     ) -> Result<(MotionOutcome<SolidMotionProof>, Self), ProofFileError> {
         let placed = |k: usize| cast.bodies()[k].at(cast.motions()[k].pieces()[0].start);
-        let stored = |k: usize| StoredBody::again(ByKind::Solid(placed(k)), k);
+        let stored = |k: usize| StoredBody::rebuild(ByKind::Solid(placed(k)), k);
         let bodies = [stored(0)?, stored(1)?];
-        let asked = Timed { keep: cast.keep(), tolerance: cast.given_tolerance() };
+        let pair_options = PairOptions { keep: cast.keep(), tolerance: cast.given_tolerance() };
         let side = |k: usize| -> Result<Moving<'_, Solid>, ProofFileError> {
             let body = bodies[k].as_solid().ok_or(ProofFileError::Changed { body: k })?;
             Ok(Moving { body, motion: Cow::Borrowed(cast.motions()[k]) })
         };
-        let again = solid_cast([side(0)?, side(1)?], asked)?;
+        let again = solid_cast([side(0)?, side(1)?], pair_options)?;
         let outcome = again.certified_first_contact()?;
         let (parts, proof) = (again.parts(), outcome.proof().clone());
         let statement = MotionStatement::Solids(SolidMotionStatement { parts, proof });
-        let file = Self::of_pair_of_motions(bodies.clone().into(), cast, asked, statement);
+        let file = Self::of_pair_of_motions(bodies.clone().into(), cast, pair_options, statement);
         Ok((outcome, file))
     }
 
     fn of_pair_of_motions<B: Body>(
         bodies: Vec<StoredBody>,
         cast: &MotionCast<'_, B>,
-        asked: Timed,
+        pair_options: PairOptions,
         statement: MotionStatement,
     ) -> Self {
         let [moving, fixed] = cast.motions().map(Clone::clone);
@@ -133,21 +137,22 @@ impl ProofFile {
         Self {
             bodies,
             placement: Placement::Motions(vec![movers]),
-            query: Query::Motions(vec![asked]),
+            query: Query::Motions(vec![pair_options]),
             statement: Statement::Motions(vec![statement]),
         }
     }
 
-    /// One proof about all pairs of several proofs about motions: which two first meet.
+    /// Joins several proofs about motions to one proof of the first contact of all pairs.
     ///
     /// # Errors
-    /// No proofs, one that is not about motions, and pairs that keep several gaps or are shrunk.
+    /// Returns an error if there is no proof, if one is not about motions, or if the pairs have different
+    /// minimum gaps or a tolerance.
     ///
     /// # Panics
-    /// Never: all numbers can be written.
+    /// Never panics, because all numbers can be written.
     pub fn of_motions(proofs: Vec<Self>) -> Result<Self, ProofFileError> {
         let (mut bodies, mut known) = (Vec::new(), HashMap::new());
-        let (mut movers, mut asked, mut statements) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut movers, mut pair_options, mut statements) = (Vec::new(), Vec::new(), Vec::new());
         for proof in proofs {
             let (Placement::Motions(pairs), Query::Motions(query), Statement::Motions(of)) =
                 (proof.placement, proof.query, proof.statement)
@@ -158,8 +163,9 @@ impl ProofFile {
                 .bodies
                 .into_iter()
                 .map(|body| {
-                    // Bodies that are written as the same are the same.
-                    let text = serde_json::to_string(&body.file()).expect("numbers and names");
+                    // Bodies with the same text are the same body.
+                    let text = serde_json::to_string(&body.to_file())
+                        .expect("numbers and names can be written");
                     *known.entry(text).or_insert_with(|| {
                         bodies.push(body);
                         bodies.len() - 1
@@ -168,85 +174,85 @@ impl ProofFile {
                 .collect();
             let renumbered = |of: Mover| Mover { body: numbers[of.body], ..of };
             movers.extend(pairs.into_iter().map(|pair| pair.map(renumbered)));
-            asked.extend(query);
+            pair_options.extend(query);
             statements.extend(of);
         }
-        let (placement, query) = (Placement::Motions(movers), Query::Motions(asked));
+        let (placement, query) = (Placement::Motions(movers), Query::Motions(pair_options));
         let file = Self { bodies, placement, query, statement: Statement::Motions(statements) };
-        drop(file.claim()?);
+        drop(file.join_claim()?);
         Ok(file)
     }
 
-    /// Returns what is asked of each pair, if all of it is one question.
-    pub(super) fn motions<'a>(
+    /// Returns the query of each pair. Returns an error if they do not form one query.
+    pub(super) fn motion_query<'a>(
         &'a self,
-        asked: &'a [Timed],
+        pair_options: &'a [PairOptions],
         movers: &'a [[Mover; 2]],
         statements: &[MotionStatement],
-    ) -> Result<Motions<'a>, ProofFileError> {
-        if asked.is_empty() {
+    ) -> Result<MotionQuery<'a>, ProofFileError> {
+        if pair_options.is_empty() {
             return Err(ProofFileError::NoPairs);
         }
-        if asked.len() != movers.len() || asked.len() != statements.len() {
+        if pair_options.len() != movers.len() || pair_options.len() != statements.len() {
             return Err(ProofFileError::Statement);
         }
-        let (least, is_alone) = (least_gap(asked), asked.len() == 1);
-        let mut casts = Vec::with_capacity(asked.len());
-        for (pair, (statement, asked)) in statements.iter().zip(asked).enumerate() {
-            // What is proven apart by a larger gap is apart by this one, too, as solids are that stand for convex bodies.
+        let (least, is_alone) = (least_gap(pair_options), pair_options.len() == 1);
+        let mut casts = Vec::with_capacity(pair_options.len());
+        for (pair, (statement, pair_options)) in statements.iter().zip(pair_options).enumerate() {
+            // Bodies that keep a larger gap also keep this one. The same holds for solids that replace convex bodies.
             let is_of_question = match statement {
-                MotionStatement::Convex(_) => asked.keep == least,
+                MotionStatement::Convex(_) => pair_options.keep == least,
                 MotionStatement::Solids(of) => is_alone || of.proof.tolerance == 0.0,
             };
             if !is_of_question {
                 return Err(ProofFileError::Pairs { pair });
             }
-            casts.push(self.pair_cast(*asked, &movers[pair], statement)?);
+            casts.push(self.pair_cast(*pair_options, &movers[pair], statement)?);
         }
-        Ok(Motions { asked, casts })
+        Ok(MotionQuery { pair_options, casts })
     }
 
     fn pair_cast<'a>(
         &'a self,
-        asked: Timed,
+        pair_options: PairOptions,
         movers: &'a [Mover; 2],
         statement: &MotionStatement,
     ) -> Result<PairCast<'a>, ProofFileError> {
         let numbers = movers.each_ref().map(|of| of.body);
         let motions = movers.each_ref().map(|of| Cow::Borrowed(&of.motion));
-        let [moving, fixed] = numbers.map(|k| StoredBody::of(&self.bodies, k));
+        let [moving, fixed] = numbers.map(|k| StoredBody::at_index(&self.bodies, k));
         Ok(match (statement, &moving?.body, &fixed?.body) {
             (MotionStatement::Convex(_), ByKind::Convex(p), ByKind::Convex(q))
-                if asked.tolerance.is_none() =>
+                if pair_options.tolerance.is_none() =>
             {
                 let [moving, fixed] = motions;
                 let sides =
                     [Moving { body: &**p, motion: moving }, Moving { body: &**q, motion: fixed }];
-                PairCast::Convex(convex_cast(sides, asked.keep)?)
+                PairCast::Convex(convex_cast(sides, pair_options.keep)?)
             }
             (MotionStatement::Solids(_), ByKind::Solid(p), ByKind::Solid(q)) => {
                 let [moving, fixed] = motions;
                 let sides =
                     [Moving { body: &**p, motion: moving }, Moving { body: &**q, motion: fixed }];
-                PairCast::Solids(solid_cast(sides, asked)?, numbers)
+                PairCast::Solids(solid_cast(sides, pair_options)?, numbers)
             }
             _ => return Err(ProofFileError::Statement),
         })
     }
 }
 
-/// What is asked of each pair.
+/// Queries about all pairs.
 #[derive(Debug)]
-pub(super) struct Motions<'a> {
-    asked: &'a [Timed],
+pub(super) struct MotionQuery<'a> {
+    pair_options: &'a [PairOptions],
     casts: Vec<PairCast<'a>>,
 }
 
-impl Verify<'_, Motions<'_>> for Vec<MotionStatement> {
-    fn verify(&self, about: &Motions<'_>) -> Result<Proven<'static>, ProofError> {
+impl Verify<'_, MotionQuery<'_>> for Vec<MotionStatement> {
+    fn verify(&self, about: &MotionQuery<'_>) -> Result<Proven<'static>, ProofError> {
         let checked = self.iter().zip(&about.casts).map(|(of, cast)| cast.verify(of));
         let times = checked.collect::<Result<Vec<_>, _>>()?;
-        Ok(Proven::Time(first_of(about.asked, &times)))
+        Ok(Proven::Time(first_times(about.pair_options, &times)))
     }
 }
 
@@ -266,23 +272,23 @@ impl PairCast<'_> {
     }
 }
 
-/// Returns the smallest gap that is kept.
-fn least_gap(asked: &[Timed]) -> f64 {
-    asked.iter().map(|of| of.keep).fold(f64::INFINITY, f64::min)
+/// Returns the smallest minimum gap.
+fn least_gap(pair_options: &[PairOptions]) -> f64 {
+    pair_options.iter().map(|of| of.keep).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the smallest times of all pairs. A pair that comes as near as a larger gap does not come as near as the
-/// smallest one.
-fn first_of(asked: &[Timed], times: &[[f64; 2]]) -> [f64; 2] {
-    let least = least_gap(asked);
-    asked.iter().zip(times).fold([1.0, f64::INFINITY], |[lower, upper], (of, [l, u])| {
+/// Returns the smallest times of all pairs. A contact at a larger gap than the smallest one does not count as
+/// an upper bound.
+fn first_times(pair_options: &[PairOptions], times: &[[f64; 2]]) -> [f64; 2] {
+    let least = least_gap(pair_options);
+    pair_options.iter().zip(times).fold([1.0, f64::INFINITY], |[lower, upper], (of, [l, u])| {
         let u = if of.keep == least { *u } else { f64::INFINITY };
         [f64::min(lower, *l), f64::min(upper, u)]
     })
 }
 
 impl MotionStatement {
-    /// Returns the tolerance of solids, 0 of convex bodies.
+    /// Returns the tolerance of solids, and 0 for convex bodies.
     pub(super) fn tolerance(&self) -> f64 {
         match self {
             Self::Convex(_) => 0.0,
@@ -290,8 +296,9 @@ impl MotionStatement {
         }
     }
 
-    /// Returns the time up to which the bodies do not meet, and the one at which they do, if these are claimed.
-    fn claims(&self) -> (Option<f64>, Option<f64>) {
+    /// Returns the claimed time up to which the bodies do not meet, and the claimed time of a contact, each
+    /// if there is one.
+    fn claimed_times(&self) -> (Option<f64>, Option<f64>) {
         match self {
             Self::Convex(MotionProof { spans, meeting, .. }) => {
                 let last = spans.iter().flatten().last().map(|plane| plane.time);
@@ -307,19 +314,19 @@ impl MotionStatement {
         }
     }
 
-    /// Returns in words what is said of one pair.
-    fn words(&self, keep: f64) -> String {
-        let (reached, meeting) = self.claims();
-        let meet = meet(keep);
+    /// Returns the statement about one pair as text.
+    fn text(&self, keep: f64) -> String {
+        let (reached, meeting) = self.claimed_times();
+        let meet = contact_verb(keep);
         let bodies = match self {
             Self::Convex(_) => "the bodies ".into(),
             Self::Solids(of) => {
                 format!("the solids, shrunk by {:?} each, ", 0.5 * of.proof.tolerance)
             }
         };
-        let told = match (self, reached, meeting) {
+        let claim = match (self, reached, meeting) {
             (Self::Solids(_), None, Some(0.0)) => "overlap when the motion begins".into(),
-            (Self::Convex(_), None, None) => return "nothing is said".into(),
+            (Self::Convex(_), None, None) => return "no claim is made".into(),
             (Self::Convex(_), None, Some(0.0)) => format!("{meet} when the motion begins"),
             (Self::Convex(_), None, Some(upper)) => format!("{meet} by the time {upper}"),
             (_, lower, Some(upper)) => {
@@ -329,22 +336,22 @@ impl MotionStatement {
             (_, Some(1.0), None) => format!("never {meet} throughout the motion"),
             (_, lower, None) => format!("do not {meet} up to the time {}", lower.unwrap_or(0.0)),
         };
-        format!("{bodies}{told}")
+        format!("{bodies}{claim}")
     }
 }
 
-/// Returns in words what is said of all pairs.
-pub(super) fn words(asked: &[Timed], statements: &[MotionStatement]) -> String {
-    if let ([asked], [statement]) = (asked, statements) {
-        return statement.words(asked.keep);
+/// Returns the statement about all pairs as text.
+pub(super) fn text(pair_options: &[PairOptions], statements: &[MotionStatement]) -> String {
+    if let ([pair_options], [statement]) = (pair_options, statements) {
+        return statement.text(pair_options.keep);
     }
     let claimed = statements.iter().map(|of| {
-        let (reached, meeting) = of.claims();
+        let (reached, meeting) = of.claimed_times();
         [reached.unwrap_or(0.0), meeting.unwrap_or(f64::INFINITY)]
     });
-    let [lower, upper] = first_of(asked, &claimed.collect::<Vec<_>>());
-    let (count, meet) = (statements.len(), meet(least_gap(asked)));
-    let told = if upper == 0.0 {
+    let [lower, upper] = first_times(pair_options, &claimed.collect::<Vec<_>>());
+    let (count, meet) = (statements.len(), contact_verb(least_gap(pair_options)));
+    let claim = if upper == 0.0 {
         format!("those of one {meet} when the motion begins")
     } else if upper.is_finite() {
         format!("the first {meet} at a time between {lower} and {upper}")
@@ -353,11 +360,11 @@ pub(super) fn words(asked: &[Timed], statements: &[MotionStatement]) -> String {
     } else {
         format!("none {meet} up to the time {lower}")
     };
-    format!("of {count} pairs of bodies {told}")
+    format!("of {count} pairs of bodies {claim}")
 }
 
-/// Returns what bodies do that meet, in words, with the gap that is kept.
-fn meet(keep: f64) -> String {
+/// Returns the verb of a contact as text, with the minimum gap or the tolerated depth.
+fn contact_verb(keep: f64) -> String {
     match keep {
         keep if keep > 0.0 => format!("come as near as {keep:?}"),
         keep if keep < 0.0 => format!("overlap by more than {:?}", -keep),
@@ -365,10 +372,10 @@ fn meet(keep: f64) -> String {
     }
 }
 
-/// Returns what is asked of solids.
+/// Builds the query about solids.
 fn solid_cast(
     [moving, fixed]: [Moving<'_, Solid>; 2],
-    Timed { keep, tolerance }: Timed,
+    PairOptions { keep, tolerance }: PairOptions,
 ) -> Result<MotionCast<'_, Solid>, QueryError> {
     let cast = MotionCast::<Solid>::new(moving, fixed)?.keeping(keep)?;
     match tolerance {

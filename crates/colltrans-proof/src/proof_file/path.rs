@@ -1,4 +1,4 @@
-//! Proofs about bodies that joints carry along a path: which two of them first meet.
+//! Proofs of the first contact of bodies that joints carry along a path.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -9,34 +9,37 @@ use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Joints, Link, Placement, Query, Robot};
 use super::proven::{Proven, Verify};
-use super::words::shown;
+use super::text::quoted_name;
 use super::{ProofFile, Statement};
 use colltrans_convex::body::InputFacet;
 use colltrans_motion::path::{PathBody, PathCast, PathOutcome, PathProof};
 use colltrans_solid::kinds::{AnyBody, ByKind};
 
-/// So many pairs are named in words.
-const NAMED: usize = 12;
+/// Maximum number of pairs that a text names.
+const MAX_NAMED: usize = 12;
 
-/// What is said of a path: of these pairs of bodies none meet before a time, and when some do.
+/// Statement about a path: none of these pairs of bodies meets before a time, and one of them meets by
+/// another time.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct PathStatement {
-    /// The names of both bodies of each pair.
+    /// Names of both bodies of each pair.
     pub pairs: Vec<[String; 2]>,
-    /// No two bodies of a pair meet before this time; also not at it, if it is the end of the path and no contact is claimed.
+    /// Time before which no pair meets. At the end of the path it includes this time if no contact is
+    /// claimed.
     pub lower: f64,
-    /// The pair of [`PathProof::meeting`] meets at this time or before; infinite where that is not claimed.
+    /// Time by which the pair of [`PathProof::meeting`] meets; infinite if no contact is claimed.
     #[serde(with = "colltrans_kernel::written::or_infinite")]
     pub upper: f64,
-    /// Of each body of the file that is a solid, for whoever has no such trees; they have to be those of these bodies.
-    parts: Vec<Option<Parts>>,
+    /// Tree of each solid of the file, for checkers that do not build trees. A check compares it with the
+    /// tree of the body.
+    parts: Vec<Option<StoredTree>>,
     /// The proof.
     pub proof: PathProof,
 }
 
-/// What is asked of bodies of a mechanism.
+/// Bodies of a mechanism, and the query about them.
 #[derive(Debug)]
 pub(super) struct PathSetting<'a> {
     bodies: &'a [StoredBody],
@@ -54,11 +57,11 @@ impl<'a> PathSetting<'a> {
             return Err(ProofFileError::NoPairs);
         }
         let carried = |link: &Link| {
-            let placed = StoredBody::of(bodies, link.body)?.body.at(link.pose);
+            let placed = StoredBody::at_index(bodies, link.body)?.body.at(link.pose);
             Ok(PathBody { frame: link.frame, placed })
         };
         let carried = robot.bodies.iter().map(carried).collect::<Result<_, ProofFileError>>()?;
-        let pairs = numbers_of(pairs, &robot.bodies)?;
+        let pairs = pair_indices(pairs, &robot.bodies)?;
         let cast = PathCast::new(&robot.frames, &joints.path, carried, pairs)?;
         Ok(Self { bodies, cast: cast.keeping(joints.keep)? })
     }
@@ -66,21 +69,22 @@ impl<'a> PathSetting<'a> {
 
 impl Verify<'_, PathSetting<'_>> for PathStatement {
     fn verify(&self, about: &PathSetting<'_>) -> Result<Proven<'static>, ProofError> {
-        let parts: Vec<_> = about.bodies.iter().map(|of| Parts::of(&of.body)).collect();
+        let parts: Vec<_> = about.bodies.iter().map(|of| StoredTree::of_body(&of.body)).collect();
         if parts != self.parts {
-            let body = parts.iter().zip(&self.parts).take_while(|(own, said)| own == said).count();
+            let body =
+                parts.iter().zip(&self.parts).take_while(|(own, claimed)| own == claimed).count();
             return Err(ProofError::Parts { body });
         }
         let proven = about.cast.verify(&self.proof)?;
-        let said = [self.lower, self.upper];
-        if said[0] <= proven[0] && proven[1] <= said[1] {
+        let claimed = [self.lower, self.upper];
+        if claimed[0] <= proven[0] && proven[1] <= claimed[1] {
             return Ok(Proven::Time(proven));
         }
-        Err(ProofError::Said { said, proven })
+        Err(ProofError::Said { said: claimed, proven })
     }
 }
 
-/// Of questions about bodies of a mechanism.
+/// Proofs of queries about bodies of a mechanism.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -101,20 +105,22 @@ impl Verify<'_, PathSetting<'_>> for PathStatement {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 impl ProofFile {
-    /// The first contact on a path, asked of the bodies as they are read back from the file, and its proof. The statement
-    /// names bodies: those that have no name of their own get one by their number.
+    /// Computes the first contact on a path, for the bodies that are rebuilt from the file, and its
+    /// proof. The statement refers to bodies by name. Bodies without a name of their own get one that
+    /// contains their index.
     ///
     /// # Errors
-    /// As [`PathCast::first_contact`], a solid that its own facets do not make once more, and no pair at all.
+    /// Returns the errors of [`PathCast::first_contact`], and errors for a solid that cannot be rebuilt from
+    /// its own facets and for a query without pairs.
     pub fn with_path(
         cast: &PathCast<'_>,
         names: &[String],
     ) -> Result<(PathOutcome, Self), ProofFileError> {
-        let names = names_of(cast.bodies().count(), names);
+        let names = distinct_names(cast.bodies().count(), names);
         let (mut bodies, mut links) = (Vec::new(), Vec::new());
         for (body, (of, name)) in cast.carried_bodies().zip(&names).enumerate() {
             let (name, frame, pose) = (name.clone(), of.frame, of.placed.pose());
-            bodies.push(StoredBody::again(of.placed, body)?);
+            bodies.push(StoredBody::rebuild(of.placed, body)?);
             links.push(Link { body, name, frame, pose });
         }
         let robot = Robot { frames: cast.mechanism().clone(), bodies: links };
@@ -124,7 +130,7 @@ impl ProofFile {
         let outcome = PathSetting::new(&bodies, &robot, &joints, &pairs)?.cast.first_contact()?;
         let proof = outcome.proof().clone();
         if !proof.solids.is_empty() {
-            // The file has those bodies as the solids that the proof takes them as.
+            // The file contains these bodies as solids, like the proof.
             return Self::with_path(&cast.with_solids(&proof.solids), &names);
         }
         let [from, to] = joints.path.ends();
@@ -136,13 +142,14 @@ impl ProofFile {
             PathOutcome::Free(_) => [to, f64::INFINITY],
             _ => [from, f64::INFINITY],
         };
-        let parts = bodies.iter().map(|of| Parts::of(&of.body)).collect();
+        let parts = bodies.iter().map(|of| StoredTree::of_body(&of.body)).collect();
         let statement = Statement::Path(PathStatement { pairs, lower, upper, parts, proof });
         let (placement, query) = (Placement::Robot(robot), Query::Path(joints));
         Ok((outcome, Self { bodies, placement, query, statement }))
     }
 
-    /// Returns what a proof about a path is about, and the names of the bodies. `None` if it is not about a path.
+    /// Returns the query of a proof about a path, and the names of the bodies. Returns `None` for other
+    /// proofs.
     pub fn path(&self) -> Option<(PathCast<'_>, Vec<String>)> {
         let (Placement::Robot(robot), Query::Path(joints), Statement::Path(of)) =
             (&self.placement, &self.query, &self.statement)
@@ -154,8 +161,8 @@ impl ProofFile {
     }
 }
 
-/// A name for each body, no two of them the same: its own one, or else its number.
-fn names_of(count: usize, own: &[String]) -> Vec<String> {
+/// Returns a distinct name for each body: its own one, or one with its index.
+fn distinct_names(count: usize, own: &[String]) -> Vec<String> {
     let mut names: Vec<String> = Vec::with_capacity(count);
     for k in 0..count {
         let mut name = own.get(k).cloned().unwrap_or_default();
@@ -170,8 +177,9 @@ fn names_of(count: usize, own: &[String]) -> Vec<String> {
     names
 }
 
-/// The pairs of a statement by the numbers of their bodies, each of which has a name of its own.
-fn numbers_of(pairs: &[[String; 2]], links: &[Link]) -> Result<Vec<[usize; 2]>, ProofFileError> {
+/// Converts the pairs of a statement from names to indices. Returns an error unless every name belongs to
+/// exactly one body.
+fn pair_indices(pairs: &[[String; 2]], links: &[Link]) -> Result<Vec<[usize; 2]>, ProofFileError> {
     let mut numbers = HashMap::new();
     for (k, Link { name, .. }) in links.iter().enumerate() {
         if name.is_empty() || numbers.insert(name.as_str(), k).is_some() {
@@ -188,23 +196,23 @@ fn numbers_of(pairs: &[[String; 2]], links: &[Link]) -> Result<Vec<[usize; 2]>, 
 }
 
 impl PathStatement {
-    /// Tells it in words.
-    pub(super) fn tell(&self, f: &mut fmt::Formatter<'_>, joints: &Joints) -> fmt::Result {
+    /// Writes the statement as text.
+    pub(super) fn write_text(&self, f: &mut fmt::Formatter<'_>, joints: &Joints) -> fmt::Result {
         let meet = match joints.keep {
             keep if keep > 0.0 => format!("come as near as {keep:?}"),
             _ => "meet".into(),
         };
         let Self { pairs, lower, upper, proof, .. } = self;
-        let named = |[a, b]: &[String; 2]| format!("{} and {}", shown(a), shown(b));
-        let first: Vec<String> = pairs.iter().take(NAMED).map(named).collect();
-        let more = if pairs.len() > NAMED { ", ..." } else { "" };
+        let named = |[a, b]: &[String; 2]| format!("{} and {}", quoted_name(a), quoted_name(b));
+        let first: Vec<String> = pairs.iter().take(MAX_NAMED).map(named).collect();
+        let more = if pairs.len() > MAX_NAMED { ", ..." } else { "" };
         write!(f, "of {} pairs ({}{more}) ", pairs.len(), first.join(", "))?;
         let [from, to] = joints.path.ends();
         let meeting = proof.meeting.as_ref().and_then(|meeting| pairs.get(meeting.pair));
         let is_whole = *lower == to && proof.is_of_the_beginning();
         match meeting {
             None if is_whole => write!(f, "none {meet} on the whole path, up to the time {lower}"),
-            None if from == to => f.write_str("nothing is said"),
+            None if from == to => f.write_str("no claim is made"),
             None => write!(f, "none {meet} before the time {lower}"),
             Some(pair) => {
                 write!(f, "none {meet} before the time {lower}, and {} {meet} ", named(pair))?;
@@ -218,17 +226,17 @@ impl PathStatement {
     }
 }
 
-/// How a solid is taken apart: its facets by their numbers in the file, in the order in which a proof counts them, and the
-/// nodes of its tree in preorder, -1 for one that has two parts, else how many of the next facets it holds.
+/// Decomposition of a solid: the indices of its facets in the file, in the order of the proof, and the nodes
+/// of its tree in preorder. A node with two children is -1, a leaf is the number of facets that it contains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Parts {
+struct StoredTree {
     numbers: Vec<InputFacet>,
     tree: Vec<i64>,
 }
 
-impl Parts {
-    fn of(body: &AnyBody) -> Option<Self> {
+impl StoredTree {
+    fn of_body(body: &AnyBody) -> Option<Self> {
         let ByKind::Solid(solid) = body else { return None };
         let nodes = solid.nodes();
         let (mut tree, mut open) = (Vec::with_capacity(nodes.len()), vec![0]);

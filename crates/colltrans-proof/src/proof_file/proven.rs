@@ -1,24 +1,24 @@
-//! What a statement has to be able to do, and what a check of it has proven.
+//! The trait of statements that can be checked, and results of checks.
 
 use super::error::ProofError;
 use colltrans_removal::free::FreeDirections;
 
-/// A statement that can be checked against what it is about.
+/// Statement that can be checked against its query and bodies.
 pub trait Verify<'a, Setting> {
-    /// Checks all of it, without a search.
+    /// Checks the whole statement without a search.
     ///
     /// # Errors
-    /// The first thing that is not proven.
+    /// Returns the first claim that is not proven.
     fn verify(&self, about: &Setting) -> Result<Proven<'a>, ProofError>;
 }
 
-/// What a check has proven.
+/// Result of a check.
 pub enum Proven<'a> {
-    /// What the statement says.
+    /// The statement is proven.
     Statement,
-    /// Bounds of the time at which bodies first meet: infinity if they are not proven to meet.
+    /// Bounds of the time of the first contact. The upper one is infinite if no contact is proven.
     Time([f64; 2]),
-    /// Along which directions the moving body can leave.
+    /// Directions along which the moving body can leave.
     Directions(Box<FreeDirections<'a>>),
 }
 
@@ -33,7 +33,7 @@ impl std::fmt::Debug for Proven<'_> {
 }
 
 impl Proven<'_> {
-    /// Returns the bounds of the time at which bodies first meet, if the proof is about one.
+    /// Returns the bounds of the time of the first contact, and `None` for other proofs.
     pub const fn time(&self) -> Option<[f64; 2]> {
         if let Self::Time(bounds) = self { Some(*bounds) } else { None }
     }

@@ -1,6 +1,6 @@
-//! Proofs about one body among many.
+//! Proofs of scene queries.
 //!
-//! Obstacles have the numbers of their places in the file. A body that is at several places is written once.
+//! The index of an obstacle is its place in the file. A body at several places is stored once.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,32 +18,32 @@ use colltrans_scene::{Among, AmongProof, Obstacles};
 use colltrans_solid::cast::SolidOptions;
 use colltrans_solid::kinds::{AnyBody, AnyPlaced};
 
-/// One body among many, and how it is asked.
+/// One body in a scene, with the options of the query.
 #[derive(Debug)]
-pub(super) struct Scene<'a> {
+pub(super) struct SceneQuery<'a> {
     moving: AnyPlaced<'a>,
     obstacles: Obstacles,
     choices: Choices,
 }
 
-impl<'a> Scene<'a> {
-    /// The moving body is in the first place.
+impl<'a> SceneQuery<'a> {
+    /// Builds the scene. The moving body is in the first place.
     pub(super) fn new(
         bodies: &'a [StoredBody],
         places: &[Place],
         choices: Choices,
     ) -> Result<Self, ProofFileError> {
         let [moving, fixed @ ..] = places else { return Err(ProofFileError::Statement) };
-        let stored = |place: &Place| StoredBody::of(bodies, place.body);
+        let stored = |place: &Place| StoredBody::at_index(bodies, place.body);
         let placed = |place: &Place| Ok((stored(place)?.body.clone(), place.pose));
         let mut obstacles = Obstacles::new();
         obstacles.insert_all(fixed.iter().map(placed).collect::<Result<Vec<_>, ProofFileError>>()?);
         let scene = Self { moving: stored(moving)?.body.at(moving.pose), obstacles, choices };
-        scene.asked()?;
+        scene.checked_query()?;
         Ok(scene)
     }
 
-    fn asked(&self) -> Result<Among<'_>, QueryError> {
+    fn checked_query(&self) -> Result<Among<'_>, QueryError> {
         let Choices { keep, graze_tolerance, tolerance, start_overlap } = self.choices;
         if let Some(tolerance) = tolerance.filter(|by| !(0.0..f64::INFINITY).contains(by)) {
             return Err(QueryError::Tolerance { tolerance });
@@ -56,20 +56,20 @@ impl<'a> Scene<'a> {
     }
 }
 
-impl<'s, P> Verify<'_, Scene<'s>> for P
+impl<'s, P> Verify<'_, SceneQuery<'s>> for P
 where
     for<'p> AmongProof<'p>: From<&'p P>,
 {
-    fn verify(&self, scene: &Scene<'s>) -> Result<Proven<'static>, ProofError> {
-        scene.asked()?.verify(self)?;
+    fn verify(&self, scene: &SceneQuery<'s>) -> Result<Proven<'static>, ProofError> {
+        scene.checked_query()?.verify(self)?;
         Ok(Proven::Statement)
     }
 }
 
-/// Of questions about one body among many, asked once more of the bodies as they are read back.
+/// Proofs of scene queries, which are computed for the bodies that are rebuilt from the file.
 ///
-/// Obstacles have the numbers from 0 on in the order in which they came; those that are ignored are not in it. Of the
-/// choices, the gap, both tolerances and what an overlap means count.
+/// Obstacles have indices from 0 in the order of insertion. Ignored obstacles are not stored. Of the options,
+/// the minimum gap, both tolerances and the start overlap are used.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -89,38 +89,43 @@ where
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 impl ProofFile {
-    /// That no obstacle is nearer than the nearest one, by [`Among::certified_nearest`]; `None` if there are none.
+    /// Proves by [`Among::certified_nearest`] that no obstacle is nearer than the nearest one. Returns `None`
+    /// without obstacles.
     ///
     /// # Errors
-    /// As [`Among::nearest`], and a solid that its own facets do not make once more.
+    /// Returns the errors of [`Among::nearest`], and an error for a solid that cannot be rebuilt from its own
+    /// facets.
     pub fn of_nearest(among: &Among<'_>) -> Result<Option<Self>, ProofFileError> {
-        let stored = StoredScene::of(among)?;
-        let proven = stored.scene()?.asked()?.certified_nearest()?;
-        Ok(proven.map(|(_, proof)| stored.with(Statement::Nearest(proof))))
+        let stored = StoredScene::of_scene(among)?;
+        let proven = stored.scene_query()?.checked_query()?.certified_nearest()?;
+        Ok(proven.map(|(_, proof)| stored.with_statement(Statement::Nearest(proof))))
     }
 
-    /// Which obstacles are closer than a length, by [`Among::certified_within`].
+    /// Proves by [`Among::certified_within`] which obstacles are closer than a length.
     ///
     /// # Errors
-    /// As [`Among::within`], and a solid that its own facets do not make once more.
+    /// Returns the errors of [`Among::within`], and an error for a solid that cannot be rebuilt from its own
+    /// facets.
     pub fn of_within(among: &Among<'_>, length: f64) -> Result<Self, ProofFileError> {
-        let stored = StoredScene::of(among)?;
-        let (_, proof) = stored.scene()?.asked()?.certified_within(length)?;
-        Ok(stored.with(Statement::Within(proof)))
+        let stored = StoredScene::of_scene(among)?;
+        let (_, proof) = stored.scene_query()?.checked_query()?.certified_within(length)?;
+        Ok(stored.with_statement(Statement::Within(proof)))
     }
 
-    /// What stops the moving body, and that nothing does before, by [`Among::certified_clearance`].
+    /// Proves by [`Among::certified_clearance`] which obstacle blocks the moving body, and that none blocks
+    /// it earlier.
     ///
     /// # Errors
-    /// As [`Among::clearance`], and a solid that its own facets do not make once more.
+    /// Returns the errors of [`Among::clearance`], and an error for a solid that cannot be rebuilt from its
+    /// own facets.
     pub fn of_scene_clearance(among: &Among<'_>, direction: DVec3) -> Result<Self, ProofFileError> {
-        let stored = StoredScene::of(among)?;
-        let (_, proof) = stored.scene()?.asked()?.certified_clearance(direction)?;
-        Ok(stored.with(Statement::SceneClearance(proof)))
+        let stored = StoredScene::of_scene(among)?;
+        let (_, proof) = stored.scene_query()?.checked_query()?.certified_clearance(direction)?;
+        Ok(stored.with_statement(Statement::SceneClearance(proof)))
     }
 }
 
-/// A scene as it is read back from a file.
+/// Scene with the bodies that are rebuilt from its file.
 struct StoredScene {
     bodies: Vec<StoredBody>,
     places: Vec<Place>,
@@ -128,8 +133,8 @@ struct StoredScene {
 }
 
 impl StoredScene {
-    fn of(among: &Among<'_>) -> Result<Self, ProofFileError> {
-        let mut bodies = vec![StoredBody::again(among.moving(), 0)?];
+    fn of_scene(among: &Among<'_>) -> Result<Self, ProofFileError> {
+        let mut bodies = vec![StoredBody::rebuild(among.moving(), 0)?];
         let mut places = vec![Place { body: 0, pose: among.moving_pose() }];
         let mut known: HashMap<*const u8, usize> = HashMap::new();
         for (any, pose) in among.asked_in_order() {
@@ -139,7 +144,7 @@ impl StoredScene {
             };
             let body = *known.entry(address).or_insert(bodies.len());
             if body == bodies.len() {
-                bodies.push(StoredBody::again(any.at(pose), body)?);
+                bodies.push(StoredBody::rebuild(any.at(pose), body)?);
             }
             places.push(Place { body, pose });
         }
@@ -153,11 +158,11 @@ impl StoredScene {
         Ok(Self { bodies, places, choices })
     }
 
-    fn scene(&self) -> Result<Scene<'_>, ProofFileError> {
-        Scene::new(&self.bodies, &self.places, self.choices)
+    fn scene_query(&self) -> Result<SceneQuery<'_>, ProofFileError> {
+        SceneQuery::new(&self.bodies, &self.places, self.choices)
     }
 
-    fn with(self, statement: Statement) -> ProofFile {
+    fn with_statement(self, statement: Statement) -> ProofFile {
         let (placement, query) = (Placement::Poses(self.places), Query::Scene(self.choices));
         ProofFile { bodies: self.bodies, placement, query, statement }
     }

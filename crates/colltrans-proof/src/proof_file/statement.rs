@@ -1,4 +1,4 @@
-//! What is said of bodies, with its certificates, and how each is checked.
+//! Statements about two bodies with their certificates, and their checks.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -23,33 +23,33 @@ use colltrans_solid::pair::DistanceCertificate;
 use colltrans_solid::solve::contact::SolidContact;
 use colltrans_solid::solve::nearest::SolidNear;
 
-/// Along which directions a solid can leave another one.
+/// Statement about the free directions of a solid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FreeStatement {
-    /// Both bodies are shrunk by half of this length.
+    /// Tolerance: both bodies are offset inwards by half of this length.
     pub tolerance: f64,
-    /// Whether facets that cross now count.
+    /// Whether facets that cross at the start count as an overlap.
     pub start_overlap: StartOverlap,
-    /// With a tolerance: the vertices of the shrunk bodies, in the order of the file, pieces run through.
+    /// With a tolerance, the vertices of the offset bodies, in the order of the file, numbered across pieces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shrunk: Option<[Vec<DVec3>; 2]>,
-    /// Boxes inside the moving and inside the fixed body, where cells name some.
+    /// Boxes inside the moving and inside the fixed body to which cells refer.
     #[serde(default, skip_serializing_if = "are_none")]
     pub boxes: [Vec<InnerBox>; 2],
-    /// What is said of each cell of the sphere, as in [`FreeProof`]; pairs are facets by their numbers in the file,
-    /// of the moving and of the fixed body, those of pieces run through.
+    /// Claims about the cells of the sphere, as in [`FreeProof`]. Pairs are indices of facets in the file, of
+    /// the moving and of the fixed body, numbered across pieces.
     pub cells: Vec<CellProof>,
 }
 
-/// How far two convex bodies are apart: at least, or at most, or both.
+/// Statement about the distance of two convex bodies: a lower bound, an upper bound, or both.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DistanceStatement {
-    /// Why they are not nearer.
+    /// Proof of the lower bound.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gap: Option<PlaneGap>,
-    /// Why they are not farther.
+    /// Proof of the upper bound.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub near: Option<NearPoints>,
 }
@@ -70,68 +70,69 @@ impl From<&Within> for DistanceStatement {
     }
 }
 
-/// The ends of the translations at which two convex bodies meet; one of them may be missing.
+/// Statement about the first and the last contact of two convex bodies. One of them may be missing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contacts {
-    /// Where the bodies slide along each other: that they hardly overlap, seen along the direction.
+    /// For bodies that slide along each other, the bound on the overlap of their shadows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slide: Option<Slide>,
-    /// Of the first contact, along the direction.
+    /// Certificate of the first contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first: Option<Certificate>,
-    /// Of the last one: the first of the [reversed](Cast::reversed) cast.
+    /// Certificate of the last contact, which is the first one of the [reversed](Cast::reversed) cast.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<Certificate>,
 }
 
-/// How much of two convex bodies is in each other's way.
+/// Lateral overlap of two convex bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Slide {
-    /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed one:
+    /// Unit normal in the world frame, orthogonal to the direction, from the moving body to the fixed one:
     /// [`Grazing::separating_direction`].
     pub normal: DVec3,
-    /// At least `max_P n.p - min_Q n.q`, a length, wherever on its way the moving body is near the
-    /// fixed one, and the gap that they are to keep; negative if they miss each other.
+    /// Upper bound of `max_P n.p - min_Q n.q`, a length, over all positions of the moving body near the fixed
+    /// one, increased by the minimum gap. It is negative if the bodies miss each other.
     pub overlap: f64,
 }
 
-/// What is said of two solids.
+/// Statement about the clearance of two solids.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolidStatement {
-    /// What an overlap at the start means.
+    /// Treatment of an overlap at the start.
     pub start_overlap: StartOverlap,
-    /// The proof for the bodies shrunk by half of its tolerance.
+    /// Proof for the bodies, each offset by half of the tolerance.
     pub certificate: SolidCertificate,
-    /// What stops the moving body.
+    /// Facets that block the moving body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop: Option<Stop>,
-    /// A plane between the shrunk bodies.
+    /// Plane that separates the offset bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub separation: Option<Separation>,
 }
 
-/// Two facets, and where they meet as they are.
+/// Two facets, and their contact in nominal position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stop {
-    /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
+    /// Indices of the facets in the file, of the moving and of the fixed body, numbered across pieces.
     pub facets: [InputFacet; 2],
-    /// Where they meet in their true place: [`SolidContact::translation`](colltrans_solid::SolidContact::translation).
+    /// Contact in nominal position:
+    /// [`SolidContact::translation`](colltrans_solid::SolidContact::translation).
     pub translation: Bounded,
 }
 
 impl Stop {
-    const fn refused(&self) -> CertificateError {
+    const fn other_facets_error(&self) -> CertificateError {
         let [moving, fixed] = self.facets;
         CertificateError::OtherFacets { moving, fixed }
     }
 }
 
 impl Slide {
-    fn of(grazing: &Grazing, cast: &Cast<'_>) -> Self {
+    fn of_grazing(grazing: &Grazing, cast: &Cast<'_>) -> Self {
         let normal = grazing.separating_direction;
         Self { normal, overlap: proven_overlap(normal, cast) }
     }
@@ -144,29 +145,32 @@ impl Slide {
 }
 
 impl Contacts {
-    /// The contacts at the ends, those that there are.
-    pub(super) fn between(first: Option<&Contact>, last: Option<&Contact>) -> Self {
+    /// Builds the statement from the given contacts.
+    pub(super) fn from_contacts(first: Option<&Contact>, last: Option<&Contact>) -> Self {
         let [first, last] = [first, last].map(|end| end.map(|contact| contact.certificate));
         Self { slide: None, first, last }
     }
 
-    /// Of bodies that slide along each other.
-    pub(super) fn sliding(cast: &Cast<'_>, first: &Grazing, last: Option<&Grazing>) -> Self {
-        let ends = Self::between(Some(&first.contact), last.map(|last| &last.contact));
-        Self { slide: Some(Slide::of(first, cast)), ..ends }
+    /// Builds the statement of bodies that slide along each other.
+    pub(super) fn from_grazing(cast: &Cast<'_>, first: &Grazing, last: Option<&Grazing>) -> Self {
+        let ends = Self::from_contacts(Some(&first.contact), last.map(|last| &last.contact));
+        Self { slide: Some(Slide::of_grazing(first, cast)), ..ends }
     }
 
-    /// The translation at which the bodies first meet, and the one at which they last do: at least,
-    /// and at most.
+    /// Returns bounds of the translation of the first contact, and of the last one.
     pub fn bounds(&self) -> [Option<[f64; 2]>; 2] {
         let first = self.first.map(|first| [first.lower, first.upper]);
-        // Not -0.
+        // Avoid -0.
         [first, self.last.map(|last| [0.0 - last.upper, 0.0 - last.lower])]
     }
 }
 
-/// The choices that count in a proof.
-pub(super) fn options(start_overlap: StartOverlap, tolerance: f64, keep: f64) -> SolidOptions {
+/// Returns the options on which a proof depends.
+pub(super) fn solid_options(
+    start_overlap: StartOverlap,
+    tolerance: f64,
+    keep: f64,
+) -> SolidOptions {
     let options = SolidOptions::default().with_start_overlap(start_overlap);
     options.with_tolerance(tolerance).with_keep(keep)
 }
@@ -203,41 +207,47 @@ impl Verify<'_, Pair<'_>> for Depth {
     }
 }
 
-/// The triangles are named by the facets of the file.
+/// The certificate of a file identifies triangles by the facets of the file.
 impl Verify<'_, Pair<'_, Solid>> for DistanceCertificate {
     fn verify(&self, pair: &Pair<'_, Solid>) -> Result<Proven<'static>, ProofError> {
         let place = |k: usize, facet: u32| {
             let facets = [pair.moving(), pair.fixed()][k].facet_indices();
             facets.iter().position(|known| known.0 == facet).map(|at| at as u32)
         };
-        let near = named(self.near, place).ok_or(CertificateError::Start)?;
+        let near = rename_triangles(self.near, place).ok_or(CertificateError::Start)?;
         pair.verify(&Self { near, ..self.clone() })?;
         Ok(Proven::Statement)
     }
 }
 
-/// Returns a proof whose triangles are named by the facets of the file.
-pub(super) fn in_file(of: DistanceCertificate, bodies: [&Solid; 2]) -> DistanceCertificate {
+/// Returns a proof that identifies triangles by the facets of the file.
+pub(super) fn with_file_facets(
+    of: DistanceCertificate,
+    bodies: [&Solid; 2],
+) -> DistanceCertificate {
     let number = |k: usize, at: u32| Some(bodies[k].facet_indices().get(at as usize)?.0);
-    let near = named(of.near, number).unwrap_or(of.near);
+    let near = rename_triangles(of.near, number).unwrap_or(of.near);
     DistanceCertificate { near, ..of }
 }
 
-/// Returns the same with other names of triangles; `None` if one has none.
-fn named(near: SolidNear, name: impl Fn(usize, u32) -> Option<u32>) -> Option<SolidNear> {
+/// Replaces the indices of triangles. Returns `None` if an index has no replacement.
+fn rename_triangles(
+    near: SolidNear,
+    name: impl Fn(usize, u32) -> Option<u32>,
+) -> Option<SolidNear> {
     let SolidNear::Points { triangles: [p, q], weights, distance } = near else {
         return Some(near);
     };
     Some(SolidNear::Points { triangles: [name(0, p)?, name(1, q)?], weights, distance })
 }
 
-/// Two solids, and what is asked along a direction.
+/// Two solids, and the query along a direction.
 pub(super) type SolidsAlong<'a> = ([Placed<'a, Solid>; 2], Along);
 
 impl Verify<'_, SolidsAlong<'_>> for SolidStatement {
     fn verify(&self, about: &SolidsAlong<'_>) -> Result<Proven<'static>, ProofError> {
         let ([moving, fixed], Along { direction, keep }) = *about;
-        let options = options(self.start_overlap, self.certificate.tolerance, keep);
+        let options = solid_options(self.start_overlap, self.certificate.tolerance, keep);
         self.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)?;
         Ok(Proven::Statement)
     }
@@ -245,31 +255,31 @@ impl Verify<'_, SolidsAlong<'_>> for SolidStatement {
 
 impl<'a> Verify<'a, [Placed<'a, Solid>; 2]> for FreeStatement {
     fn verify(&self, about: &[Placed<'a, Solid>; 2]) -> Result<Proven<'a>, ProofError> {
-        Ok(Proven::Directions(Box::new(self.checked(*about)?)))
+        Ok(Proven::Directions(Box::new(self.verified_directions(*about)?)))
     }
 }
 
 impl FreeStatement {
-    /// Of an answer about these bodies, which are those of a file.
+    /// Builds the statement of an answer about bodies that are read from a file.
     pub(super) fn of(
         free: &FreeDirections<'_>,
         made: [&Solid; 2],
     ) -> Result<Self, CertificateError> {
         let FreeProof { tolerance, start_overlap, boxes, cells } = free.proof();
         let number = |k: usize, triangle: u32| made[k].facet_indices()[triangle as usize].0;
-        let in_file = |pair: [u32; 2]| Some([number(0, pair[0]), number(1, pair[1])]);
-        let cells = renamed(&cells, in_file).ok_or(CertificateError::Start)?;
-        let shrunk = shrunk(made, tolerance)?;
+        let to_file = |pair: [u32; 2]| Some([number(0, pair[0]), number(1, pair[1])]);
+        let cells = rename_facets(&cells, to_file).ok_or(CertificateError::Start)?;
+        let shrunk = offset_vertices(made, tolerance)?;
         Ok(Self { tolerance, start_overlap, shrunk, boxes, cells })
     }
 
-    /// What it says of two bodies, if it holds.
-    fn checked<'a>(
+    /// Checks the statement against two bodies, and returns their free directions.
+    fn verified_directions<'a>(
         &self,
         [moving, fixed]: [Placed<'a, Solid>; 2],
     ) -> Result<FreeDirections<'a>, CertificateError> {
         let bodies = [moving.body, fixed.body];
-        if self.shrunk != shrunk(bodies, self.tolerance)? {
+        if self.shrunk != offset_vertices(bodies, self.tolerance)? {
             return Err(CertificateError::Start);
         }
         let places = bodies.map(|body| {
@@ -281,7 +291,7 @@ impl FreeStatement {
         });
         let place = |k: usize, facet: u32| *places[k].get(facet as usize)?;
         let to_place = |pair: [u32; 2]| Some([place(0, pair[0])?, place(1, pair[1])?]);
-        let cells = renamed(&self.cells, to_place).ok_or(CertificateError::Start)?;
+        let cells = rename_facets(&self.cells, to_place).ok_or(CertificateError::Start)?;
         let Self { tolerance, start_overlap, .. } = *self;
         let proof = FreeProof { tolerance, start_overlap, boxes: self.boxes.clone(), cells };
         FreeDirections::from_proof(&moving, &fixed, &proof).map_err(|error| match error {
@@ -292,13 +302,13 @@ impl FreeStatement {
     }
 }
 
-/// Whether there are no boxes.
+/// Checks whether both lists of boxes are empty.
 fn are_none(boxes: &[Vec<InnerBox>; 2]) -> bool {
     boxes.iter().all(Vec::is_empty)
 }
 
-/// Cells with other names of facets; `None` if one has none.
-fn renamed(
+/// Replaces the indices of facets in cells. Returns `None` if an index has no replacement.
+fn rename_facets(
     cells: &[CellProof],
     name: impl Fn([u32; 2]) -> Option<[u32; 2]>,
 ) -> Option<Vec<CellProof>> {
@@ -317,15 +327,16 @@ fn renamed(
     cells.iter().map(of).collect()
 }
 
-/// The vertices of bodies shrunk by half a tolerance, if there is one.
-fn shrunk(
+/// Returns the vertices of the bodies, each offset by half the tolerance. Returns `None` for a tolerance of
+/// 0.
+fn offset_vertices(
     bodies: [&Solid; 2],
     tolerance: f64,
 ) -> Result<Option<[Vec<DVec3>; 2]>, CertificateError> {
     if tolerance == 0.0 {
         return Ok(None);
     }
-    // The vertices of what is read from a file have the numbers of the file.
+    // Vertices that are read from a file have the indices of the file.
     let vertices = |body: &Solid| body.shrunk(tolerance / 2.0).map(|of| of.0.vertices().to_vec());
     match bodies.map(vertices) {
         [Ok(moving), Ok(fixed)] => Ok(Some([moving, fixed])),
@@ -342,7 +353,7 @@ impl SolidStatement {
                     facets,
                     translation: claimed_translation(cast, &certificate, &contact),
                 };
-                (facets(cast, contact.triangles).map(stop), None)
+                (input_facets(cast, contact.triangles).map(stop), None)
             }
             Clearance::Free(free) => (None, free.separation),
             Clearance::Overlapping(_) => (None, None),
@@ -359,11 +370,11 @@ impl SolidStatement {
         let (stop, triangles) = match (self.stop, self.certificate.stop) {
             (None, None) => return Ok(()),
             (Some(stop), Some(proof)) => (stop, proof.triangles),
-            (Some(stop), None) => return Err(stop.refused()),
+            (Some(stop), None) => return Err(stop.other_facets_error()),
             (None, Some(proof)) => return Err(CertificateError::triangles(proof.triangles)),
         };
-        if facets(cast, triangles) != Some(stop.facets) {
-            return Err(stop.refused());
+        if input_facets(cast, triangles) != Some(stop.facets) {
+            return Err(stop.other_facets_error());
         }
         let refused = CertificateError::triangles(triangles);
         let proven = proven_translation(cast, &self.certificate, triangles).ok_or(refused)?;
@@ -381,7 +392,8 @@ impl SolidStatement {
     }
 }
 
-/// Returns where two triangles first meet, as a check finds it, if they stop the moving body.
+/// Returns the first contact of two triangles as a check computes it, and `None` if they do not block the
+/// moving body.
 fn proven_translation(
     cast: &Cast<'_, Solid>,
     certificate: &SolidCertificate,
@@ -394,7 +406,7 @@ fn proven_translation(
 
 /// Returns the translation of a contact, with the bounds that a check of its two triangles proves.
 ///
-/// The bounds of an answer may be nearer to each other, because it may know them from the hulls of the bodies.
+/// The bounds of the answer may be tighter, because they may come from the hulls of the bodies.
 fn claimed_translation(
     cast: &Cast<'_, Solid>,
     certificate: &SolidCertificate,
@@ -409,8 +421,8 @@ fn claimed_translation(
     }
 }
 
-/// The facets of the input that two triangles are parts of.
-fn facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[InputFacet; 2]> {
+/// Returns the facets of the input that contain two triangles.
+fn input_facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[InputFacet; 2]> {
     let of = |body: &Solid, at: u32| body.facet_indices().get(at as usize).copied();
     Some([of(cast.moving(), s)?, of(cast.fixed(), t)?])
 }

@@ -1,4 +1,4 @@
-//! Answers about bodies along a direction, as front ends write them.
+//! Records of answers about two bodies and a direction.
 
 use colltrans_convex::answer::{
     Bounded, Clearance, Contact, ContactRange, Grazing, Outcome, OverlapAhead, Separated, Solver,
@@ -9,180 +9,185 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 
 use super::{
-    Ending, Features, FeaturesRecord, StartOverlapRecord, coordinates, kept, open_ones, record,
+    Ending, Features, FeaturesRecord, StartOverlapRecord, open_bodies, positive_gap, record,
+    without_negative_zeros,
 };
 
 record! {
-    /// Where convex bodies meet along a direction.
+    /// First and last contact of convex bodies along a direction.
     #[non_exhaustive]
     pub struct CastRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// Of one query among several directions: the direction as it was read.
+        /// The direction as it was read, for one of several directions.
         pub direction: Option<[f64; 3]>,
         ..
-        /// Where they meet, or what separates them.
+        /// Contact, or the separation of the bodies.
         pub contact: ContactRecord,
     }
 }
 
 record! {
-    /// How far a convex body can move along a direction before another one blocks it.
+    /// Clearance of a convex body along a direction.
     #[non_exhaustive]
     pub struct ClearanceRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// Of one query among several directions: the direction as it was read.
+        /// The direction as it was read, for one of several directions.
         pub direction: Option<[f64; 3]>,
-        /// Blocked: how far it is safe to move.
+        /// Safe travel of a blocked body.
         pub distance: Option<f64>,
-        /// Overlapping: how far to go back to be free for certain.
+        /// For an overlap, travel backwards that certainly separates the bodies.
         pub back: Option<f64>,
-        /// Overlapping: how far to go on to be free for certain.
+        /// For an overlap, travel forwards that certainly separates the bodies.
         pub on: Option<f64>,
         ..
-        /// Where they meet, or what separates them.
+        /// Contact, or the separation of the bodies.
         pub contact: ContactRecord,
     }
 }
 
 record! {
-    /// Where convex bodies meet along a direction, or what separates them.
+    /// Contact of convex bodies along a direction, or their separation.
     #[non_exhaustive]
     pub struct ContactRecord {
         /// First contact.
         pub translation: Option<f64>,
-        /// Proven.
+        /// Proven bounds of `translation`.
         pub translation_bounds: Option<[f64; 2]>,
         /// Last contact.
         pub exit: Option<f64>,
-        /// Proven: beyond the second they never meet.
+        /// Proven bounds of `exit`. Beyond the upper one the bodies never meet.
         pub exit_bounds: Option<[f64; 2]>,
-        /// Unit normal from the moving to the fixed body: of the contact plane, or of the separating one.
+        /// Unit normal of the contact plane or the separating plane, from the moving to the fixed body.
         pub normal: Option<[f64; 3]>,
-        /// The contact point on the fixed body, in the world.
+        /// Contact point on the fixed body, in the world frame.
         pub point: Option<[f64; 3]>,
-        /// What rounding alone can make of the bounds' difference.
+        /// The part of the bounds' difference that rounding explains.
         pub rounding: Option<f64>,
-        /// The gap that is kept, a length: the bodies count as meeting where they are as near as that.
+        /// Minimum gap, a length. The bodies meet if their distance falls to it.
         pub keep: Option<f64>,
-        /// What touches.
+        /// Features in contact.
         pub features: Option<FeaturesRecord>,
-        /// Separated: the gap between the shadows along the normal.
+        /// Gap between the shadows of separated bodies, along the normal.
         pub margin: Option<f64>,
-        /// Grazing, slides: by how much the shadows overlap; negative where they may not.
+        /// Overlap of the shadows of bodies that graze or slide; negative if they may not overlap.
         pub overlap: Option<f64>,
-        /// Grazing, slides: the unit vector along which they do, across the direction, from the moving
-        /// body's shadow to the fixed one's.
+        /// Unit vector of this overlap, perpendicular to the direction, from the moving body's shadow to that
+        /// of the fixed one.
         pub sideways: Option<[f64; 3]>,
-        /// Which solver found it.
+        /// Solver that found the answer.
         pub solver: Option<Solver>,
-        /// How much work it was.
+        /// Amounts of work.
         pub steps: Option<Steps>,
     }
 }
 
 record! {
-    /// How far a solid can move along a direction before another one blocks it.
+    /// Clearance of a solid along a direction.
     #[non_exhaustive]
     pub struct SolidClearanceRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// Of one query among several directions: the direction as it was read.
+        /// The direction as it was read, for one of several directions.
         pub direction: Option<[f64; 3]>,
-        /// Blocked: how far it is safe to move.
+        /// Safe travel of a blocked body.
         pub distance: Option<f64>,
-        /// Where the facets that stop them meet in their true place.
+        /// Contact of the blocking facets in nominal position.
         pub translation: Option<f64>,
-        /// Proven.
+        /// Proven bounds of `translation`.
         pub translation_bounds: Option<[f64; 2]>,
-        /// How far they go, shrunk by half the tolerance each.
+        /// Travel of the bodies offset by half the tolerance each.
         pub shrunk_distance: Option<f64>,
-        /// Proven.
+        /// Proven bounds of `shrunk_distance`.
         pub shrunk_distance_bounds: Option<[f64; 2]>,
         /// Last contact.
         pub exit: Option<f64>,
-        /// Proven: beyond the second they never meet.
+        /// Proven bounds of `exit`. Beyond the upper one the bodies never meet.
         pub exit_bounds: Option<[f64; 2]>,
-        /// The name of what touches, or overlaps deepest, of a moving body that has several.
+        /// Name of the part in contact, or of the part that overlaps most, if the moving body has several.
         pub moving: Option<String>,
-        /// The name of what touches, or overlaps deepest, of a fixed body that has several.
+        /// Name of the part in contact, or of the part that overlaps most, if the fixed body has several.
         pub fixed: Option<String>,
         /// Unit normal of the contact plane, from the moving to the fixed body.
         pub normal: Option<[f64; 3]>,
-        /// The contact point on the fixed body, in the world.
+        /// Contact point on the fixed body, in the world frame.
         pub point: Option<[f64; 3]>,
-        /// The one that was used, a length.
+        /// Tolerance in use, a length.
         pub tolerance: Option<f64>,
-        /// The gap that is kept, a length: the bodies count as meeting where they are as near as that.
+        /// Minimum gap, a length. The bodies meet if their distance falls to it.
         pub keep: Option<f64>,
-        /// What overlaps now.
+        /// Overlaps at the start.
         pub start_overlaps: Vec<StartOverlapRecord>,
-        /// Which are open, at least in part.
+        /// Bodies that are open, at least in part.
         pub surfaces: Vec<&'static str>,
-        /// What touches.
+        /// Features in contact.
         pub features: Option<FeaturesRecord>,
     }
 }
 
 impl CastRecord {
-    /// Of [`Cast::first_contact`].
+    /// Converts an answer of [`Cast::first_contact`].
     pub fn of_outcome(outcome: &Outcome, cast: &Cast) -> Self {
         match outcome {
-            Outcome::Contact(first) => Self::at(Ending::Contact, ContactRecord::of(first, cast)),
+            Outcome::Contact(first) => {
+                Self::with_outcome(Ending::Contact, ContactRecord::of_contact(first, cast))
+            }
             Outcome::Grazing(first) => {
-                Self::at(Ending::Grazing, ContactRecord::grazing(first, cast))
+                Self::with_outcome(Ending::Grazing, ContactRecord::of_grazing(first, cast))
             }
             Outcome::Separated(separated) => {
-                Self::at(Ending::Separated, ContactRecord::separated(separated, cast))
+                Self::with_outcome(Ending::Separated, ContactRecord::of_separated(separated, cast))
             }
         }
     }
 
-    /// Of [`Cast::contact_range`].
+    /// Converts an answer of [`Cast::contact_range`].
     pub fn of_range(range: &ContactRange, cast: &Cast) -> Self {
         match range {
-            ContactRange::Contact { first, last } => {
-                Self::at(Ending::Contact, ContactRecord::of(first, cast).with_exit(last.exit()))
-            }
+            ContactRange::Contact { first, last } => Self::with_outcome(
+                Ending::Contact,
+                ContactRecord::of_contact(first, cast).with_exit(last.exit()),
+            ),
             ContactRange::Grazing { first, last } => {
-                let contact = ContactRecord::grazing(first, cast);
-                Self::at(Ending::Grazing, contact.with_exit(last.contact.exit()))
+                let contact = ContactRecord::of_grazing(first, cast);
+                Self::with_outcome(Ending::Grazing, contact.with_exit(last.contact.exit()))
             }
             ContactRange::Separated(separated) => {
-                Self::at(Ending::Separated, ContactRecord::separated(separated, cast))
+                Self::with_outcome(Ending::Separated, ContactRecord::of_separated(separated, cast))
             }
         }
     }
 
-    fn at(outcome: Ending, contact: ContactRecord) -> Self {
+    fn with_outcome(outcome: Ending, contact: ContactRecord) -> Self {
         Self { outcome, direction: None, contact }
     }
 }
 
 impl ClearanceRecord {
-    /// Of [`Cast::clearance`] between convex bodies.
+    /// Converts an answer of [`Cast::clearance`] for convex bodies.
     pub fn of(clearance: &Clearance, cast: &Cast) -> Self {
         let at = |outcome, contact| Self { outcome, contact, ..Self::default() };
         match clearance {
             Clearance::Blocked { distance, contact } => {
-                let record = at(Ending::Blocked, ContactRecord::of(contact, cast));
+                let record = at(Ending::Blocked, ContactRecord::of_contact(contact, cast));
                 Self { distance: Some(*distance), ..record }
             }
             Clearance::Free(WhyFree::Slides(grazing)) => {
-                at(Ending::Slides, ContactRecord::grazing(grazing, cast))
+                at(Ending::Slides, ContactRecord::of_grazing(grazing, cast))
             }
-            // The last contact is the first one of the way back.
+            // The last contact is the first one of the reversed cast.
             Clearance::Free(WhyFree::Behind(last)) => {
-                let contact = ContactRecord::of(last, &cast.reversed()).with_exit(last.exit());
+                let contact =
+                    ContactRecord::of_contact(last, &cast.reversed()).with_exit(last.exit());
                 let (translation, translation_bounds) = (None, None);
                 at(Ending::Behind, ContactRecord { translation, translation_bounds, ..contact })
             }
             Clearance::Free(WhyFree::Separated(separated)) => {
-                at(Ending::Separated, ContactRecord::separated(separated, cast))
+                at(Ending::Separated, ContactRecord::of_separated(separated, cast))
             }
             Clearance::Overlapping(OverlapAhead { first, last }) => {
-                let contact = ContactRecord::of(first, cast).with_exit(last.exit());
+                let contact = ContactRecord::of_contact(first, cast).with_exit(last.exit());
                 let [back, on] = [first, last].map(|contact| Some(-contact.certificate.lower));
                 Self { back, on, ..at(Ending::Overlapping, contact) }
             }
@@ -191,36 +196,36 @@ impl ClearanceRecord {
 }
 
 impl ContactRecord {
-    fn of(contact: &Contact, cast: &Cast) -> Self {
+    fn of_contact(contact: &Contact, cast: &Cast) -> Self {
         let features = contact.features(cast);
         let translation = contact.bounded();
         Self {
             translation: Some(translation.value),
             translation_bounds: Some(translation.bounds()),
-            normal: Some(coordinates(contact.normal)),
-            point: Some(coordinates(contact.points(cast).on_fixed)),
+            normal: Some(without_negative_zeros(contact.normal)),
+            point: Some(without_negative_zeros(contact.points(cast).on_fixed)),
             rounding: Some(contact.certificate.rounding),
-            keep: kept(cast.options().keep),
-            features: Some(FeaturesRecord::of(features, [cast.moving(), cast.fixed()])),
+            keep: positive_gap(cast.options().keep),
+            features: Some(FeaturesRecord::of_bodies(features, [cast.moving(), cast.fixed()])),
             solver: Some(contact.solver),
             steps: Some(contact.steps),
             ..Self::default()
         }
     }
 
-    fn grazing(grazing: &Grazing, cast: &Cast) -> Self {
+    fn of_grazing(grazing: &Grazing, cast: &Cast) -> Self {
         Self {
             overlap: Some(grazing.overlap),
-            sideways: Some(coordinates(grazing.separating_direction)),
-            ..Self::of(&grazing.contact, cast)
+            sideways: Some(without_negative_zeros(grazing.separating_direction)),
+            ..Self::of_contact(&grazing.contact, cast)
         }
     }
 
-    fn separated(separated: &Separated, cast: &Cast) -> Self {
+    fn of_separated(separated: &Separated, cast: &Cast) -> Self {
         let Separated { certificate, solver, steps, .. } = separated;
         Self {
-            normal: Some(coordinates(certificate.normal)),
-            keep: kept(cast.options().keep),
+            normal: Some(without_negative_zeros(certificate.normal)),
+            keep: positive_gap(cast.options().keep),
             margin: Some(certificate.margin),
             solver: Some(*solver),
             steps: Some(*steps),
@@ -234,21 +239,21 @@ impl ContactRecord {
 }
 
 impl SolidClearanceRecord {
-    /// Of [`Cast::clearance`] between solids; `exit` as `SolidCast::exit` says.
+    /// Converts an answer of [`Cast::clearance`] for solids. `exit` is the result of `SolidCast::exit`.
     pub fn of(clearance: &Clearance<Solid>, exit: Option<Bounded>, cast: &Cast<'_, Solid>) -> Self {
         let record = Self {
             exit: exit.map(|exit| exit.value),
             exit_bounds: exit.map(|exit| exit.bounds()),
             tolerance: Some(cast.tolerance()),
-            keep: kept(cast.options().keep),
-            surfaces: open_ones(cast.moving(), cast.fixed()),
+            keep: positive_gap(cast.options().keep),
+            surfaces: open_bodies(cast.moving(), cast.fixed()),
             ..Self::default()
         };
         match clearance {
             Clearance::Free(_) => Self { outcome: Ending::Free, ..record },
             Clearance::Overlapping(overlap) => Self {
                 outcome: Ending::Overlapping,
-                start_overlaps: StartOverlapRecord::parted_by(overlap.least_tolerance),
+                start_overlaps: StartOverlapRecord::with_least_tolerance(overlap.least_tolerance),
                 ..record
             },
             Clearance::Blocked { distance, contact } => Self {
@@ -258,9 +263,9 @@ impl SolidClearanceRecord {
                 translation_bounds: Some(contact.translation.bounds()),
                 shrunk_distance: Some(contact.shrunk_distance.value),
                 shrunk_distance_bounds: Some(contact.shrunk_distance.bounds()),
-                normal: Some(coordinates(contact.normal)),
-                point: Some(coordinates(contact.point_on_fixed)),
-                features: Some(FeaturesRecord::of(
+                normal: Some(without_negative_zeros(contact.normal)),
+                point: Some(without_negative_zeros(contact.point_on_fixed)),
+                features: Some(FeaturesRecord::of_bodies(
                     Features { moving: contact.moving_feature, fixed: contact.fixed_feature },
                     [cast.moving(), cast.fixed()],
                 )),

@@ -1,51 +1,57 @@
-//! A first contact on a path of joints, as front ends write it.
+//! Records of first contacts on paths of joints.
 
 use std::collections::{BTreeMap, HashSet};
 
-use super::{Ending, TimeRecord, coordinates, record};
+use super::{Ending, TimeRecord, record, without_negative_zeros};
 use colltrans_motion::path::{PathCast, PathContact, PathOutcome, Place};
 
 record! {
-    /// Which two bodies first meet on a path, and when. Fields that do not apply are left out.
+    /// First contact of two bodies on a path. Fields that do not apply are omitted.
     #[non_exhaustive]
     pub struct PathRecord {
-        /// `contact`; `grazing`: nearer than rounding can tell; `free` throughout; `overlapping` where the path begins;
-        /// `undecided`: the search took its maximum number of steps, and `time.lower` is up to when none meet.
+        /// - `contact`: two bodies meet.
+        /// - `grazing`: two bodies come closer than the rounding error.
+        /// - `free`: no bodies meet on the whole path.
+        /// - `overlapping`: bodies overlap at the start of the path.
+        /// - `undecided`: the search took its maximum number of steps. No bodies meet before `time.lower`.
         pub outcome: Ending,
-        /// Of a contact, in the times of the path; of a grazing one the upper bound is missing.
+        /// Bounds of the contact in the times of the path. The upper bound is absent for a grazing contact.
         pub time: Option<TimeRecord>,
-        /// Where that is between two rows.
+        /// Position of the contact between two rows of the path.
         pub place: Option<Place>,
-        /// The names of the two bodies.
+        /// Names of the two bodies.
         pub pair: Option<[String; 2]>,
-        /// Where the first one is nearest to the second then, in the world.
+        /// Point of the first body that is nearest to the second one at that time, in the world frame.
         pub point: Option<[f64; 3]>,
-        /// Unit vector in the world, from the first to the second.
+        /// Unit normal in the world frame, from the first to the second body.
         pub normal: Option<[f64; 3]>,
-        /// The gap that is kept, a length: two bodies count as meeting where they are as near as that.
+        /// Minimum gap, a length. Two bodies meet if their distance falls to it.
         pub keep: Option<f64>,
-        /// How many pairs of bodies were asked about.
+        /// Number of pairs of bodies in the query.
         pub pairs: usize,
-        /// The names of those that were not, though a joint may move one against the other: nothing is said of them.
+        /// Names of the pairs that the query omits although a joint may move one body against the other. No
+        /// claim is made about them.
         pub left_out: Vec<[String; 2]>,
-        /// Where the path begins with overlaps: the names of all pairs that overlap there, or are as near as `keep`.
+        /// For a path that starts with overlaps, the names of all pairs that overlap there or are closer than
+        /// `keep`.
         pub overlaps: Vec<[String; 2]>,
-        /// Links for whose meshes their convex hulls stand: a contact of one is that of its hull.
+        /// Links whose meshes are replaced by their convex hulls. A contact of such a link is a contact of
+        /// its hull.
         pub hulls: Vec<String>,
-        /// Names of bodies whose meshes are convex only to within the tolerance, each with the largest depth of its
-        /// surface below the hull that stands for it, a length.
+        /// Names of bodies whose meshes are convex only within the tolerance, each with the largest depth of
+        /// its surface below its hull, a length.
         pub dents: BTreeMap<String, f64>,
-        /// For people: in what the answer is about less than the input.
+        /// Notes for users on differences between the answer and the input.
         pub notes: Vec<String>,
-        /// How often two bodies were looked at.
+        /// Number of distance samples of two bodies.
         pub looks: u32,
-        /// Planes in the proof.
+        /// Number of planes of the proof.
         pub planes: usize,
     }
 }
 
 impl PathRecord {
-    /// Of an answer; `cast` is the one that was asked, `names` are those of its bodies.
+    /// Converts an answer. `cast` must be the cast of the query, `names` are the names of its bodies.
     pub fn of(outcome: &PathOutcome, cast: &PathCast<'_>, names: &[String]) -> Self {
         let ending = match outcome {
             PathOutcome::Contact(_) => Ending::Contact,
@@ -57,9 +63,9 @@ impl PathRecord {
         let (looks, planes) = (outcome.steps().looks, outcome.proof().planes());
         let pairs = cast.pairs().len();
         let keep = Some(cast.keep()).filter(|gap| *gap > 0.0);
-        let left_out = left_out(cast, names);
+        let left_out = omitted_pairs(cast, names);
         let overlaps = match outcome {
-            PathOutcome::Overlapping(of) => overlaps(cast, of.pair, names),
+            PathOutcome::Overlapping(of) => start_overlap_names(cast, of.pair, names),
             _ => Vec::new(),
         };
         let record = Self {
@@ -84,8 +90,8 @@ impl PathRecord {
                     time: Some(TimeRecord { lower: *lower, upper }),
                     place: Some(*place),
                     pair: Some(pair.map(name)),
-                    point: points.map(|points| coordinates(points[0])),
-                    normal: normal.map(coordinates),
+                    point: points.map(|points| without_negative_zeros(points[0])),
+                    normal: normal.map(without_negative_zeros),
                     ..record
                 }
             }
@@ -94,26 +100,31 @@ impl PathRecord {
     }
 }
 
-/// The names of all pairs that overlap where the path begins, each once; at least those of one that is known.
-fn overlaps(cast: &PathCast<'_>, known: [usize; 2], names: &[String]) -> Vec<[String; 2]> {
+/// Returns the names of all pairs that overlap at the start of the path, without duplicates. If this fails,
+/// returns the pair `known`.
+fn start_overlap_names(
+    cast: &PathCast<'_>,
+    known: [usize; 2],
+    names: &[String],
+) -> Vec<[String; 2]> {
     let found = cast.start_overlaps().unwrap_or_else(|_| vec![known]);
-    let mut told: Vec<[String; 2]> = Vec::new();
+    let mut listed: Vec<[String; 2]> = Vec::new();
     for pair in found {
         let pair = pair.map(|body| names.get(body).cloned().unwrap_or_default());
-        if !told.contains(&pair) {
-            told.push(pair);
+        if !listed.contains(&pair) {
+            listed.push(pair);
         }
     }
-    told
+    listed
 }
 
-/// The names of bodies none of whose parts were asked about, each two once.
-fn left_out(cast: &PathCast<'_>, names: &[String]) -> Vec<[String; 2]> {
+/// Returns the pairs of names of bodies that the query omits entirely, without duplicates.
+fn omitted_pairs(cast: &PathCast<'_>, names: &[String]) -> Vec<[String; 2]> {
     let named = |pair: &[usize; 2]| pair.map(|body| names.get(body).cloned().unwrap_or_default());
-    let mut told: HashSet<[String; 2]> = cast.pairs().iter().map(named).collect();
+    let mut listed: HashSet<[String; 2]> = cast.pairs().iter().map(named).collect();
     let mut left_out = Vec::new();
     for [a, b] in cast.left_out().iter().map(named) {
-        if !told.contains(&[b.clone(), a.clone()]) && told.insert([a.clone(), b.clone()]) {
+        if !listed.contains(&[b.clone(), a.clone()]) && listed.insert([a.clone(), b.clone()]) {
             left_out.push([a, b]);
         }
     }

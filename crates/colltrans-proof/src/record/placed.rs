@@ -1,4 +1,4 @@
-//! Answers about bodies where they are, as front ends write them.
+//! Records of answers about two bodies in their given poses.
 
 use colltrans_convex::answer::{Depth, Distance, Steps, Within};
 use colltrans_convex::body::Body;
@@ -9,128 +9,136 @@ use colltrans_solid::body::Solid;
 use colltrans_solid::pair::OverlapDepth;
 use glam::DVec3;
 
-use super::{Ending, FeaturesRecord, StartOverlapRecord, coordinates, open_ones, record};
+use super::{
+    Ending, FeaturesRecord, StartOverlapRecord, open_bodies, record, without_negative_zeros,
+};
 
 record! {
-    /// How far bodies are apart, or whether they are closer than a length.
+    /// Distance of two bodies, or its comparison with a length.
     #[non_exhaustive]
     pub struct DistanceRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// A length that the distance is not below. Proven.
+        /// Proven lower bound of the distance.
         pub lower: Option<f64>,
-        /// One that it is not above. Proven.
+        /// Proven upper bound of the distance.
         pub upper: Option<f64>,
-        /// Points of the moving and of the fixed body that are `upper` apart, in the world, rounded.
+        /// Rounded points of the moving and of the fixed body at the distance `upper`, in the world frame.
         pub points: Option<[[f64; 3]; 2]>,
-        /// The name of what is nearest, of a moving body that has several.
+        /// Name of the nearest part, if the moving body has several.
         pub moving: Option<String>,
-        /// The name of what is nearest, of a fixed body that has several.
+        /// Name of the nearest part, if the fixed body has several.
         pub fixed: Option<String>,
-        /// Unit normal along the shortest way, from the moving to the fixed body.
+        /// Unit normal along the shortest connection, from the moving to the fixed body.
         pub normal: Option<[f64; 3]>,
-        /// Of solids: which are open, at least in part.
+        /// For solids, the bodies that are open, at least in part.
         pub surfaces: Vec<&'static str>,
-        /// What is nearest.
+        /// Features at the nearest points.
         pub features: Option<FeaturesRecord>,
-        /// Of convex bodies: how much work it was.
+        /// Amounts of work, for convex bodies.
         pub steps: Option<Steps>,
     }
 }
 
 record! {
-    /// How deep bodies overlap.
+    /// Overlap of two bodies.
     #[non_exhaustive]
     pub struct DepthRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// The unit vector along which the moving body leaves the fixed one by the shortest way.
+        /// Unit vector of the shortest translation of the moving body that separates the bodies.
         pub direction: Option<[f64; 3]>,
-        /// A length that the depth is not below. Proven.
+        /// Proven lower bound of the depth.
         pub lower: Option<f64>,
-        /// One that it is not above. Proven.
+        /// Proven upper bound of the depth.
         pub upper: Option<f64>,
-        /// The name of what overlaps deepest, of a moving body that has several.
+        /// Name of the part that overlaps most, if the moving body has several.
         pub moving: Option<String>,
-        /// The name of what overlaps deepest, of a fixed body that has several.
+        /// Name of the part that overlaps most, if the fixed body has several.
         pub fixed: Option<String>,
-        /// Of solids: what overlaps now.
+        /// For solids, the overlaps.
         pub start_overlaps: Vec<StartOverlapRecord>,
-        /// Of solids: which are open, at least in part.
+        /// For solids, the bodies that are open, at least in part.
         pub surfaces: Vec<&'static str>,
-        /// Of convex bodies: how much work it was.
+        /// Amounts of work, for convex bodies.
         pub steps: Option<Steps>,
     }
 }
 
 impl DistanceRecord {
-    /// Of [`Pair::distance`] between convex bodies.
+    /// Converts an answer of [`Pair::distance`] for convex bodies.
     pub fn of(distance: &Distance, pair: &Pair<'_>) -> Self {
-        Self { steps: Some(distance.steps), ..Self::between(distance, pair) }
+        Self { steps: Some(distance.steps), ..Self::of_any_distance(distance, pair) }
     }
 
-    /// Of [`Pair::distance`] between solids.
+    /// Converts an answer of [`Pair::distance`] for solids.
     pub fn of_solids(distance: &Distance<Solid>, pair: &Pair<'_, Solid>) -> Self {
-        Self { surfaces: open_ones(pair.moving(), pair.fixed()), ..Self::between(distance, pair) }
+        Self {
+            surfaces: open_bodies(pair.moving(), pair.fixed()),
+            ..Self::of_any_distance(distance, pair)
+        }
     }
 
-    /// Of [`Pair::within_counted`] between convex bodies.
+    /// Converts an answer of [`Pair::within_counted`] for convex bodies.
     pub fn of_within(within: &Within, steps: Steps, pair: &Pair) -> Self {
         let record = match within {
-            Within::Closer(near) => Self::closer(near.distance, points(&pair.bodies, near)),
+            Within::Closer(near) => Self::of_near_points(near.distance, points(&pair.bodies, near)),
             Within::Farther(gap) => {
-                Self { normal: Some(coordinates(gap.normal)), ..Self::farther(gap.gap) }
+                Self { normal: Some(without_negative_zeros(gap.normal)), ..Self::of_gap(gap.gap) }
             }
             Within::Undecided(distance) => {
-                Self { outcome: Ending::Undecided, ..Self::between(distance, pair) }
+                Self { outcome: Ending::Undecided, ..Self::of_any_distance(distance, pair) }
             }
         };
         Self { steps: Some(steps), ..record }
     }
 
-    /// Of [`Pair::within_counted`] between solids.
+    /// Converts an answer of [`Pair::within_counted`] for solids.
     ///
     /// # Errors
-    /// None at present.
+    /// Returns an error if the points of the answer cannot be computed.
     pub fn of_solids_within(
         within: &Within<Solid>,
         pair: &Pair<'_, Solid>,
     ) -> Result<Self, QueryError> {
         let record = match within {
-            Within::Closer(near) => Self::closer(near.distance(), pair.points(near)?),
-            Within::Farther(gap) => Self::farther(gap.gap),
+            Within::Closer(near) => Self::of_near_points(near.distance(), pair.points(near)?),
+            Within::Farther(gap) => Self::of_gap(gap.gap),
             Within::Undecided(distance) => {
-                Self { outcome: Ending::Undecided, ..Self::between(distance, pair) }
+                Self { outcome: Ending::Undecided, ..Self::of_any_distance(distance, pair) }
             }
         };
-        Ok(Self { surfaces: open_ones(pair.moving(), pair.fixed()), ..record })
+        Ok(Self { surfaces: open_bodies(pair.moving(), pair.fixed()), ..record })
     }
 
-    fn between<B: Body>(distance: &Distance<B>, pair: &Pair<'_, B>) -> Self {
+    fn of_any_distance<B: Body>(distance: &Distance<B>, pair: &Pair<'_, B>) -> Self {
         let bodies = [pair.moving(), pair.fixed()];
         Self {
             outcome: if distance.lower > 0.0 { Ending::Apart } else { Ending::Meeting },
             lower: Some(distance.lower),
             upper: Some(distance.upper),
-            points: Some([coordinates(distance.on_moving), coordinates(distance.on_fixed)]),
-            normal: distance.normal.map(coordinates),
-            features: distance.features.map(|features| FeaturesRecord::of(features, bodies)),
+            points: Some([
+                without_negative_zeros(distance.on_moving),
+                without_negative_zeros(distance.on_fixed),
+            ]),
+            normal: distance.normal.map(without_negative_zeros),
+            features: distance.features.map(|features| FeaturesRecord::of_bodies(features, bodies)),
             ..Self::default()
         }
     }
 
-    fn closer(upper: f64, points: [DVec3; 2]) -> Self {
-        let points = Some(points.map(coordinates));
+    fn of_near_points(upper: f64, points: [DVec3; 2]) -> Self {
+        let points = Some(points.map(without_negative_zeros));
         Self { outcome: Ending::Closer, upper: Some(upper), points, ..Self::default() }
     }
 
-    fn farther(lower: f64) -> Self {
+    fn of_gap(lower: f64) -> Self {
         Self { outcome: Ending::Farther, lower: Some(lower), ..Self::default() }
     }
 }
 
 impl DepthRecord {
-    /// Of [`Pair::depth`].
+    /// Converts an answer of [`Pair::depth`].
     pub fn of(depth: &Depth) -> Self {
         let outcome = match (depth.lower > 0.0, depth.upper > 0.0) {
             (true, _) => Ending::Overlapping,
@@ -139,7 +147,7 @@ impl DepthRecord {
         };
         Self {
             outcome,
-            direction: (depth.upper > 0.0).then(|| coordinates(depth.direction)),
+            direction: (depth.upper > 0.0).then(|| without_negative_zeros(depth.direction)),
             lower: Some(depth.lower),
             upper: Some(depth.upper),
             steps: Some(depth.steps),
@@ -147,14 +155,15 @@ impl DepthRecord {
         }
     }
 
-    /// Of [`overlap_depth`](colltrans_solid::SolidPair::overlap_depth); `surfaces` are the bodies that are open.
+    /// Converts an answer of [`overlap_depth`](colltrans_solid::SolidPair::overlap_depth). `surfaces` lists
+    /// the open bodies.
     pub fn of_overlap(depth: OverlapDepth, surfaces: Vec<&'static str>) -> Self {
         let OverlapDepth { meets, least_tolerance, .. } = depth;
         let outcome = match (least_tolerance, meets) {
             (Some(0.0), false) => Ending::Apart,
             (Some(0.0), true) => Ending::Touching,
             _ => {
-                let start_overlaps = StartOverlapRecord::parted_by(least_tolerance);
+                let start_overlaps = StartOverlapRecord::with_least_tolerance(least_tolerance);
                 let outcome = Ending::Overlapping;
                 return Self { outcome, start_overlaps, surfaces, ..Self::default() };
             }

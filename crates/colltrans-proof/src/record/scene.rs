@@ -1,4 +1,4 @@
-//! Answers about one body among many, as front ends write them.
+//! Records of scene queries.
 
 use colltrans_convex::answer::{Solver, Steps};
 use colltrans_convex::body::ObstacleId;
@@ -10,113 +10,114 @@ use glam::DVec3;
 
 use super::{
     ClearanceRecord, ContactRecord, DistanceRecord, Ending, FeaturesRecord, NearbyRecord,
-    SolidClearanceRecord, StartOverlapRecord, coordinates, kept, record,
+    SolidClearanceRecord, StartOverlapRecord, positive_gap, record, without_negative_zeros,
 };
 
 record! {
-    /// Which obstacle is nearest to a body.
+    /// Nearest obstacle of a body.
     #[non_exhaustive]
     pub struct NearestRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// A length that the distance of no obstacle is below. Proven.
+        /// Proven lower bound of the distances of all obstacles.
         pub lower: Option<f64>,
-        /// One that the distance of this obstacle is not above. Proven.
+        /// Proven upper bound of the distance of this obstacle.
         pub upper: Option<f64>,
-        /// Points of the moving body and of the obstacle that are `upper` apart, in the world, rounded.
+        /// Rounded points of the moving body and of the obstacle at the distance `upper`, in the world frame.
         pub points: Option<[[f64; 3]; 2]>,
-        /// The name of the obstacle.
+        /// Name of the obstacle.
         pub fixed: Option<String>,
-        /// The number of the obstacle.
+        /// Index of the obstacle.
         pub obstacle: ObstacleId,
-        /// How many obstacles were asked about.
+        /// Number of obstacles in the query.
         pub obstacles: usize,
-        /// Unit normal along the shortest way, from the moving body to the obstacle.
+        /// Unit normal along the shortest connection, from the moving body to the obstacle.
         pub normal: Option<[f64; 3]>,
-        /// What is nearest.
+        /// Features at the nearest points.
         pub features: Option<FeaturesRecord>,
-        /// Of convex bodies: how much work it was.
+        /// Amounts of work, for convex bodies.
         pub steps: Option<Steps>,
     }
 }
 
 record! {
-    /// Which obstacles are closer to a body than a length.
+    /// Obstacles that are closer to a body than a length.
     #[non_exhaustive]
     pub struct SceneWithinRecord {
-        /// `closer` if an obstacle is, `undecided` if rounding cannot tell of one, else `farther`.
+        /// `closer` if an obstacle is closer, otherwise `undecided` if rounding prevents a decision about
+        /// one, otherwise `farther`.
         pub outcome: Ending,
-        /// How many obstacles were asked about.
+        /// Number of obstacles in the query.
         pub obstacles: usize,
-        /// Those that are at most the length away, in the order in which they came.
+        /// Obstacles at a distance of at most the length, in the order of insertion.
         pub closer: Option<Vec<NearbyRecord>>,
-        /// Those of which rounding cannot tell.
+        /// Obstacles for which rounding prevents a decision.
         pub undecided: Vec<NearbyRecord>,
     }
 }
 
 record! {
-    /// How far a body can move along a direction before one of many obstacles stops it. The distance is that of all
-    /// obstacles together, the contact that of the one which stops the body.
+    /// Clearance of a body along a direction in a scene. The distance holds for all obstacles together, the
+    /// contact is that with the obstacle that blocks the body.
     #[non_exhaustive]
     pub struct SceneClearanceRecord {
-        /// How the query ended.
+        /// Outcome of the query.
         pub outcome: Ending,
-        /// Blocked: how far it is safe to move.
+        /// Safe travel of a blocked body.
         pub distance: Option<f64>,
-        /// Overlapping a convex obstacle: how far to go back to be free for certain.
+        /// For an overlap with a convex obstacle, travel backwards that certainly separates the bodies.
         pub back: Option<f64>,
-        /// Overlapping a convex obstacle: how far to go on to be free for certain.
+        /// For an overlap with a convex obstacle, travel forwards that certainly separates the bodies.
         pub on: Option<f64>,
-        /// First contact; of solids, where the facets that stop them meet in their true place.
+        /// First contact. For solids it is the contact of the blocking facets in nominal position.
         pub translation: Option<f64>,
-        /// Proven.
+        /// Proven bounds of `translation`.
         pub translation_bounds: Option<[f64; 2]>,
-        /// Of solids: how far they go, shrunk by half the tolerance each.
+        /// For solids, travel of the bodies offset by half the tolerance each.
         pub shrunk_distance: Option<f64>,
-        /// Proven.
+        /// Proven bounds of `shrunk_distance`.
         pub shrunk_distance_bounds: Option<[f64; 2]>,
-        /// Overlapping a convex obstacle: last contact.
+        /// Last contact, for an overlap with a convex obstacle.
         pub exit: Option<f64>,
-        /// Proven: beyond the second they never meet.
+        /// Proven bounds of `exit`. Beyond the upper one the bodies never meet.
         pub exit_bounds: Option<[f64; 2]>,
-        /// The name of the obstacle.
+        /// Name of the obstacle.
         pub fixed: Option<String>,
-        /// The number of the obstacle; `None` if the body is free.
+        /// Index of the obstacle; `None` if the body is free.
         pub obstacle: Option<ObstacleId>,
-        /// How many obstacles were asked about.
+        /// Number of obstacles in the query.
         pub obstacles: usize,
         /// Unit normal of the contact plane, from the moving body to the obstacle.
         pub normal: Option<[f64; 3]>,
-        /// The contact point on the obstacle, in the world.
+        /// Contact point on the obstacle, in the world frame.
         pub point: Option<[f64; 3]>,
-        /// Of convex bodies: what rounding alone can make of the bounds' difference.
+        /// For convex bodies, the part of the bounds' difference that rounding explains.
         pub rounding: Option<f64>,
-        /// Of solids: the one that was used, a length.
+        /// For solids, the tolerance in use, a length.
         pub tolerance: Option<f64>,
-        /// The gap that is kept, a length: bodies count as meeting where they are as near as that.
+        /// Minimum gap, a length. Bodies meet if their distance falls to it.
         pub keep: Option<f64>,
-        /// Of solids: what overlaps now.
+        /// For solids, the overlaps at the start.
         pub start_overlaps: Vec<StartOverlapRecord>,
-        /// Of solids: which are open, at least in part.
+        /// For solids, the bodies that are open, at least in part.
         pub surfaces: Vec<&'static str>,
-        /// What touches.
+        /// Features in contact.
         pub features: Option<FeaturesRecord>,
-        /// Of convex bodies.
+        /// Solver, for convex bodies.
         pub solver: Option<Solver>,
-        /// Of convex bodies: how much work it was.
+        /// Amounts of work, for convex bodies.
         pub steps: Option<Steps>,
     }
 }
 
 impl NearestRecord {
-    /// Of [`Among::nearest`]; `among` is what was asked.
+    /// Converts an answer of [`Among::nearest`]. `among` must be the query.
     pub fn of(nearest: &Nearest, among: &Among<'_>) -> Self {
         let Nearest { obstacle, ref distance, lower, .. } = *nearest;
         let of = match (among.pair_with(obstacle), distance) {
             (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => DistanceRecord::of(of, &pair),
             (Some(ByKind::Solid(pair)), ByKind::Solid(of)) => DistanceRecord::of_solids(of, &pair),
-            // It has gone since.
+            // The obstacle has been removed since the query.
             _ => DistanceRecord { upper: Some(distance.upper()), ..DistanceRecord::default() },
         };
         let DistanceRecord { upper, points, fixed, normal, features, steps, .. } = of;
@@ -136,7 +137,7 @@ impl NearestRecord {
 }
 
 impl From<&NearestRecord> for DistanceRecord {
-    /// The distance of the nearest obstacle.
+    /// Returns the distance of the nearest obstacle.
     fn from(nearest: &NearestRecord) -> Self {
         let NearestRecord { outcome, lower, upper, points, normal, steps, .. } = *nearest;
         let (fixed, features) = (nearest.fixed.clone(), nearest.features.clone());
@@ -146,7 +147,7 @@ impl From<&NearestRecord> for DistanceRecord {
 }
 
 impl SceneWithinRecord {
-    /// Of [`Among::within`]; `among` is what was asked.
+    /// Converts an answer of [`Among::within`]. `among` must be the query.
     pub fn of(nearby: &Nearby, among: &Among<'_>) -> Self {
         let outcome = match (nearby.closer.is_empty(), nearby.undecided.is_empty()) {
             (false, _) => Ending::Closer,
@@ -163,7 +164,7 @@ impl SceneWithinRecord {
             obstacle: *obstacle,
             lower: Some(distance.lower()),
             upper: distance.upper(),
-            points: Some([distance.on_moving(), distance.on_fixed()].map(coordinates)),
+            points: Some([distance.on_moving(), distance.on_fixed()].map(without_negative_zeros)),
             ..NearbyRecord::default()
         });
         let (closer, undecided) = (Some(closer.collect()), undecided.collect());
@@ -172,7 +173,7 @@ impl SceneWithinRecord {
 }
 
 impl SceneClearanceRecord {
-    /// Of [`Among::clearance`]; `among` is what was asked.
+    /// Converts an answer of [`Among::clearance`]. `among` must be the query.
     pub fn of(found: &ClearanceAmong, among: &Among<'_>, direction: DVec3) -> Self {
         let record = found.stop.and_then(|(id, stop)| {
             Some(match (among.cast_at(id, direction)?, stop) {
@@ -185,8 +186,11 @@ impl SceneClearanceRecord {
                 _ => return None,
             })
         });
-        let free =
-            || Self { outcome: Ending::Free, keep: kept(among.options().keep), ..Self::default() };
+        let free = || Self {
+            outcome: Ending::Free,
+            keep: positive_gap(among.options().keep),
+            ..Self::default()
+        };
         Self {
             distance: found.distance().filter(|distance| distance.is_finite()),
             obstacle: found.stop.map(|(id, _)| id),
@@ -241,12 +245,13 @@ impl From<SolidClearanceRecord> for SceneClearanceRecord {
     }
 }
 
-/// Two points that are near, in the world; `None` if the obstacle has gone since.
+/// Returns two near points in the world frame. Returns `None` if the obstacle has been removed since the
+/// query.
 fn points_of(obstacle: ObstacleId, near: &AnyNear, among: &Among<'_>) -> Option<[[f64; 3]; 2]> {
     let found = match (among.pair_with(obstacle)?, near) {
         (ByKind::Convex(pair), ByKind::Convex(near)) => points(&pair.bodies, near),
         (ByKind::Solid(pair), ByKind::Solid(near)) => pair.points(near).ok()?,
         _ => return None,
     };
-    Some(found.map(coordinates))
+    Some(found.map(without_negative_zeros))
 }

@@ -1,4 +1,4 @@
-//! Ways out in several moves, as front ends write them.
+//! Records of removal paths.
 
 use serde::Serialize;
 
@@ -6,34 +6,37 @@ use super::record;
 use colltrans_removal::ways::{Searched, WaysOut};
 
 record! {
-    /// A way out in several moves, that there is none, or what was searched. Fields that do not apply are left out.
+    /// Removal path in several moves, a proof that none exists, or the work of a search without a result.
+    /// Fields that do not apply are omitted.
     #[non_exhaustive]
     pub struct WaysRecord {
-        /// `found`; `none`: there is none by translations, which is proven; `not_found`, which proves nothing.
+        /// - `found`: the record has a path.
+        /// - `none`: it is proven that no sequence of translations exists.
+        /// - `not_found`: the search found no path, which proves nothing.
         pub outcome: &'static str,
-        /// What to do, in order.
+        /// Moves in order.
         pub legs: Vec<LegRecord>,
-        /// The tolerance that was used, a length.
+        /// Tolerance in use, a length.
         pub tolerance: Option<f64>,
-        /// Cells of displacements that prove that there is none.
+        /// Number of displacement cells of the proof that no path exists.
         pub cells: Option<usize>,
-        /// What was searched.
+        /// Amounts of work of the search.
         pub searched: Option<Searched>,
     }
 }
 
-/// A straight move.
+/// Straight move.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LegRecord {
-    /// Of length 1.
+    /// Direction of length 1.
     pub direction: [f64; 3],
-    /// How far; nothing stops the last one.
+    /// Length of the move; infinite for the last one, which nothing blocks.
     #[serde(serialize_with = "colltrans_kernel::written::or_infinite::serialize")]
     pub travel: f64,
 }
 
 impl WaysRecord {
-    /// Of two bodies.
+    /// Converts an answer about two bodies.
     pub fn of(ways: &WaysOut) -> Self {
         match ways {
             WaysOut::Found(way) => {

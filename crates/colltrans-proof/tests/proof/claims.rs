@@ -1,4 +1,4 @@
-//! Claims of proof files about motions and paths that are weaker, or other, than what the file proves.
+//! Claims of proof files about motions and paths that are weaker than the proof, or different from it.
 
 use colltrans_convex::{ConvexPolyhedron, Pose};
 use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
@@ -15,8 +15,8 @@ fn at(x: f64) -> Pose {
     Pose::from_translation(DVec3::X * x).expect("a pose")
 }
 
-/// A cube that slides by 4 towards another one, 2 away from it, or keeps a gap.
-fn sliding(keep: f64) -> Value {
+/// Returns the proof of a cube that slides by 4 towards another one at distance 2, with a minimum gap.
+fn sliding_cube_proof(keep: f64) -> Value {
     let (cube, motion) = (cube(), Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion"));
     let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
     let cast = cast.keeping(keep).expect("a gap");
@@ -24,95 +24,104 @@ fn sliding(keep: f64) -> Value {
     serde_json::from_str(&ProofFile::of_motion(&cast, &outcome).to_json()).expect("JSON")
 }
 
-/// Where the proofs of a motion, of one of solids and of a path are, and the moving body's motion.
+/// Pointers to the proof of a motion, of a motion of solids and of a path, and to the moving body's motion.
 const MOTION: &str = "/statement/motions/0/convex";
 const SOLIDS: &str = "/statement/motions/0/solids/proof";
 const PATH: &str = "/statement/path/proof";
 const MOVES: &str = "/placement/motions/0/0/motion";
 
-/// What a proof says, if it holds.
-fn says(file: &Value) -> Result<String, String> {
+/// Returns the statement as text if the proof is valid, otherwise the error.
+fn statement_text(file: &Value) -> Result<String, String> {
     let proof = ProofFile::from_json(&file.to_string()).map_err(|e| e.to_string())?;
     proof.check().map_err(|e| e.to_string())?;
     Ok(proof.to_string())
 }
 
-/// The file without a field, by its place.
-fn without(file: &Value, under: &str, name: &str) -> Value {
+/// Returns the file without a field.
+fn without_field(file: &Value, under: &str, name: &str) -> Value {
     let mut less = file.clone();
     let of = less.pointer_mut(under).and_then(Value::as_object_mut).expect("an object");
     of.remove(name).expect("a field");
     less
 }
 
-/// The file with another value at a place.
-fn with(file: &Value, at: &str, value: Value) -> Value {
+/// Returns the file with another value at a pointer.
+fn with_value(file: &Value, at: &str, value: Value) -> Value {
     let mut other = file.clone();
     *other.pointer_mut(at).unwrap_or_else(|| panic!("no {at}")) = value;
     other
 }
 
 #[test]
-fn a_meeting_without_planes_is_not_one_at_the_beginning() {
-    let file = sliding(0.0);
-    assert!(says(&file).expect("it holds").starts_with("the bodies first meet at a time between"));
-    let weaker = says(&with(&file, &format!("{MOTION}/spans"), json!([[]]))).expect("it holds");
+fn contact_without_planes_claims_only_upper_bound() {
+    let file = sliding_cube_proof(0.0);
+    assert!(
+        statement_text(&file)
+            .expect("it holds")
+            .starts_with("the bodies first meet at a time between")
+    );
+    let weaker = statement_text(&with_value(&file, &format!("{MOTION}/spans"), json!([[]])))
+        .expect("it holds");
     assert!(weaker.starts_with("the bodies meet by the time 0.5"), "{weaker}");
 }
 
 #[test]
-fn a_piece_that_begins_when_the_motion_ends_is_refused() {
+fn motion_piece_starting_at_end_is_rejected() {
     let (cube, motion) = (cube(), Motion::slide(Pose::IDENTITY, DVec3::Y).expect("a motion"));
     let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     let file = ProofFile::of_motion(&cast, &outcome).to_json();
     let mut file: Value = serde_json::from_str(&file).expect("JSON");
-    assert_eq!(says(&file).expect("free"), "the bodies never meet throughout the motion");
-    // At the time 1 the body would be inside the other one.
+    assert_eq!(statement_text(&file).expect("free"), "the bodies never meet throughout the motion");
+    // At time 1 the body would be inside the other one.
     let pieces = file.pointer_mut(MOVES).and_then(Value::as_array_mut).expect("pieces");
     let mut last = pieces[0].clone();
     last["since"] = json!(1.0);
     last["start"]["translation"] = json!([3.0, 0.0, 0.0]);
     pieces.push(last);
-    says(&file).expect_err("a piece of no time");
+    statement_text(&file).expect_err("a piece of no time");
 }
 
 #[test]
-fn what_may_be_null_has_to_be_there() {
-    let file = sliding(0.0);
-    says(&without(&file, MOTION, "meeting")).expect_err("no meeting");
-    says(&with(&file, &format!("{MOTION}/meeting"), Value::Null)).expect("none is claimed");
+fn nullable_field_must_be_present_and_unknown_field_is_rejected() {
+    let file = sliding_cube_proof(0.0);
+    statement_text(&without_field(&file, MOTION, "meeting")).expect_err("no meeting");
+    statement_text(&with_value(&file, &format!("{MOTION}/meeting"), Value::Null))
+        .expect("none is claimed");
     let mut more = file.clone();
     more["statement"]["motions"][0]["convex"]["spans"][0][0]["more"] = json!(1);
-    says(&more).expect_err("a field that is not known");
+    statement_text(&more).expect_err("a field that is not known");
 }
 
 #[test]
-fn pairs_of_one_question_keep_one_gap() {
+fn joined_pairs_need_equal_minimum_gap() {
     let several = |proofs: &[Value]| {
         let proofs =
             proofs.iter().map(|of| ProofFile::from_json(&of.to_string()).expect("a proof"));
         ProofFile::of_motions(proofs.collect())
     };
-    let [plain, kept] = [sliding(0.0), sliding(0.25)];
+    let [plain, kept] = [sliding_cube_proof(0.0), sliding_cube_proof(0.25)];
     let both = several(&[kept.clone(), kept.clone()]).expect("one question");
     let file: Value = serde_json::from_str(&both.to_json()).expect("JSON");
     assert_eq!(file["bodies"].as_array().map(Vec::len), Some(1), "a body is written once");
-    let said = says(&file).expect("it holds");
+    let said = statement_text(&file).expect("it holds");
     assert!(said.starts_with("of 2 pairs of bodies the first come as near as 0.25 at"), "{said}");
-    // Of all of them it would be said that they do not come as near as 0.25.
+    // The joined statement would claim the gap 0.25 for all pairs.
     assert!(matches!(several(&[kept, plain]), Err(ProofFileError::Pairs { pair: 0 })));
     assert!(matches!(several(&[]), Err(ProofFileError::NoPairs)));
-    says(&with(&file, "/query/motions/1/keep", json!(0.125))).expect_err("two gaps");
+    statement_text(&with_value(&file, "/query/motions/1/keep", json!(0.125)))
+        .expect_err("two gaps");
     let pair = file["placement"]["motions"][0].clone();
-    says(&with(&file, "/placement/motions", json!([pair]))).expect_err("a pair is missing");
-    says(&with(&file, "/placement/motions/1/0/body", json!(1))).expect_err("no such body");
-    says(&with(&file, "/query/motions/0", json!({"keep": 0.25, "tolerance": 0.0})))
+    statement_text(&with_value(&file, "/placement/motions", json!([pair])))
+        .expect_err("a pair is missing");
+    statement_text(&with_value(&file, "/placement/motions/1/0/body", json!(1)))
+        .expect_err("no such body");
+    statement_text(&with_value(&file, "/query/motions/0", json!({"keep": 0.25, "tolerance": 0.0})))
         .expect_err("convex bodies have no tolerance");
 }
 
-/// A block that turns into a post, both as solids.
-fn turning() -> Value {
+/// Returns the proof of a bar that turns into a post, both as solids.
+fn turning_bar_proof() -> Value {
     let bar = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.1, 0.0), DVec3::new(2.0, 0.1, 0.2));
     let bar = Solid::from_convex(&bar.expect("a bar")).expect("a solid");
     let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.1), DVec3::splat(0.3)).expect("a post");
@@ -126,24 +135,24 @@ fn turning() -> Value {
 }
 
 #[test]
-fn a_facet_has_three_edges() {
-    let file = turning();
+fn edge_number_beyond_facet_and_missing_fields_are_rejected() {
+    let file = turning_bar_proof();
     let holds = |file: &Value| {
         ProofFile::from_json(&file.to_string()).is_ok_and(|proof| proof.check().is_ok())
     };
     assert!(holds(&file));
     let place = &format!("{SOLIDS}/meeting/met/crossing/edge");
     let edge = file.pointer(place).and_then(Value::as_u64).expect("an edge");
-    assert!(!holds(&with(&file, place, json!(edge + 3))));
+    assert!(!holds(&with_value(&file, place, json!(edge + 3))));
     for (under, name) in
         [("/statement/motions/0/solids", "parts"), (SOLIDS, "meeting"), (SOLIDS, "start")]
     {
-        assert!(!holds(&without(&file, under, name)), "{name}");
+        assert!(!holds(&without_field(&file, under, name)), "{name}");
     }
 }
 
-/// Cubes at the places 3, 5 and 40 on the way of one that slides along x, from row to row.
-fn cart(rows: &[f64]) -> Value {
+/// Returns the proof of a cube that slides along x from row to row, with cubes at 3, 5 and 40.
+fn cart_proof(rows: &[f64]) -> Value {
     let cube = cube();
     let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Sliding(DVec3::X) };
     let slide = Mechanism::new(vec![frame]).expect("a mechanism");
@@ -160,9 +169,9 @@ fn cart(rows: &[f64]) -> Value {
 const PAIRS: &str = "of 3 pairs (cart and stop, cart and wall, cart and \"body 3\")";
 
 #[test]
-fn a_path_names_its_pairs() {
-    let file = cart(&[0.0, 8.0]);
-    let said = says(&file).expect("it holds");
+fn path_statement_names_pairs_and_wrong_names_are_rejected() {
+    let file = cart_proof(&[0.0, 8.0]);
+    let said = statement_text(&file).expect("it holds");
     assert!(said.starts_with(&format!("{PAIRS} none meet before the time 0.24999")), "{said}");
     assert!(said.contains(", and cart and stop meet by the time 0.25"), "{said}");
     for (place, value) in [
@@ -172,21 +181,21 @@ fn a_path_names_its_pairs() {
         ("/placement/robot/bodies/1/name", json!("wall")),
         ("/placement/robot/bodies/1/name", json!("")),
     ] {
-        says(&with(&file, place, value)).expect_err(place);
+        statement_text(&with_value(&file, place, value)).expect_err(place);
     }
 }
 
 #[test]
-fn a_name_cannot_be_taken_for_a_sentence() {
-    let text = cart(&[0.0, 2.0]).to_string();
+fn body_name_that_reads_like_sentence_is_quoted() {
+    let text = cart_proof(&[0.0, 2.0]).to_string();
     let name = "wall never meet on the whole path, and cart";
-    let said = says(&serde_json::from_str(&text.replace("wall", name)).expect("JSON"));
+    let said = statement_text(&serde_json::from_str(&text.replace("wall", name)).expect("JSON"));
     let said = said.expect("it holds");
     assert!(said.contains(&format!("cart and {name:?}, ")), "{said}");
 }
 
 #[test]
-fn an_overlap_of_one_of_several_pairs_is_reported() {
+fn joined_proofs_report_start_overlap_of_one_pair() {
     let cube = cube().as_solid().expect("a solid").clone();
     let motion = Motion::slide(Pose::IDENTITY, DVec3::X).expect("a motion");
     let proofs = [0.5, 9.0].map(|x| {
@@ -204,49 +213,50 @@ fn an_overlap_of_one_of_several_pairs_is_reported() {
 }
 
 #[test]
-fn who_meets_later_is_not_said_to_meet_first() {
-    // Only of the later contact it is known where it is; nothing is proven of the time before.
-    let (one, both) = (cart(&[0.0, 8.0]), cart(&[3.9, 8.0]));
+fn later_contact_is_not_stated_as_first() {
+    // The proof locates only the later contact, and claims nothing about the time before it.
+    let (one, both) = (cart_proof(&[0.0, 8.0]), cart_proof(&[3.9, 8.0]));
     let how = both.pointer(&format!("{PATH}/meeting/how")).expect("how");
     let mut weak = one.clone();
     let proof = weak.pointer_mut(PATH).expect("a proof");
     proof["covers"] = json!([{"steps": []}, {"steps": []}, {"steps": []}]);
     proof["meeting"]["pair"] = json!(1);
     proof["meeting"]["place"]["share"] = json!(0.51);
-    // Both cubes are the same; the surface around the origin is one of cubes that are 1/12 deep.
+    // Both cubes are equal. The surface near the origin belongs to cubes that overlap by 1/12.
     proof["meeting"]["how"] = how.clone();
     weak["statement"]["path"]["lower"] = json!(0.0);
     weak["statement"]["path"]["upper"] = json!(0.52);
-    if let Ok(said) = says(&weak) {
+    if let Ok(said) = statement_text(&weak) {
         assert!(!said.contains("first"), "{said}");
         assert!(said.contains("none meet before the time 0, and cart and wall"), "{said}");
     }
-    let told = says(&one).expect("it holds");
+    let told = statement_text(&one).expect("it holds");
     assert!(!told.contains("the first"), "{told}");
 }
 
 #[test]
-fn a_path_of_one_row_is_free_by_planes_alone() {
-    let file = cart(&[0.0]);
+fn one_row_path_is_free_only_with_planes() {
+    let file = cart_proof(&[0.0]);
     let whole = format!("{PAIRS} none meet on the whole path, up to the time 0");
-    assert_eq!(says(&file).expect("it holds"), whole);
+    assert_eq!(statement_text(&file).expect("it holds"), whole);
     for k in 0..3 {
-        let less = with(&file, &format!("{PATH}/covers/{k}/steps"), json!([]));
-        let said = says(&less).expect("it says less");
-        assert_eq!(said, format!("{PAIRS} nothing is said"));
+        let less = with_value(&file, &format!("{PATH}/covers/{k}/steps"), json!([]));
+        let said = statement_text(&less).expect("it says less");
+        assert_eq!(said, format!("{PAIRS} no claim is made"));
     }
 }
 
 #[test]
-fn places_are_on_the_path() {
-    let file = cart(&[0.0, 8.0]);
+fn place_off_the_path_and_missing_fields_are_rejected() {
+    let file = cart_proof(&[0.0, 8.0]);
     for (row, share) in [(u64::MAX, 1.0), (u64::MAX, 0.0), (2, 0.0), (1, 0.5), (0, 1.5), (0, -0.5)]
     {
         let place = json!({"row": row, "share": share});
-        says(&with(&file, &format!("{PATH}/meeting/place"), place.clone()))
+        statement_text(&with_value(&file, &format!("{PATH}/meeting/place"), place.clone()))
             .expect_err("off the path");
         let parts = json!([{"parts": {"which": 0, "until": place, "covers": []}}]);
-        says(&with(&file, &format!("{PATH}/covers/0/steps"), parts)).expect_err("off the path");
+        statement_text(&with_value(&file, &format!("{PATH}/covers/0/steps"), parts))
+            .expect_err("off the path");
     }
     for (under, name) in [
         (PATH, "meeting"),
@@ -255,20 +265,22 @@ fn places_are_on_the_path() {
         ("/statement/path", "pairs"),
         ("/statement/path", "upper"),
     ] {
-        says(&without(&file, under, name)).expect_err(name);
+        statement_text(&without_field(&file, under, name)).expect_err(name);
     }
 }
 
 #[test]
-fn traces_in_axes_are_no_reason_to_refuse() {
-    let file = cart(&[0.0, 8.0]);
-    let traced = with(&file, "/placement/robot/frames/0/joint/sliding", json!([1.0, 1e-310, 0.0]));
-    says(&traced).expect("it holds");
+fn tiny_axis_component_is_accepted() {
+    let file = cart_proof(&[0.0, 8.0]);
+    let traced =
+        with_value(&file, "/placement/robot/frames/0/joint/sliding", json!([1.0, 1e-310, 0.0]));
+    statement_text(&traced).expect("it holds");
 }
 
-/// Two rings of 14,400 facets that hang in each other: their cover is nested deeper than JSON is read by default.
+/// Two linked rings of 14,400 facets. Their cover is nested more deeply than the default limit of the JSON
+/// reader.
 #[test]
-fn a_path_of_bodies_with_many_facets_is_read_back() {
+fn deeply_nested_path_proof_is_read_back() {
     let profile: Vec<[f64; 2]> = (0..60)
         .map(|k| f64::from(k) * std::f64::consts::TAU / 60.0)
         .map(|a| [0.5 + 0.09 * a.cos(), 0.09 * a.sin()])
@@ -285,7 +297,7 @@ fn a_path_of_bodies_with_many_facets_is_read_back() {
     let cast = PathCast::new(&hinge, &path, bodies, vec![[0, 1]]).expect("a cast");
     let (_, file) = ProofFile::with_path(&cast, &[]).expect("an answer");
     let text = file.to_json();
-    assert!(serde_json::from_str::<Value>(&text).is_err(), "it is not nested that deep");
+    assert!(serde_json::from_str::<Value>(&text).is_err(), "the nesting is not deep enough");
     let read = ProofFile::from_json(&text).expect("a proof");
     assert_eq!(read.check().expect("it holds").time(), Some([2.0, f64::INFINITY]));
     let deeper = text.replacen("\"covers\":[", &format!("\"covers\":{}", "[".repeat(500)), 1);
@@ -293,28 +305,28 @@ fn a_path_of_bodies_with_many_facets_is_read_back() {
     assert!(refused.contains("nested more than 400 deep"), "{refused}");
 }
 
-/// A depth of two cubes that are apart, as a file has it: it proves that they overlap by at least 0.
-fn depth_of_nothing(normal: [f64; 3]) -> Value {
+/// Returns the depth statement of two separate cubes, which proves only an overlap of at least 0.
+fn zero_depth(normal: [f64; 3]) -> Value {
     let enclosure = json!({"pairs": [], "triangles": [], "normals": []});
     json!({"deep": {"lower": 0.0, "upper": 0.0, "direction": normal, "enclosure": enclosure}})
 }
 
 #[test]
-fn a_depth_of_nothing_does_not_prove_that_a_gap_is_used_up() {
-    let file = sliding(1.0);
+fn zero_depth_does_not_prove_contact_at_minimum_gap() {
+    let file = sliding_cube_proof(1.0);
     for normal in [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
         for time in [0.0, 0.1] {
-            let meeting = json!({"time": time, "met": depth_of_nothing(normal)});
-            let mut forged = with(&file, &format!("{MOTION}/meeting"), meeting);
-            forged = with(&forged, &format!("{MOTION}/spans"), json!([[]]));
-            assert!(says(&forged).is_err(), "{:?}", says(&forged));
+            let meeting = json!({"time": time, "met": zero_depth(normal)});
+            let mut forged = with_value(&file, &format!("{MOTION}/meeting"), meeting);
+            forged = with_value(&forged, &format!("{MOTION}/spans"), json!([[]]));
+            assert!(statement_text(&forged).is_err(), "{:?}", statement_text(&forged));
         }
     }
 }
 
-/// Of several pairs it is said that the bodies do not meet: none of them may be shrunk.
+/// The joined statement claims that the bodies do not meet, therefore no pair may have a tolerance.
 #[test]
-fn a_pair_of_shrunk_solids_proves_nothing_of_the_bodies() {
+fn joined_pairs_with_tolerance_are_rejected() {
     let cube = cube().as_solid().expect("a solid").clone();
     let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
     let there = Pose::from_translation(DVec3::new(2.0, 0.75, 0.0)).expect("a pose");
@@ -322,7 +334,7 @@ fn a_pair_of_shrunk_solids_proves_nothing_of_the_bodies() {
     for (tolerance, holds) in [(0.0, true), (0.6, false)] {
         let cast = cast.clone().tolerating(tolerance).expect("a tolerance");
         let (_, file) = ProofFile::with_solid_motion(&cast).expect("an answer");
-        assert!(file.check().is_ok(), "alone it says that they are shrunk");
+        assert!(file.check().is_ok(), "the statement about one pair mentions the offset");
         let read = ProofFile::of_motions(vec![file.clone(), file]);
         assert_eq!(read.is_ok(), holds, "{tolerance}");
     }

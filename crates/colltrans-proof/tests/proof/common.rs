@@ -1,3 +1,3 @@
-//! Bodies of the tests, from the test kit's meshes.
+//! Bodies of the tests.
 
 pub(crate) use colltrans_testkit::bodies::solid;

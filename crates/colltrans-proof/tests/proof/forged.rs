@@ -1,4 +1,4 @@
-//! Forged proofs: what both checkers accept of them is true (`campaign --proofs` does this at length).
+//! Forged proofs: every claim that both checkers accept is true (`campaign --proofs` tests this at length).
 
 use colltrans_convex::{
     Cast, CertificateError, Clearance, ConvexPolyhedron, Pair, Pose, Separation,
@@ -13,15 +13,15 @@ use colltrans_testkit::tally::Tally;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// Rounding of one operation.
+/// Rounding error of one operation.
 const U: f64 = 0.5 * f64::EPSILON;
 
-/// `check.py`, where there is a Python.
-fn fractions() -> Option<Fractions> {
+/// Starts `check.py`, if Python is available.
+fn start_fractions() -> Option<Fractions> {
     Fractions::start().ok()
 }
 
-/// The verdicts of the library and, where there is one, of `check.py`.
+/// Returns the verdicts of the library and, if available, of `check.py`.
 fn verdicts(file: &Value, fractions: &mut Option<Fractions>) -> Vec<Verdict> {
     let text = file.to_string();
     let of_fractions = fractions.as_mut().map(|fractions| fractions.check(&text));
@@ -40,7 +40,8 @@ fn assert_holds(file: &Value, fractions: &mut Option<Fractions>) {
     }
 }
 
-/// A file about two unit cubes, the moving one far behind the fixed one, whose shadows are half a unit apart.
+/// Returns the proof about two unit cubes, the moving one far behind the fixed one, with shadows half a unit
+/// apart.
 fn separation_from_afar(far: f64) -> Value {
     let (p, q) = (cube(), cube());
     let cast = Cast::new(p.at(pose(0.0, 0.0, -far)), q.at(pose(1.5, 0.0, 0.0)), DVec3::Z);
@@ -50,12 +51,12 @@ fn separation_from_afar(far: f64) -> Value {
 }
 
 #[test]
-fn a_margin_along_a_tilted_normal_is_refused_beyond_the_distance_of_the_shadows() {
-    let mut fractions = fractions();
+fn margin_beyond_shadow_distance_is_rejected_for_tilted_normal() {
+    let mut fractions = start_fractions();
     for far in [1e3, 1e6, 1e9] {
         let mut file = separation_from_afar(far);
         assert_holds(&file, &mut fractions);
-        // As far as a normal may be from one that is orthogonal to the direction: the gap along it is larger.
+        // The largest admitted tilt of a normal. The gap along the tilted normal is larger.
         for tilt in [30.0 * U, 31.9 * U] {
             file["statement"]["separation"] = json!({"normal": [1.0, 0.0, tilt], "margin": 0.499});
             assert_holds(&file, &mut fractions);
@@ -71,7 +72,7 @@ fn a_margin_along_a_tilted_normal_is_refused_beyond_the_distance_of_the_shadows(
 }
 
 #[test]
-fn verify_takes_what_a_tilt_is_worth_from_the_margin() {
+fn cast_verify_rejects_margin_gained_by_tilt() {
     let (p, q) = (cube(), cube());
     let cast = Cast::new(p.at(pose(0.0, 0.0, -1e9)), q.at(pose(1.5, 0.0, 0.0)), DVec3::Z);
     let cast = cast.expect("a query");
@@ -84,16 +85,16 @@ fn verify_takes_what_a_tilt_is_worth_from_the_margin() {
 }
 
 #[test]
-fn an_overlap_of_a_slide_that_a_tilt_hides_is_refused() {
+fn slide_overlap_hidden_by_tilted_normal_is_rejected() {
     let (p, q) = (cube(), cube());
     let cast = Cast::new(p.at(pose(-1e9, 0.0, 1.0)), q.at(pose(0.0, 0.0, 0.0)), DVec3::X);
     let cast = cast.expect("a query").with_graze_tolerance(1e-3).expect("a tolerance");
     let outcome = cast.first_contact().expect("an answer");
     let mut file: Value =
         serde_json::from_str(&ProofFile::of_outcome(&cast, &outcome).to_json()).expect("JSON");
-    let mut fractions = fractions();
+    let mut fractions = start_fractions();
     assert_holds(&file, &mut fractions);
-    // The shadows overlap by 1e-6, and along the tilted normal the bodies are apart.
+    // The shadows overlap by 1e-6, although the bodies are apart along the tilted normal.
     file["placement"]["poses"][0]["pose"]["translation"][2] = json!(1.0 - 1e-6);
     file["statement"]["contacts"]["slide"] = json!({"normal": [3e-15, 0.0, -1.0], "overlap": 0.0});
     assert_refused(&file, &mut fractions);
@@ -102,8 +103,8 @@ fn an_overlap_of_a_slide_that_a_tilt_hides_is_refused() {
 }
 
 #[test]
-fn both_checkers_refuse_what_the_specification_does_not_admit() {
-    let mut fractions = fractions();
+fn both_checkers_reject_values_outside_specification() {
+    let mut fractions = start_fractions();
     let (p, q) = (cube(), cube());
     let apart = [p.at(pose(0.0, 0.0, 0.0)), q.at(pose(3.0, 0.25, 0.5))];
     let over = [p.at(pose(0.0, 0.0, 0.0)), q.at(pose(0.7, 0.25, 0.5))];
@@ -148,11 +149,11 @@ fn both_checkers_refuse_what_the_specification_does_not_admit() {
 
 #[test]
 #[ignore = "long: two checkers of every kind of proof"]
-fn no_checker_accepts_a_false_claim_of_a_forged_proof() {
-    let mut fractions = fractions();
+fn forged_proofs_have_no_accepted_false_claim() {
+    let mut fractions = start_fractions();
     for kind in KINDS {
         let mut tally = Tally::default();
-        // Not every seed has a proof.
+        // Some seeds have no proof.
         for seed in 0..50 {
             if tally.get("proofs") < 2 {
                 Campaign::examine(&kind, seed, fractions.as_mut(), &mut tally);
@@ -164,10 +165,10 @@ fn no_checker_accepts_a_false_claim_of_a_forged_proof() {
     }
 }
 
-/// Triangles of a distance are numbered as in the file, whatever order the tree of a union has.
+/// The triangles of a distance have the indices of the file, independently of the order in a union's tree.
 #[test]
-fn both_checkers_take_the_distance_of_a_union() {
-    let mut fractions = fractions();
+fn both_checkers_accept_distance_proof_of_union() {
+    let mut fractions = start_fractions();
     let random = &mut Random::new(23);
     let mut any_box = |far: f64| {
         let low = random.vector() * 3.0 + far;
@@ -192,10 +193,10 @@ fn both_checkers_take_the_distance_of_a_union() {
     }
 }
 
-/// Statements count vertices, so that all of them have to be there for both checkers.
+/// Statements count vertices, therefore both checkers require that all of them are used.
 #[test]
-fn a_vertex_of_a_piece_that_no_facet_uses_is_refused() {
-    let mut fractions = fractions();
+fn unused_vertex_of_piece_is_rejected() {
+    let mut fractions = start_fractions();
     let (a, b) = (cube(), cube());
     let (p, q) = (a.as_solid().expect("a solid"), b.as_solid().expect("a solid"));
     let cast = Cast::new(p.at(pose(-3.0, 0.25, 0.5)), q.at(pose(0.0, 0.0, 0.0)), DVec3::X);
@@ -211,10 +212,10 @@ fn a_vertex_of_a_piece_that_no_facet_uses_is_refused() {
     assert_refused(&file, &mut fractions);
 }
 
-/// Facets that stop a body after it overlapped need not look at each other as they are, and meet all the same.
+/// Facets that stop a body after an overlap need not face each other in nominal position, but they meet.
 #[test]
-fn stops_after_an_overlap_are_where_both_checkers_find_them() {
-    let mut fractions = fractions();
+fn both_checkers_accept_stops_after_ignored_overlap() {
+    let mut fractions = start_fractions();
     let bolt = bolt();
     let random = &mut Random::new(20);
     let mut stopped = 0;
@@ -239,10 +240,10 @@ fn stops_after_an_overlap_are_where_both_checkers_find_them() {
             assert!(verdict.accepts(), "{verdict:?}: {file}");
         }
     }
-    assert!(stopped > 30, "{stopped} are stopped");
+    assert!(stopped > 30, "{stopped} casts are blocked");
 }
 
-/// A shank with a head and a chamfer, of 12 sides.
+/// Returns a shank with a head and a chamfer, with 12 sides.
 fn bolt() -> Solid {
     let rings = [(0.5, -3.0), (0.5, 0.0), (1.0, 0.0), (1.0, 0.5), (0.75, 0.75)];
     let n = 12;

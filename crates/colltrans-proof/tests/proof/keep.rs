@@ -1,4 +1,4 @@
-//! Files about casts that keep a gap: they hold, and not with a larger gap.
+//! Proof files of casts with a minimum gap are valid, and not valid for a larger gap.
 
 use colltrans_convex::{Case, Cast, ConvexPolyhedron, Pose};
 use colltrans_proof::ProofFile;
@@ -11,7 +11,7 @@ fn cube() -> ConvexPolyhedron {
 }
 
 #[test]
-fn files_about_convex_bodies_hold_the_gap() {
+fn proof_of_convex_cast_holds_for_its_minimum_gap_only() {
     let cube = cube();
     let cast = Cast::new(cube.at(at(-3.0, 0.9, 0.0)), cube.at(Pose::IDENTITY), DVec3::X);
     let cast = cast.expect("a query");
@@ -33,7 +33,7 @@ fn files_about_convex_bodies_hold_the_gap() {
 }
 
 #[test]
-fn files_about_solids_hold_the_gap() {
+fn proof_of_solid_cast_holds_for_its_minimum_gap_only() {
     let (corner, cube) = (corner(), cuboid(DVec3::ZERO, DVec3::ONE));
     let cube = Solid::from_convex(&cube).expect("a box");
     let cast = Cast::new(cube.at(at(-3.0, 0.5, 1.0)), corner.at(Pose::IDENTITY), DVec3::X);

@@ -1,4 +1,4 @@
-//! Answers and proofs as files, in one program: each program is linked for itself.
+//! Tests of records and proof files in one program, because each program is linked separately.
 
 mod claims;
 mod common;

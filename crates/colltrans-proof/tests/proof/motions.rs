@@ -1,4 +1,5 @@
-//! Motions as files: queries come back as the same bits, and proofs of several pairs or of solids hold.
+//! Files about motions: queries are read back with the same bits, and proofs of several pairs or of solids
+//! hold.
 
 use colltrans_convex::{ConvexPolyhedron, Pose};
 use colltrans_motion::{Motion, MotionCast, MotionOutcome};
@@ -7,7 +8,7 @@ use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use glam::DVec3;
 
 #[test]
-fn motions_come_back_in_bits() {
+fn motion_case_round_trips_exactly() {
     for (family, ..) in FAMILIES {
         for seed in 0..10 {
             let setting = setting(family, seed);
@@ -36,7 +37,7 @@ fn motions_come_back_in_bits() {
 }
 
 #[test]
-fn what_is_no_motion_is_refused() {
+fn invalid_motion_case_is_rejected_with_reason() {
     let setting = setting("boxes", 3);
     let bodies = setting.bodies().expect("bodies");
     let cast = setting.query(&bodies).expect("a query");
@@ -65,9 +66,10 @@ fn what_is_no_motion_is_refused() {
     assert_eq!(error, "the version of the format is missing, not 2");
 }
 
-/// In a file of several pairs, a proof about the bodies as solids is written as one of solids, which `check.py` can read.
+/// In a file of several pairs, a proof that treats the bodies as solids is stored as one of solids, which
+/// `check.py` reads.
 #[test]
-fn a_file_of_several_pairs_has_proofs_of_solids() {
+fn joined_motion_proofs_store_solid_proof_as_solids() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
     let rest = Motion::still(Pose::from_translation(DVec3::X * 1.5).unwrap());
@@ -76,7 +78,7 @@ fn a_file_of_several_pairs_has_proofs_of_solids() {
     let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
     let convex = cast.first_contact().unwrap();
     let MotionOutcome::Free(mut free) = convex.clone() else { panic!("{convex:?}") };
-    // As of a pair whose planes run out.
+    // Simulate a pair whose planes do not suffice.
     free.proof.spans.clear();
     free.proof.solids = Some(Box::new(solids.proof().clone()));
     let files = [MotionOutcome::Free(free), convex].map(|of| ProofFile::of_motion(&cast, &of));
@@ -96,10 +98,10 @@ fn a_file_of_several_pairs_has_proofs_of_solids() {
     assert!(other != saved && ProofFile::from_json(&other).is_err());
 }
 
-/// A block slides past a cube at a distance of 5e-4. The same question about bodies that leave out 1e-3 of what they
-/// were made of, which only a file can say of such bodies, is not answered by the facets alone.
+/// A block slides past a cube at distance 5e-4. For bodies with a hull error of 1e-3, which only a file can
+/// have, the facets alone prove nothing.
 #[test]
-fn a_proof_of_solids_leaves_what_hulls_leave_out() {
+fn solid_proof_does_not_cover_hull_error() {
     let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
     let beside = Pose::from_translation(DVec3::new(1.0 + 5e-4, -3.0, 0.0)).unwrap();
     let (rest, slide) = (Motion::still(Pose::IDENTITY), Motion::slide(beside, DVec3::Y * 6.0));

@@ -1,4 +1,4 @@
-//! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
+//! Proof files hold, and do not hold after a number of a claim is changed.
 
 use colltrans_convex::{
     Cast, CertificateError, ConvexPolyhedron, ObstacleId, Pair, Pose, QueryError,
@@ -17,8 +17,8 @@ use serde_json::{Value, json};
 
 use crate::common::solid;
 
-/// Written, read, checked.
-fn holds(proof: &ProofFile, of: &str) -> Value {
+/// Writes, reads and checks a proof.
+fn assert_holds(proof: &ProofFile, of: &str) -> Value {
     let text = proof.to_json();
     let read = ProofFile::from_json(&text).unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
     read.check().unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
@@ -27,22 +27,22 @@ fn holds(proof: &ProofFile, of: &str) -> Value {
 }
 
 #[test]
-fn proofs_of_every_family_hold() {
+fn cast_proofs_of_all_families_hold() {
     for (family, ..) in FAMILIES {
         for seed in 0..20 {
             let setting = setting(family, seed);
             let bodies = setting.bodies().expect("bodies");
             let cast = setting.query(&bodies).expect("a query");
             let range = cast.contact_range().expect("an answer");
-            holds(&ProofFile::of_range(&cast, &range), family);
+            assert_holds(&ProofFile::of_range(&cast, &range), family);
             let clearance = cast.clearance().expect("an answer");
-            holds(&ProofFile::of_clearance(&cast, &clearance), family);
+            assert_holds(&ProofFile::of_clearance(&cast, &clearance), family);
         }
     }
 }
 
 #[test]
-fn distances_of_every_family_hold() {
+fn distance_and_depth_proofs_of_all_families_hold() {
     for (family, ..) in FAMILIES {
         for seed in 0..20 {
             let setting = setting(family, seed);
@@ -51,18 +51,18 @@ fn distances_of_every_family_hold() {
             let moving = cast.moving().at(cast.moving_pose());
             let pair = Pair::new(moving, cast.fixed().at(cast.fixed_pose())).expect("a pair");
             let distance = pair.distance().expect("an answer");
-            holds(&ProofFile::of_distance(&pair, &distance), family);
-            holds(&ProofFile::of_depth(&pair, &pair.depth().expect("an answer")), family);
+            assert_holds(&ProofFile::of_distance(&pair, &distance), family);
+            assert_holds(&ProofFile::of_depth(&pair, &pair.depth().expect("an answer")), family);
             for length in [0.5 * distance.lower, 2.0 * distance.upper, distance.lower] {
                 let within = pair.within(length).expect("an answer");
-                holds(&ProofFile::of_distance(&pair, &within), family);
+                assert_holds(&ProofFile::of_distance(&pair, &within), family);
             }
         }
     }
 }
 
 #[test]
-fn a_number_of_a_distance_that_is_changed_is_noticed() {
+fn modified_distance_or_depth_proof_is_rejected() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
     let turn = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_z(0.2);
     let proof = |x: f64| {
@@ -70,7 +70,7 @@ fn a_number_of_a_distance_that_is_changed_is_noticed() {
         let pair = Pair::new(cube.at(start), cube.at(Pose::IDENTITY)).expect("a pair");
         let depth = ProofFile::of_depth(&pair, &pair.depth().expect("an answer"));
         let distance = pair.distance().expect("an answer");
-        [ProofFile::of_distance(&pair, &distance), depth].map(|proof| holds(&proof, "cubes"))
+        [ProofFile::of_distance(&pair, &distance), depth].map(|proof| assert_holds(&proof, "cubes"))
     };
     let both: [fn(f64) -> f64; 2] = [|x| x * 1.001 + 1e-3, |x| x * 0.999 - 1e-3];
     let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
@@ -78,28 +78,28 @@ fn a_number_of_a_distance_that_is_changed_is_noticed() {
     let [apart, _] = proof(-3.1);
     for place in ["gap/normal", "near/weights"] {
         let place = format!("/statement/distance/{place}");
-        assert_eq!(believed(&apart, &place, &both), [""; 0], "{place}");
+        assert_eq!(undetected_changes(&apart, &place, &both), [""; 0], "{place}");
     }
-    assert_eq!(believed(&apart, "/statement/distance/gap/gap", &up), [""; 0]);
-    assert_eq!(believed(&apart, "/statement/distance/near/distance", &down), [""; 0]);
+    assert_eq!(undetected_changes(&apart, "/statement/distance/gap/gap", &up), [""; 0]);
+    assert_eq!(undetected_changes(&apart, "/statement/distance/near/distance", &down), [""; 0]);
     let [meeting, depth] = proof(-0.3);
-    assert_eq!(believed(&meeting, "/statement/distance/near/distance", &down), [""; 0]);
-    assert_eq!(believed(&depth, "/statement/depth/lower", &up), [""; 0]);
-    assert_eq!(believed(&depth, "/statement/depth/upper", &down), [""; 0]);
+    assert_eq!(undetected_changes(&meeting, "/statement/distance/near/distance", &down), [""; 0]);
+    assert_eq!(undetected_changes(&depth, "/statement/depth/lower", &up), [""; 0]);
+    assert_eq!(undetected_changes(&depth, "/statement/depth/upper", &down), [""; 0]);
     let other: [fn(f64) -> f64; 1] = [|x| x + 0.01];
-    assert_eq!(believed(&depth, "/statement/depth/direction", &other), [""; 0]);
-    assert_eq!(believed(&depth, "/statement/depth/enclosure/normals", &other), [""; 0]);
-    assert_eq!(believed(&depth, "/statement/depth/enclosure/triangles", &other), [""; 0]);
+    assert_eq!(undetected_changes(&depth, "/statement/depth/direction", &other), [""; 0]);
+    assert_eq!(undetected_changes(&depth, "/statement/depth/enclosure/normals", &other), [""; 0]);
+    assert_eq!(undetected_changes(&depth, "/statement/depth/enclosure/triangles", &other), [""; 0]);
 }
 
-/// A distance has no direction, a cast has one; bodies are of the kind that is spoken of.
+/// A distance has no direction, a cast has one, and the bodies have the kind of the statement.
 #[test]
-fn a_statement_fits_its_file() {
+fn mismatched_statement_query_or_placement_is_rejected() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
     let start = Pose::from_translation(DVec3::new(-3.0, 0.25, 0.5)).expect("a pose");
     let pair = Pair::new(cube.at(start), cube.at(Pose::IDENTITY)).expect("a pair");
     let proof = ProofFile::of_distance(&pair, &pair.distance().expect("an answer"));
-    let file = holds(&proof, "cubes");
+    let file = assert_holds(&proof, "cubes");
     let read = |file: &Value| ProofFile::from_json(&file.to_string());
     let is_refused = |file: &Value| matches!(read(file), Err(ProofFileError::Statement));
     let of = |name: &str, value: Value| {
@@ -107,7 +107,7 @@ fn a_statement_fits_its_file() {
         other[name] = value;
         other
     };
-    let cast = cube_cast(&cube, 0.3);
+    let cast = cube_proof(&cube, 0.3);
     for query in [&cast["query"], &json!({"scene": {"start_overlap": "refuse"}})] {
         assert!(is_refused(&of("query", query.clone())), "{query}");
     }
@@ -137,13 +137,13 @@ fn a_statement_fits_its_file() {
     assert!(read(&of("version", json!(2.0))).is_err() && read(&of("more", json!(1))).is_err());
 }
 
-fn refused(file: &Value) -> bool {
+fn is_rejected(file: &Value) -> bool {
     let text = file.to_string();
     ProofFile::from_json(&text).map_or(true, |proof| proof.check().is_err())
 }
 
 #[test]
-fn scenes_of_every_family_have_proofs() {
+fn scene_proofs_of_all_families_hold() {
     let (mut nearest, mut shared) = (0, 0);
     for family in among::FAMILIES {
         for seed in 0..30 {
@@ -163,7 +163,7 @@ fn scenes_of_every_family_have_proofs() {
                 .into_iter()
                 .flatten()
                 {
-                    let file = holds(&proof, family);
+                    let file = assert_holds(&proof, family);
                     let count = |of: &Value| of.as_array().expect("a list").len();
                     let places = count(&file["placement"]["poses"]);
                     assert_eq!(proof.obstacles(), Some(asked.count()));
@@ -176,9 +176,9 @@ fn scenes_of_every_family_have_proofs() {
     assert!(nearest > 200 && shared > 200, "{nearest}, {shared}");
 }
 
-/// Cubes in a row, a washer in it, and a cube above the third: whatever number is changed for the worse.
+/// A row of cubes and a washer, with a cube above the third one. Every change weakens the proof.
 #[test]
-fn a_number_of_a_scene_that_is_changed_is_noticed() {
+fn modified_scene_proof_is_rejected() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
     let mut row = Obstacles::new();
     for k in 0..4 {
@@ -197,79 +197,87 @@ fn a_number_of_a_scene_that_is_changed_is_noticed() {
         ProofFile::of_within(&asked, 3.5),
         ProofFile::of_scene_clearance(&asked, down),
     ]
-    .map(|proof| holds(&proof.expect("an answer"), "a row"));
+    .map(|proof| assert_holds(&proof.expect("an answer"), "a row"));
     let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
     let down: [fn(f64) -> f64; 1] = [|x| x - 1e-9];
     let far: [fn(f64) -> f64; 1] = [|x| x + 9.0];
-    assert_eq!(believed(&nearest, "/statement/nearest/lower", &up), [""; 0]);
-    assert_eq!(believed(&nearest, "/statement/nearest/near/convex/distance", &down), [""; 0]);
-    assert_eq!(believed(&nearest, "/statement/nearest/obstacle", &far), [""; 0]);
-    assert_eq!(believed(&within, "/statement/within/length", &far), [""; 0]);
-    assert_eq!(believed(&within, "/statement/within/closer/0/0", &far), [""; 0]);
-    assert_eq!(believed(&stop, "/statement/scene_clearance/lower", &up), [""; 0]);
-    assert_eq!(believed(&stop, "/statement/scene_clearance/stop", &far), [""; 0]);
+    assert_eq!(undetected_changes(&nearest, "/statement/nearest/lower", &up), [""; 0]);
+    assert_eq!(
+        undetected_changes(&nearest, "/statement/nearest/near/convex/distance", &down),
+        [""; 0]
+    );
+    assert_eq!(undetected_changes(&nearest, "/statement/nearest/obstacle", &far), [""; 0]);
+    assert_eq!(undetected_changes(&within, "/statement/within/length", &far), [""; 0]);
+    assert_eq!(undetected_changes(&within, "/statement/within/closer/0/0", &far), [""; 0]);
+    assert_eq!(undetected_changes(&stop, "/statement/scene_clearance/lower", &up), [""; 0]);
+    assert_eq!(undetected_changes(&stop, "/statement/scene_clearance/stop", &far), [""; 0]);
     for file in [&nearest, &within, &stop] {
-        // A cube that is elsewhere: the nearest one, or one that is now in the way.
+        // A cube in another place: the nearest one, or one that is now in the way.
         let mut moved = file.clone();
         moved["placement"]["poses"][3] = file["placement"]["poses"][1].clone();
-        assert!(refused(&moved));
+        assert!(is_rejected(&moved));
         let mut near = file.clone();
         near["placement"]["poses"][1]["pose"] = file["placement"]["poses"][0]["pose"].clone();
-        assert!(refused(&near), "a cube where the moving one is");
+        assert!(is_rejected(&near), "a cube at the place of the moving one");
         let mut fewer = file.clone();
         fewer["placement"]["poses"].as_array_mut().expect("places").truncate(1);
-        assert!(refused(&fewer));
+        assert!(is_rejected(&fewer));
         let mut other = file.clone();
         other["statement"] = json!({"nearest": {}, "within": {}});
-        assert!(refused(&other));
+        assert!(is_rejected(&other));
     }
-    // Of an obstacle one thing is said, of a length that is one, and whatever is said is looked at.
+    // An obstacle has one claim, a length must be valid, and every claim is checked.
     let false_gap = json!({"convex": {"normal": [1.0, 0.0, 0.0], "gap": 1e9}});
     let mut twice = within.clone();
     let close = within["statement"]["within"]["closer"][0][0].clone();
     twice["statement"]["within"]["apart"] = json!([[close, false_gap]]);
-    assert!(refused(&twice));
+    assert!(is_rejected(&twice));
     let mut open = within.clone();
     open["statement"]["within"]["undecided"] = json!([close]);
-    assert!(refused(&open));
+    assert!(is_rejected(&open));
     let mut none_closer = within.clone();
     none_closer["statement"]["within"]["closer"] = json!([]);
     none_closer["statement"]["within"]["length"] = json!(-1.0);
-    assert!(refused(&none_closer));
+    assert!(is_rejected(&none_closer));
     let mut unclaimed = nearest.clone();
     unclaimed["statement"]["nearest"]["lower"] = json!(0.0);
     unclaimed["statement"]["nearest"]["apart"] = json!([[0, false_gap]]);
-    assert!(refused(&unclaimed));
-    // A bound that is weaker is not where the obstacle stops the moving body, nor what is nearest.
-    let said = |file: &Value| ProofFile::from_json(&file.to_string()).expect("a proof").to_string();
+    assert!(is_rejected(&unclaimed));
+    // A weaker bound does not mean that the obstacle stops the body at once or is the nearest one.
+    let text_of =
+        |file: &Value| ProofFile::from_json(&file.to_string()).expect("a proof").to_string();
     let mut weak = stop.clone();
     weak["statement"]["scene_clearance"]["lower"] = json!(0.0);
-    assert!(!refused(&weak) && !said(&weak).contains("overlaps"), "{}", said(&weak));
-    assert!(said(&stop).contains("obstacle 2 does by 2."), "{}", said(&stop));
+    assert!(!is_rejected(&weak) && !text_of(&weak).contains("overlaps"), "{}", text_of(&weak));
+    assert!(text_of(&stop).contains("obstacle 2 does by 2."), "{}", text_of(&stop));
     let mut missing = stop.clone();
     missing["statement"]["scene_clearance"].as_object_mut().expect("a claim").remove("stop");
-    assert!(refused(&missing));
+    assert!(is_rejected(&missing));
     let mut far = nearest.clone();
     far["statement"]["nearest"]["lower"] = json!(0.5);
-    assert!(said(&far).ends_with("none is nearer than 0.5"), "{}", said(&far));
+    assert!(text_of(&far).ends_with("none is nearer than 0.5"), "{}", text_of(&far));
     let mut none = nearest;
     none["placement"]["poses"][1]["body"] = json!(7);
     let error = ProofFile::from_json(&none.to_string()).expect_err("there is no such body");
-    assert_eq!(error.to_string(), "a place names the body 7, and there are 6, from 0 on");
+    assert_eq!(
+        error.to_string(),
+        "a place refers to body 7; the file has 6 bodies, counted from 0"
+    );
 }
 
-/// Changes of every number below a pointer, one at a time; names of those that are still believed.
-fn believed(file: &Value, pointer: &str, changes: &[fn(f64) -> f64]) -> Vec<String> {
+/// Changes every number below a pointer, one at a time. Returns the changes after which the proof still
+/// holds.
+fn undetected_changes(file: &Value, pointer: &str, changes: &[fn(f64) -> f64]) -> Vec<String> {
     let mut found = Vec::new();
     match file.pointer(pointer).expect("it is there") {
         Value::Object(fields) => {
             for name in fields.keys() {
-                found.extend(believed(file, &format!("{pointer}/{name}"), changes));
+                found.extend(undetected_changes(file, &format!("{pointer}/{name}"), changes));
             }
         }
         Value::Array(list) => {
             for k in 0..list.len() {
-                found.extend(believed(file, &format!("{pointer}/{k}"), changes));
+                found.extend(undetected_changes(file, &format!("{pointer}/{k}"), changes));
             }
         }
         Value::Number(number) => {
@@ -280,7 +288,7 @@ fn believed(file: &Value, pointer: &str, changes: &[fn(f64) -> f64]) -> Vec<Stri
                 let changed = change(number);
                 *wrong.pointer_mut(pointer).expect("it is there") =
                     if whole { json!(number as u64 + 1) } else { json!(changed) };
-                if !refused(&wrong) {
+                if !is_rejected(&wrong) {
                     found.push(format!("{pointer}: {changed:?} for {number:?}"));
                 }
             }
@@ -290,49 +298,53 @@ fn believed(file: &Value, pointer: &str, changes: &[fn(f64) -> f64]) -> Vec<Stri
     found
 }
 
-fn cube_cast(body: &ConvexPolyhedron, y: f64) -> Value {
+fn cube_proof(body: &ConvexPolyhedron, y: f64) -> Value {
     let turn = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_z(0.2);
     let start = Pose::new(turn, DVec3::new(-3.1, y, 0.1)).expect("a pose");
     let cast = Cast::new(body.at(start), body.at(Pose::IDENTITY), DVec3::new(1.0, 0.1, 0.2))
         .expect("a direction");
-    holds(&ProofFile::of_range(&cast, &cast.contact_range().expect("an answer")), "cubes")
+    assert_holds(&ProofFile::of_range(&cast, &cast.contact_range().expect("an answer")), "cubes")
 }
 
 #[test]
-fn a_number_that_is_changed_is_noticed() {
+fn modified_cast_proof_is_rejected() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
-    let file = cube_cast(&cube, 0.3);
+    let file = cube_proof(&cube, 0.3);
     let both: [fn(f64) -> f64; 2] = [|x| x * 1.001 + 1e-3, |x| x * 0.999 - 1e-3];
     for place in ["/placement/poses/0/pose", "/placement/poses/1/pose", "/query/cast/direction"] {
-        assert_eq!(believed(&file, place, &both), [""; 0], "{place}");
+        assert_eq!(undetected_changes(&file, place, &both), [""; 0], "{place}");
     }
     for end in ["first", "last"] {
         let end = format!("/statement/contacts/{end}");
         for place in ["normal", "pairs", "weights"] {
-            assert_eq!(believed(&file, &format!("{end}/{place}"), &both), [""; 0], "{place}");
+            assert_eq!(
+                undetected_changes(&file, &format!("{end}/{place}"), &both),
+                [""; 0],
+                "{place}"
+            );
         }
-        // Less than is proven is proven, too.
+        // A weaker claim than the proven one also holds.
         let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
         let down: [fn(f64) -> f64; 1] = [|x| x - 1e-9];
-        assert_eq!(believed(&file, &format!("{end}/lower"), &up), [""; 0]);
-        assert_eq!(believed(&file, &format!("{end}/rounding"), &up), [""; 0]);
-        assert_eq!(believed(&file, &format!("{end}/upper"), &down), [""; 0]);
+        assert_eq!(undetected_changes(&file, &format!("{end}/lower"), &up), [""; 0]);
+        assert_eq!(undetected_changes(&file, &format!("{end}/rounding"), &up), [""; 0]);
+        assert_eq!(undetected_changes(&file, &format!("{end}/upper"), &down), [""; 0]);
         let weaker: [fn(f64) -> f64; 1] = [|x| x + 0.5];
-        assert_eq!(believed(&file, &format!("{end}/upper"), &weaker).len(), 1);
+        assert_eq!(undetected_changes(&file, &format!("{end}/upper"), &weaker).len(), 1);
     }
-    let apart = cube_cast(&cube, 3.0);
+    let apart = cube_proof(&cube, 3.0);
     let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
-    assert_eq!(believed(&apart, "/statement/separation/margin", &up), [""; 0]);
-    assert_eq!(believed(&apart, "/statement/separation/normal", &both), [""; 0]);
+    assert_eq!(undetected_changes(&apart, "/statement/separation/margin", &up), [""; 0]);
+    assert_eq!(undetected_changes(&apart, "/statement/separation/normal", &both), [""; 0]);
 }
 
-fn said(file: &Value) -> String {
+fn text_of(file: &Value) -> String {
     ProofFile::from_json(&file.to_string()).expect("a proof").to_string()
 }
 
-/// Cubes whose sides are in one plane, and ones that overlap by less than is tolerated.
+/// Cubes with coplanar sides, and cubes that overlap by less than the graze tolerance.
 #[test]
-fn a_slide_is_said_to_be_one() {
+fn sliding_bodies_report_slide() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
     for (y, graze, overlap) in [(1.0, 0.0, 0.0), (0.875, 0.25, 0.125)] {
         let start = Pose::from_translation(DVec3::new(-3.0, y, 0.25)).expect("a pose");
@@ -341,45 +353,50 @@ fn a_slide_is_said_to_be_one() {
             .expect("a cast");
         let clearance = cast.clearance().expect("an answer");
         let outcome = cast.first_contact().expect("an answer");
-        let file = holds(&ProofFile::of_clearance(&cast, &clearance), "a slide");
-        assert_eq!(file, holds(&ProofFile::of_outcome(&cast, &outcome), "a slide"));
+        let file = assert_holds(&ProofFile::of_clearance(&cast, &clearance), "a slide");
+        assert_eq!(file, assert_holds(&ProofFile::of_outcome(&cast, &outcome), "a slide"));
         let range = cast.contact_range().expect("an answer");
-        let both = holds(&ProofFile::of_range(&cast, &range), "a slide");
-        assert!(said(&both).contains("; the bodies meet "), "{}", said(&both));
+        let both = assert_holds(&ProofFile::of_range(&cast, &range), "a slide");
+        assert!(text_of(&both).contains("; the bodies meet "), "{}", text_of(&both));
         let slide = "/statement/contacts/slide";
         let told = file.pointer(&format!("{slide}/overlap")).and_then(Value::as_f64);
         assert!(told.is_some_and(|told| (told - overlap).abs() < 1e-14), "{told:?}");
-        let words = "the bodies slide along each other, seen along the direction they overlap by";
-        assert!(said(&file).starts_with(words), "{}", said(&file));
+        let words = "the bodies slide along each other, their shadows overlap by";
+        assert!(text_of(&file).starts_with(words), "{}", text_of(&file));
         let less: [fn(f64) -> f64; 1] = [|x| x - 1e-12];
-        assert_eq!(believed(&file, &format!("{slide}/overlap"), &less), [""; 0]);
+        assert_eq!(undetected_changes(&file, &format!("{slide}/overlap"), &less), [""; 0]);
         let other: [fn(f64) -> f64; 1] = [|x| x + 0.1];
-        assert_eq!(believed(&file, &format!("{slide}/normal"), &other), [""; 0]);
-        assert_eq!(believed(&file, &format!("{slide}/overlap"), &other).len(), 1);
+        assert_eq!(undetected_changes(&file, &format!("{slide}/normal"), &other), [""; 0]);
+        assert_eq!(undetected_changes(&file, &format!("{slide}/overlap"), &other).len(), 1);
         let mut alone = file;
         alone["statement"]["contacts"].as_object_mut().expect("it").remove("first");
         assert!(ProofFile::from_json(&alone.to_string()).is_err(), "no contact is claimed");
     }
 }
 
-/// The moving body a little larger.
+/// The moving body is slightly larger.
 #[test]
-fn another_body_is_noticed() {
+fn proof_with_enlarged_body_is_rejected() {
     let small = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
-    let file = cube_cast(&small, 0.3);
+    let file = cube_proof(&small, 0.3);
     let mut wrong = file.clone();
     for k in 0..8 {
         let x = wrong.pointer_mut(&format!("/bodies/0/convex/vertices/{k}/0")).expect("a vertex");
         *x = json!(x.as_f64().expect("a number") * 1.001);
     }
-    assert!(refused(&wrong));
+    assert!(is_rejected(&wrong));
 }
 
-fn parts() -> [Solid; 2] {
+fn bolt_and_washer() -> [Solid; 2] {
     [solid(&bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 12)), solid(&washer([1.5, 4.0], [0.0, 1.0], 9))]
 }
 
-fn of_parts([a, b]: &[Solid; 2], at: DVec3, direction: DVec3, tolerance: f64) -> Value {
+fn bolt_and_washer_proof(
+    [a, b]: &[Solid; 2],
+    at: DVec3,
+    direction: DVec3,
+    tolerance: f64,
+) -> Value {
     let pose = Pose::from_translation(at).expect("in range");
     let cast = Cast::new(a.at(pose), b.at(Pose::IDENTITY), direction).expect("a direction");
     let cast = cast.with_tolerance(tolerance).expect("a tolerance");
@@ -389,14 +406,15 @@ fn of_parts([a, b]: &[Solid; 2], at: DVec3, direction: DVec3, tolerance: f64) ->
         said.stop.is_some(),
         matches!(cast.clearance(), Ok(colltrans_convex::Clearance::Blocked { .. }))
     );
-    holds(&proof, "parts")
+    assert_holds(&proof, "parts")
 }
 
 #[test]
-fn proofs_between_solids_hold_and_their_numbers_count() {
-    let parts = parts();
+fn solid_proofs_hold_and_modified_ones_are_rejected() {
+    let parts = bolt_and_washer();
     for tolerance in [0.0, 1e-6] {
-        let down = of_parts(&parts, DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, tolerance);
+        let down =
+            bolt_and_washer_proof(&parts, DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, tolerance);
         let far: [fn(f64) -> f64; 1] = [|x| x + 0.01];
         for place in [
             "/placement/poses/0/pose",
@@ -404,34 +422,41 @@ fn proofs_between_solids_hold_and_their_numbers_count() {
             "/query/cast/direction",
             "/statement/clearance/certificate",
         ] {
-            // Aside the bolt has play, and what stops it is no other.
-            let mut found = believed(&down, place, &far);
+            // The bolt has lateral play, and the same facets stop it.
+            let mut found = undetected_changes(&down, place, &far);
             found.retain(|place| {
                 !place.contains("translation/0") && !place.contains("translation/1")
             });
             assert_eq!(found, [""; 0], "{place}");
         }
-        assert_eq!(believed(&down, "/statement/clearance/stop/facets", &far), [""; 0]);
-        assert_eq!(believed(&down, "/statement/clearance/stop/translation/lower", &far), [""; 0]);
+        assert_eq!(undetected_changes(&down, "/statement/clearance/stop/facets", &far), [""; 0]);
+        assert_eq!(
+            undetected_changes(&down, "/statement/clearance/stop/translation/lower", &far),
+            [""; 0]
+        );
         let lost: [fn(f64) -> f64; 1] = [|x| x - 0.01];
-        assert_eq!(believed(&down, "/statement/clearance/stop/translation/upper", &lost), [""; 0]);
-        of_parts(&parts, DVec3::X, DVec3::Z, tolerance);
-        let free = of_parts(&parts, DVec3::X * 9.0, DVec3::Z, tolerance);
+        assert_eq!(
+            undetected_changes(&down, "/statement/clearance/stop/translation/upper", &lost),
+            [""; 0]
+        );
+        bolt_and_washer_proof(&parts, DVec3::X, DVec3::Z, tolerance);
+        let free = bolt_and_washer_proof(&parts, DVec3::X * 9.0, DVec3::Z, tolerance);
         assert!(free.pointer("/statement/clearance/separation").is_some());
-        assert_eq!(believed(&free, "/statement/clearance/separation", &far), [""; 0]);
+        assert_eq!(undetected_changes(&free, "/statement/clearance/separation", &far), [""; 0]);
         let mut wrong = down;
         wrong["statement"]["clearance"].as_object_mut().expect("it").remove("stop");
-        assert!(refused(&wrong), "the certificate names a stop");
+        assert!(is_rejected(&wrong), "the certificate names a stop");
         let mut wrong = free;
         wrong["statement"]["clearance"]["certificate"]["cover"] = json!("s");
-        assert!(refused(&wrong));
+        assert!(is_rejected(&wrong));
     }
 }
 
 #[test]
-fn bounds_that_are_missing_or_wrong_are_told() {
+fn missing_and_wrong_bounds_of_stop_are_reported() {
     let place = "/statement/clearance/stop/translation";
-    let file = of_parts(&parts(), DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, 0.0);
+    let file =
+        bolt_and_washer_proof(&bolt_and_washer(), DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, 0.0);
     let with = |lower: Value, upper: Value| {
         let mut other = file.clone();
         let translation = other.pointer_mut(place).expect("a stop");
@@ -442,13 +467,13 @@ fn bounds_that_are_missing_or_wrong_are_told() {
     for (proof, words) in [
         (
             with(low.clone(), high.clone()),
-            "the facets that do meet, as they are, between 0.0 and 9.0",
+            "the blocking facets meet in nominal position between 0.0 and 9.0",
         ),
-        (with(Value::Null, high), "the facets that do meet, as they are, by 9.0"),
-        (with(low, Value::Null), "the facets that do meet, as they are, not before 0.0"),
+        (with(Value::Null, high), "the blocking facets meet in nominal position by 9.0"),
+        (with(low, Value::Null), "the blocking facets meet in nominal position not before 0.0"),
         (
             with(Value::Null, Value::Null),
-            "it is not said where the facets that do meet, as they are",
+            "no claim is made where the blocking facets meet in nominal position",
         ),
     ] {
         proof.check().expect("less than is proven");
@@ -462,18 +487,19 @@ fn bounds_that_are_missing_or_wrong_are_told() {
 }
 
 #[test]
-fn shrunk_bodies_that_are_inside_out_are_told() {
-    let parts = parts();
+fn inverted_facets_of_offset_bodies_are_reported() {
+    let parts = bolt_and_washer();
     let proof = |tolerance| {
-        let file = of_parts(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, tolerance);
+        let file =
+            bolt_and_washer_proof(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, tolerance);
         ProofFile::from_json(&file.to_string()).expect("a proof")
     };
     assert_eq!(proof(0.25).inverted(), [0, 0]);
     assert!(!proof(0.25).to_string().contains("inside out"));
-    // Of the washer, one thick, nothing would be left; a cup whose bottom is as thick has walls.
+    // The washer of thickness 1 would vanish. The bottom of the cup has the same thickness, but its walls remain.
     let profile = [[0.0, 0.0], [9.0, 0.0], [9.0, 6.0], [7.0, 6.0], [7.0, 1.0], [0.0, 1.0]];
     let parts = [solid(&bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 12)), solid(&turned(&profile, 12))];
-    let file = of_parts(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, 1.5);
+    let file = bolt_and_washer_proof(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, 1.5);
     let inside_out = ProofFile::from_json(&file.to_string()).expect("a proof");
     let [bolt, cup] = inside_out.inverted();
     assert!(cup > 0, "{cup}");
@@ -493,7 +519,7 @@ fn shrunk_bodies_that_are_inside_out_are_told() {
 }
 
 #[test]
-fn obstacles_that_are_undecided_are_named_as_such() {
+fn undecided_obstacles_are_listed_separately() {
     let mut obstacles = Obstacles::new();
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
     for x in [2.0, 3.0] {
@@ -516,8 +542,8 @@ fn obstacles_that_are_undecided_are_named_as_such() {
 }
 
 #[test]
-fn a_proof_of_bodies_of_which_nothing_is_left_is_refused() {
-    let mut file = of_parts(&parts(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.5);
+fn proof_of_vanished_offset_body_is_rejected() {
+    let mut file = bolt_and_washer_proof(&bolt_and_washer(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.5);
     file["statement"]["clearance"]["certificate"]["tolerance"] = 2.0.into();
     let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
     let refused = proof.check().expect_err("nothing is left of the washer");
@@ -531,8 +557,8 @@ fn a_proof_of_bodies_of_which_nothing_is_left_is_refused() {
 }
 
 #[test]
-fn facets_that_are_not_those_of_the_proof_are_refused() {
-    let mut file = of_parts(&parts(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.0);
+fn stop_with_other_facets_is_rejected() {
+    let mut file = bolt_and_washer_proof(&bolt_and_washer(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.0);
     let stop = &mut file["statement"]["clearance"]["stop"]["facets"][0];
     *stop = (stop.as_u64().expect("a number") + 1).into();
     let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
@@ -543,14 +569,14 @@ fn facets_that_are_not_those_of_the_proof_are_refused() {
     );
 }
 
-/// What is said of solids.
+/// Returns a statement about solids.
 fn solid_claim() -> Value {
-    of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0)["statement"].take()
+    bolt_and_washer_proof(&bolt_and_washer(), DVec3::ZERO, DVec3::NEG_Z, 0.0)["statement"].take()
 }
 
-/// The default tolerance shrinks both bodies, and the answer's bounds come from their hulls.
+/// The default tolerance offsets both bodies, and the bounds of the answer come from their hulls.
 #[test]
-fn convex_bodies_as_solids_are_proven_with_the_default_tolerance() {
+fn convex_solids_have_proof_with_default_tolerance() {
     let mut random = Random::new(3);
     let mut blocked = 0;
     for _ in 0..200 {
@@ -566,7 +592,7 @@ fn convex_bodies_as_solids_are_proven_with_the_default_tolerance() {
         let [start, target] = [DVec3::Z * 5.0, DVec3::ZERO].map(&mut pose);
         let cast = Cast::new(a.at(start), b.at(target), DVec3::NEG_Z).expect("a query");
         let proof = ProofFile::of_solids(&cast, [&[&a], &[&b]]).expect("a proof");
-        holds(&proof, "convex bodies");
+        assert_holds(&proof, "convex bodies");
         blocked +=
             i32::from(matches!(cast.clearance(), Ok(colltrans_convex::Clearance::Blocked { .. })));
     }
@@ -574,8 +600,8 @@ fn convex_bodies_as_solids_are_proven_with_the_default_tolerance() {
 }
 
 #[test]
-fn unions_and_turned_solids_are_proven() {
-    let [bolt, washer] = parts();
+fn rotated_unions_have_proof_and_wrong_pieces_are_rejected() {
+    let [bolt, washer] = bolt_and_washer();
     let cube = ConvexPolyhedron::cuboid(DVec3::new(-0.5, -0.5, 8.5), DVec3::new(0.5, 0.5, 12.0));
     let cube = Solid::from_convex(&cube.expect("a cube")).expect("closed");
     let union = Solid::from_pieces([&bolt, &cube]).expect("pieces");
@@ -588,33 +614,35 @@ fn unions_and_turned_solids_are_proven() {
             cast = cast.with_start_overlap(StartOverlap::Ignore);
         }
         let proof = ProofFile::of_solids(&cast, [&[&bolt, &cube], &[&washer]]).expect("a proof");
-        holds(&proof, "a union");
+        assert_holds(&proof, "a union");
         let wrong = ProofFile::of_solids(&cast, [&[&bolt], &[&washer]]);
         assert!(matches!(wrong, Err(ProofFileError::Changed { body: 0 })));
     }
 }
 
 #[test]
-fn other_files_are_refused_in_words() {
+fn invalid_files_are_rejected_with_reason() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
-    let file = cube_cast(&cube, 0.3);
+    let file = cube_proof(&cube, 0.3);
     let text = file.to_string();
-    let said = |text: &str| ProofFile::from_json(text).expect_err("no proof").to_string();
-    assert!(said(&text[..text.len() / 2]).contains("it ends too early"));
-    assert!(said("solid cube").contains("it is not JSON"));
-    assert!(said("{}").contains("a saved proof"));
+    let text_of = |text: &str| ProofFile::from_json(text).expect_err("no proof").to_string();
+    assert!(text_of(&text[..text.len() / 2]).contains("it ends too early"));
+    assert!(text_of("solid cube").contains("it is not JSON"));
+    assert!(text_of("{}").contains("a saved proof"));
     assert_eq!(
-        said(&text.replace("colltrans proof", "colltrans proof 1")),
+        text_of(&text.replace("colltrans proof", "colltrans proof 1")),
         "the format is \"colltrans proof 1\", not \"colltrans proof\"; --save-proof writes the files that are accepted"
     );
     let older = text.replace("\"version\":2", "\"version\":1");
-    assert_eq!(said(&older), "the version of the format is 1, not 2");
-    let fit = "the statement has to say something, and to fit the query";
+    assert_eq!(text_of(&older), "the version of the format is 1, not 2");
+    let fit = "the statement must make a claim and fit the query";
     let mut mixed = file.clone();
-    mixed["bodies"][0] = of_parts(&parts(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.0)["bodies"][0].take();
-    assert!(said(&mixed.to_string()).starts_with(fit));
+    mixed["bodies"][0] =
+        bolt_and_washer_proof(&bolt_and_washer(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.0)["bodies"][0]
+            .take();
+    assert!(text_of(&mixed.to_string()).starts_with(fit));
     mixed["bodies"][1] = json!({"pieces": []});
-    assert!(said(&mixed.to_string()).starts_with("body 1: "));
+    assert!(text_of(&mixed.to_string()).starts_with("body 1: "));
     let mut both = file["statement"].clone();
     both["separation"] = json!({"normal": [0, 1, 0], "margin": 1});
     for (says, why) in [
@@ -625,23 +653,23 @@ fn other_files_are_refused_in_words() {
     ] {
         let mut wrong = file.clone();
         wrong["statement"] = says;
-        assert!(said(&wrong.to_string()).starts_with(why), "{}", said(&wrong.to_string()));
+        assert!(text_of(&wrong.to_string()).starts_with(why), "{}", text_of(&wrong.to_string()));
     }
     let large = text.replacen("-3.1", "1e999", 1);
-    assert!(said(&large).contains("a number is larger than any double"), "{}", said(&large));
-    let mut open = of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0);
+    assert!(text_of(&large).contains("a number is larger than any double"), "{}", text_of(&large));
+    let mut open = bolt_and_washer_proof(&bolt_and_washer(), DVec3::ZERO, DVec3::NEG_Z, 0.0);
     let triangles = open.pointer_mut("/bodies/1/pieces/0/triangles").expect("triangles");
     triangles.as_array_mut().expect("a list").pop();
-    let told = said(&open.to_string());
+    let told = text_of(&open.to_string());
     assert!(told.starts_with("body 1: the surface is open") && !told.contains("::"), "{told}");
     let mut still = file;
     still["query"]["cast"]["direction"] = json!([0.0, 0.0, 0.0]);
-    assert!(said(&still.to_string()).contains("direction"));
+    assert!(text_of(&still.to_string()).contains("direction"));
 }
 
 #[test]
-fn distances_of_solids_hold_and_their_numbers_count() {
-    let [a, b] = parts();
+fn solid_distance_proofs_hold_and_modified_ones_are_rejected() {
+    let [a, b] = bolt_and_washer();
     let place = |z: f64| Pose::from_translation(DVec3::new(0.25, 0.125, z)).expect("in range");
     let far: [fn(f64) -> f64; 1] = [|x| x + 0.01];
     let near: [fn(f64) -> f64; 1] = [|x| x - 0.01];
@@ -650,11 +678,14 @@ fn distances_of_solids_hold_and_their_numbers_count() {
         let proof = ProofFile::of_solid_distance(&pair, [&[&a], &[&b]], within).expect("an answer");
         let Statement::SolidDistance(said) = proof.statement() else { panic!("solids") };
         assert_eq!(said.cover.is_empty(), within == Some(100.0), "{within:?}");
-        let file = holds(&proof, "parts");
+        let file = assert_holds(&proof, "parts");
         let of = "/statement/solid_distance";
-        assert_eq!(believed(&file, &format!("{of}/lower"), &far), [""; 0]);
-        assert_eq!(believed(&file, &format!("{of}/near/points/distance"), &near), [""; 0]);
-        assert_eq!(believed(&file, &format!("{of}/near/points/weights"), &near), [""; 0]);
+        assert_eq!(undetected_changes(&file, &format!("{of}/lower"), &far), [""; 0]);
+        assert_eq!(
+            undetected_changes(&file, &format!("{of}/near/points/distance"), &near),
+            [""; 0]
+        );
+        assert_eq!(undetected_changes(&file, &format!("{of}/near/points/weights"), &near), [""; 0]);
     }
     let pair = Pair::new(a.at(place(1.0)), b.at(place(0.0))).expect("a pair");
     let other = ProofFile::of_solid_distance(&pair, [&[&b], &[&b]], None);
@@ -666,15 +697,15 @@ fn distances_of_solids_hold_and_their_numbers_count() {
     );
 }
 
-/// As the checker in fractions does.
+/// The checker in fractions requires the same.
 #[test]
-fn axes_of_a_path_are_unit_vectors() {
+fn path_proof_with_non_unit_axis_is_rejected() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a box");
     let frame = |joint| Frame { parent: None, origin: Pose::IDENTITY, joint };
     for (joint, kind) in
         [(Joint::Sliding(DVec3::X * 3.0), "sliding"), (Joint::Turning(DVec3::Z * 0.1), "turning")]
     {
-        // Where a mechanism is made of it, any length will do.
+        // A mechanism accepts an axis of any length.
         let mechanism = Mechanism::new(vec![frame(joint)]).expect("a joint");
         let path = JointPath::evenly(vec![vec![0.0], vec![0.5]]).expect("a path");
         let there = Pose::from_translation(DVec3::X * 4.0).expect("a pose");
@@ -696,7 +727,7 @@ fn axes_of_a_path_are_unit_vectors() {
 }
 
 #[test]
-fn proofs_of_points_and_segments_hold() {
+fn point_and_segment_proofs_hold() {
     let washer = solid(&washer([1.0, 2.0], [0.0, 0.5], 12));
     let below = Pose::from_translation(DVec3::new(0.25, 0.5, -3.0)).expect("a pose");
     let place = |x: f64| Pose::from_translation(DVec3::new(x, 0.25, 3.0)).expect("a pose");
@@ -712,10 +743,10 @@ fn proofs_of_points_and_segments_hold() {
         let down = Cast::between(body.at(place(x)), washer.at(below), DVec3::NEG_Z);
         let down = down.expect("a cast");
         let proof = ProofFile::of_solids(&down, [&[own], &[&washer]]).expect("their facets");
-        holds(&proof, &of);
+        assert_holds(&proof, &of);
         let pair = Pair::between(washer.at(below), body.at(place(x))).expect("a pair");
         let (_, proof) =
             ProofFile::with_solid_distance(&pair, [&[&washer], &[own]]).expect("their facets");
-        holds(&proof, &of);
+        assert_holds(&proof, &of);
     }
 }

@@ -27,7 +27,7 @@ impl Verdict {
 
     /// Checks whether the library refuses the order or the tree of a body's facets: it takes only its own.
     pub fn is_about_a_tree(&self) -> bool {
-        matches!(self, Self::Refused(why) if why.contains("are not those that are made of its facets"))
+        matches!(self, Self::Refused(why) if why.contains("differ from those that are rebuilt from its facets"))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Statements in words, each in one line.
+//! Statements as text, each in one line.
 
 use std::fmt;
 
@@ -12,17 +12,17 @@ use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::cast::{SolidCertificate, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
 
-/// As many obstacles are named in words.
-const NAMED: usize = 12;
+/// Maximum number of obstacles that a text names.
+const MAX_NAMED: usize = 12;
 
 impl fmt::Display for ProofFile {
-    /// Its statement in words, in one line; translations in multiples of the direction.
+    /// Writes the statement as one line of text. Translations are multiples of the direction.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.query, &self.statement) {
             (Query::Cast(along), _) if along.keep > 0.0 => {
                 let keep = along.keep;
                 write!(f, "counted as meeting where they are {keep:?} apart or nearer, ")?;
-                // Facets that are less than eight noises nearer may pass.
+                // Facets may be closer than the minimum gap by up to eight noises.
                 if matches!(self.statement, Statement::Clearance(_)) {
                     f.write_str("to within rounding, ")?;
                 }
@@ -30,17 +30,17 @@ impl fmt::Display for ProofFile {
             (Query::Scene(choices), statement) => {
                 write!(f, "of {} obstacles, ", self.obstacles().unwrap_or_default())?;
                 if let Statement::SceneClearance(_) = statement {
-                    choices.tell(f)?;
+                    choices.write_text(f)?;
                 }
             }
             _ => {}
         }
         match (&self.query, &self.statement) {
-            (Query::Motions(asked), Statement::Motions(of)) => {
-                f.write_str(&motion::words(asked, of))?;
+            (Query::Motions(pair_options), Statement::Motions(of)) => {
+                f.write_str(&motion::text(pair_options, of))?;
             }
-            (Query::Path(joints), Statement::Path(of)) => of.tell(f, joints)?,
-            (_, statement) => statement.tell(f)?,
+            (Query::Path(joints), Statement::Path(of)) => of.write_text(f, joints)?,
+            (_, statement) => statement.write_text(f)?,
         }
         let [moving, fixed] = self.inverted();
         if [moving, fixed] == [0; 2] {
@@ -55,7 +55,7 @@ impl fmt::Display for ProofFile {
 }
 
 impl Choices {
-    fn tell(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn write_text(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { keep, tolerance, graze_tolerance, .. } = *self;
         if keep > 0.0 {
             write!(f, "counted as met where they are {keep:?} away or nearer, ")?;
@@ -71,30 +71,30 @@ impl Choices {
 }
 
 impl Statement {
-    fn tell(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn write_text(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Contacts(contacts) => fmt::Display::fmt(contacts, f),
             Self::Separation(Separation { margin, .. }) => {
                 write!(
                     f,
-                    "the bodies never meet along the direction: seen along it, a gap of {margin:?} lies between them"
+                    "the bodies never meet along the direction, because their shadows are at least {margin:?} apart"
                 )
             }
             Self::Clearance(statement) => fmt::Display::fmt(statement, f),
             Self::Distance(DistanceStatement { gap, near }) => {
                 let near = near.as_ref().map(|near| near.distance);
-                f.write_str(&apart(gap.map(|gap| gap.gap), near))
+                f.write_str(&distance_text(gap.map(|gap| gap.gap), near))
             }
             Self::Depth(Depth { upper: 0.0, .. }) => write!(f, "the bodies do not overlap"),
             Self::Depth(Depth { lower, upper, direction, .. }) => write!(
                 f,
-                "a translation of the moving body by {upper:?} along {:?} parts the bodies, none below \
+                "a translation of the moving body by {upper:?} along {:?} separates the bodies, none below \
                  {lower:?} does",
                 direction.to_array()
             ),
             Self::SolidDistance(DistanceCertificate { lower, near, .. }) => {
                 let lower = Some(*lower).filter(|lower| *lower > 0.0);
-                f.write_str(&apart(lower, Some(near.distance())))
+                f.write_str(&distance_text(lower, Some(near.distance())))
             }
             Self::FreeDirections(statement) => fmt::Display::fmt(statement, f),
             Self::Nearest(NearestProof { lower, obstacle, near, .. }) => {
@@ -106,11 +106,11 @@ impl Statement {
             }
             Self::Within(NearbyProof { length, closer, undecided, .. }) => {
                 let closer: Vec<ObstacleId> = closer.iter().map(|(id, _)| *id).collect();
-                let (which, is) = listed(&closer);
+                let (which, is) = obstacle_list(&closer);
                 if undecided.is_empty() {
                     write!(f, "{which} {is} at most {length:?} away")?;
                 } else {
-                    let open = listed(undecided).0;
+                    let open = obstacle_list(undecided).0;
                     write!(f, "{which} {is} proven to be at most {length:?} away, {open} may be")?;
                 }
                 f.write_str(", all others are farther")
@@ -138,7 +138,7 @@ impl Statement {
                     ),
                 }
             }
-            // Told with their queries.
+            // The caller writes these statements together with their queries.
             Self::Motions(_) | Self::Path(_) => Ok(()),
         }
     }
@@ -163,13 +163,13 @@ impl fmt::Display for FreeStatement {
         write!(
             f,
             "of {cells} cells of the sphere of directions {blocked} are blocked by a pair of facets each, \
-             {inside}{exactly} are told exactly, {undecided} are undecided"
+             {inside}{exactly} are decided exactly, {undecided} are undecided"
         )
     }
 }
 
-/// How far bodies are apart: at least, at most.
-fn apart(lower: Option<f64>, upper: Option<f64>) -> String {
+/// Returns the bounds of a distance as text.
+fn distance_text(lower: Option<f64>, upper: Option<f64>) -> String {
     match (lower, upper) {
         (_, Some(0.0)) => "the bodies have a point in common".into(),
         (Some(a), Some(b)) => format!("the bodies are between {a:?} and {b:?} apart"),
@@ -184,7 +184,7 @@ impl fmt::Display for Contacts {
         if let Some(Slide { overlap, .. }) = self.slide {
             write!(
                 f,
-                "the bodies slide along each other, seen along the direction they overlap by at most {overlap:?}; "
+                "the bodies slide along each other, their shadows overlap by at most {overlap:?}; "
             )?;
         }
         match self.bounds() {
@@ -231,34 +231,38 @@ impl fmt::Display for SolidStatement {
             Some(Stop { translation, .. }) => write!(
                 f,
                 ", and nothing{later} stops the moving one before a translation of {lower:?}; {}",
-                meeting(translation)
+                contact_bounds_text(translation)
             ),
         }
     }
 }
 
-/// Of the facets that stop a body.
-fn meeting(Bounded { lower, upper, .. }: Bounded) -> String {
+/// Returns the bounds of the contact of the blocking facets as text.
+fn contact_bounds_text(Bounded { lower, upper, .. }: Bounded) -> String {
     match [lower.is_finite(), upper.is_finite()] {
         [true, true] => {
-            format!("the facets that do meet, as they are, between {lower:?} and {upper:?}")
+            format!("the blocking facets meet in nominal position between {lower:?} and {upper:?}")
         }
-        [true, false] => format!("the facets that do meet, as they are, not before {lower:?}"),
-        [false, true] => format!("the facets that do meet, as they are, by {upper:?}"),
-        [false, false] => "it is not said where the facets that do meet, as they are".into(),
+        [true, false] => {
+            format!("the blocking facets meet in nominal position not before {lower:?}")
+        }
+        [false, true] => format!("the blocking facets meet in nominal position by {upper:?}"),
+        [false, false] => {
+            "no claim is made where the blocking facets meet in nominal position".into()
+        }
     }
 }
 
-/// Returns a body's name as a sentence shows it: quoted, unless it is one word of letters, digits and `_-.:/`.
-pub(super) fn shown(name: &str) -> String {
+/// Returns a body's name for a sentence. It is quoted unless it is one word of letters, digits and `_-.:/`.
+pub(super) fn quoted_name(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_-.:/".contains(c);
     if !name.is_empty() && name.chars().all(is_plain) { name.into() } else { format!("{name:?}") }
 }
 
-/// Returns how many, and which, and the verb that they take.
-fn listed(of: &[ObstacleId]) -> (String, &'static str) {
-    let named: Vec<String> = of.iter().take(NAMED).map(ToString::to_string).collect();
-    let more = if of.len() > NAMED { ", ..." } else { "" };
+/// Returns the number and the indices of obstacles as text, and the verb that follows.
+fn obstacle_list(of: &[ObstacleId]) -> (String, &'static str) {
+    let named: Vec<String> = of.iter().take(MAX_NAMED).map(ToString::to_string).collect();
+    let more = if of.len() > MAX_NAMED { ", ..." } else { "" };
     let (count, is) = (of.len(), if of.len() == 1 { "is" } else { "are" });
     if of.is_empty() {
         ("none".into(), "is")

@@ -1,4 +1,4 @@
-//! In which directions can a drawer move, how far, and to where?
+//! Computes in which directions a drawer can move, how far, and to which position.
 //!
 //! `cargo run --release -p colltrans --example clearance`
 
@@ -7,7 +7,7 @@ use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, WhyFree};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drawer = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(4.0, 5.0, 2.0))?;
-    // A floor right below it, and a wall behind it.
+    // A floor directly below the drawer, and a wall behind it.
     let walls = [
         ("floor", DVec3::new(-9.0, -9.0, -1.0), DVec3::new(9.0, 9.0, 0.0)),
         ("wall", DVec3::new(-9.0, 7.0, -1.0), DVec3::new(9.0, 8.0, 9.0)),

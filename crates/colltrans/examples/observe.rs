@@ -1,4 +1,4 @@
-//! What a query does: its events, and where its time goes.
+//! Records the events of a query, and measures the time of its phases.
 //!
 //! `cargo run --release -p colltrans --example observe`
 

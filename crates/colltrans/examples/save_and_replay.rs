@@ -1,4 +1,4 @@
-//! A query as a file, exact in bits.
+//! Writes a query to a file and reads it back, exact in bits.
 //!
 //! `cargo run --release -p colltrans --features json --example save_and_replay`
 
@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let saved = cast.to_json();
     println!("{saved}");
-    // The command line answers it too: colltrans replay CASE.json
+    // The command line answers the same file: colltrans replay CASE.json
     let case = Case::from_json(&saved)?;
     assert_eq!(case.cast()?.first_contact()?, cast.first_contact()?);
     println!("the same bits");

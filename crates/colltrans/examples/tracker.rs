@@ -1,4 +1,4 @@
-//! A rod is laid down on a block while it turns: each query starts from the last answer.
+//! Lowers a rod onto a block while it turns. Each query starts from the last answer.
 //!
 //! `cargo run --release -p colltrans --example tracker`
 

@@ -1,21 +1,21 @@
-//! Collision translations of convex polyhedra: how far can one body move before it touches
-//! another?
+//! Collision translations of convex polyhedra: the distance that one body can move before it touches another
+//! one.
 //!
-//! A convex body `P`, the *moving* one, is translated along a direction `d`; a convex body `Q`
-//! is *fixed*. A [`Cast`] asks for the *collision translation*
+//! A convex body `P`, the *moving* one, is translated along a direction `d`. A convex body `Q` is *fixed*. A
+//! [`Cast`] computes the *collision translation*
 //!
 //! `coll = min { t : P + t d meets Q }`
 //!
-//! and gets it with the contact normal, bounds that enclose it exactly, a contact point on each body
-//! and the vertices, edges or faces that meet; or a proof that they never do. `t` ranges over all
-//! real numbers: a negative answer is a contact that lies behind, or an overlap now. Every answer
-//! carries a proof that can be checked without trusting the search that found it.
+//! with the contact normal, bounds that enclose it, a contact point on each body, and the vertices, edges or
+//! faces in contact. If there is no contact, it proves that the bodies never meet. `t` ranges over all real
+//! numbers. A negative value is a contact behind the moving body, or an overlap at the start. Every answer
+//! has a proof, which can be checked without trust in the search.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
 //! use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 //!
-//! // A pyramid one unit high, and a plate of 4 x 4 x 1 whose top is at z = 0.
+//! // A pyramid of height 1, and a plate of 4 x 4 x 1 with its top at z = 0.
 //! let pyramid = ConvexPolyhedron::from_points(&[
 //!     DVec3::new(-1.0, -1.0, 1.0),
 //!     DVec3::new(1.0, -1.0, 1.0),
@@ -25,11 +25,11 @@
 //! ])?;
 //! let plate = ConvexPolyhedron::cuboid(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 0.0))?;
 //!
-//! // The pyramid starts with its apex at (0.5, 0, 3) and moves downwards.
+//! // The apex of the pyramid starts at (0.5, 0, 3) and moves downwards.
 //! let start = Pose::from_translation(DVec3::new(0.5, 0.0, 3.0))?;
 //! let cast = Cast::new(pyramid.at(start), plate.at(Pose::IDENTITY), DVec3::NEG_Z)?;
 //! let Outcome::Contact(contact) = cast.first_contact()? else {
-//!     unreachable!("the plate is below")
+//!     unreachable!("the plate is below the pyramid")
 //! };
 //! assert_eq!(contact.translation, 3.0);
 //! assert_eq!(contact.normal, DVec3::NEG_Z);
@@ -37,101 +37,99 @@
 //! let features = contact.features(&cast);
 //! assert_eq!((features.moving.kind(), features.fixed.kind()), ("vertex", "face"));
 //!
-//! // The proof: checked against the two bodies alone.
+//! // The check of the proof uses only the two bodies.
 //! assert!(cast.verify(&contact.certificate)? <= contact.certificate.rounding);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Bodies
 //!
-//! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
-//! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
-//! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
-//! polygons, segments and single points are bodies too. Bodies that are not convex are [`Solid`]s,
-//! asked in the same way.
+//! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their convex hull),
+//! from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
+//! ([`ConvexPolyhedron::cuboid`]). Any number of queries can use it, from any thread. Flat polygons, segments
+//! and single points are also bodies. Bodies that need not be convex are [`Solid`]s, with the same queries.
 //!
 //! # Frames and units
 //!
-//! Vertices are in the *body frame*; a [`Pose`] places a body in the *world*, by
-//! `x_world = R x_body + t`. Directions, normals and points of answers are in the world.
-//! The unit of length is the caller's, the same for both bodies. Translations are counted in
-//! multiples of the direction, so they are lengths if the direction has length 1. Normals are
-//! unit vectors and point from the moving body to the fixed one. Numbers are `f64`; those that
-//! are not 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to `2^200`.
+//! Vertices are in the *body frame*. A [`Pose`] maps a body to the *world frame* by `x_world = R x_body + t`.
+//! Directions, normals and points of answers are in the world frame. Both bodies have the same unit of
+//! length, which the caller chooses. Translations are multiples of the direction, so they are lengths if the
+//! direction has length 1. Normals are unit vectors and point from the moving body to the fixed one. Numbers
+//! are `f64`. Those that are not 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to
+//! `2^200`.
 //!
-//! # Questions and answers
+//! # Queries and answers
 //!
-//! | query | question | answer |
+//! | query | result | type of the answer |
 //! |---|---|---|
-//! | [`Cast::first_contact`], short [`cast()`] | at which translation do the bodies first meet? | [`Outcome`] |
-//! | [`Cast::contact_range`] | at which do they first and last meet? | [`ContactRange`] |
-//! | [`Cast::clearance`] | how far can one move from where it is? | [`Clearance`] |
-//! | [`Cast::directional_depth`] | how far must one go back until the overlap ends? | [`DirectionalDepth`] |
-//! | [`Cast::intersects`] | do they meet where they are? | [`Intersection`] |
-//! | [`Cast::verify`] | is this proof one? | the gap proven |
-//! | [`Pair::distance`] | how far apart are they, and where? | [`Distance`] |
-//! | [`Pair::within`] | are they closer than a length? | [`Within`] |
-//! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
-//! | [`motion::MotionCast::first_contact`] | of bodies that turn: when do they first meet? | [`motion::MotionOutcome`] |
-//! | [`motion::path::PathCast::first_contact`] | of bodies that joints carry: which first meet, and when? | [`motion::path::PathOutcome`] |
-//! | [`Among::nearest`] | which of many is nearest? | [`Nearest`] |
-//! | [`Among::within`] | which of many are closer than a length? | [`Nearby`] |
-//! | [`Among::clearance`] | which of many is hit first, and how far is it? | [`ClearanceAmong`] |
+//! | [`Cast::first_contact`], short [`cast()`] | translation of the first contact | [`Outcome`] |
+//! | [`Cast::contact_range`] | translations of the first and the last contact | [`ContactRange`] |
+//! | [`Cast::clearance`] | free travel from the current position | [`Clearance`] |
+//! | [`Cast::directional_depth`] | travel backwards that ends an overlap | [`DirectionalDepth`] |
+//! | [`Cast::intersects`] | whether the bodies intersect in their current poses | [`Intersection`] |
+//! | [`Cast::verify`] | check of a proof | the proven gap |
+//! | [`Pair::distance`] | distance and nearest points | [`Distance`] |
+//! | [`Pair::within`] | whether the distance is less than a length | [`Within`] |
+//! | [`Pair::depth`] | shortest translation that separates the bodies | [`Depth`] |
+//! | [`motion::MotionCast::first_contact`] | time of the first contact of rotating bodies | [`motion::MotionOutcome`] |
+//! | [`motion::path::PathCast::first_contact`] | first contact of bodies that joints carry | [`motion::path::PathOutcome`] |
+//! | [`Among::nearest`] | nearest of many bodies | [`Nearest`] |
+//! | [`Among::within`] | bodies that are closer than a length | [`Nearby`] |
+//! | [`Among::clearance`] | free travel in a scene, and the body that limits it | [`ClearanceAmong`] |
 //!
-//! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
-//! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
-//! [least tolerance](solid::SolidCast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
-//! between solids a proof costs more and is asked for apart, by
-//! [`certified_clearance`](solid::SolidCast::certified_clearance). Queries of a solid and a convex body together
-//! (`Cast::between`), and those that only solids answer, need `use colltrans::solid::{SolidCast, SolidPair};`.
+//! Convex bodies and solids have the same queries and types of answers, for example `Clearance<Solid>`, with
+//! different types of contacts. The directional depth and trackers exist only for convex bodies, the [least
+//! tolerance](solid::SolidCast::least_tolerance) only for solids. Answers about convex bodies contain their
+//! proofs. A proof between solids costs more and is requested separately, for example by
+//! [`certified_clearance`](solid::SolidCast::certified_clearance). Queries about a solid and a convex body
+//! (`Cast::between`), and queries of solids alone, need `use colltrans::solid::{SolidCast, SolidPair};`.
 //!
-//! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
+//! A [`Tracker`] answers the same queries and starts from its last answer. It is meant for bodies that move
 //! little between two queries.
 //!
-//! An [`Outcome`] is a [`Contact`], [`Separated`] or [`Grazing`]. The bodies' *shadows*, their
-//! projections along the direction, decide: disjoint shadows are a separation, overlapping
-//! ones a contact. Where they overlap by no more than the *graze tolerance* the bodies slide
-//! along each other, as a peg does in a hole of its own size. That is an outcome of its own,
-//! with the contact that results if the overlap is taken for real: whether it blocks is for the
-//! caller to say ([`Cast::clearance`] says it does not). The default tolerance is what rounding
-//! cannot decide, eight times the *noise*; a larger one may be set as a length by
-//! [`Cast::with_graze_tolerance`].
+//! An [`Outcome`] is a [`Contact`], [`Separated`] or [`Grazing`]. The *shadows* of the bodies, their
+//! projections along the direction, decide which: disjoint shadows are a separation, overlapping ones a
+//! contact. If they overlap by no more than the *graze tolerance*, the bodies slide along each other, for
+//! example a peg in a hole of its own size. This is an outcome of its own. It includes the contact that
+//! results if the overlap is considered real, and the caller decides whether it blocks. For
+//! [`Cast::clearance`] it does not block. The default tolerance is the limit of rounding, eight times the
+//! *noise*. [`Cast::with_graze_tolerance`] sets a larger one as a length.
 //!
 //! # Accuracy
 //!
-//! A contact's bounds enclose the true collision translation of the bodies as given:
-//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`]. They differ by at most 15 *noises* (`32 u S`, with `S` the
-//! size of the configuration and `u = 2^-53`) divided by `n . d`. [`Certificate`] says it in full. The same input gives
-//! the same bits on every run, thread and platform.
+//! The bounds of a contact enclose the exact collision translation of the given bodies:
+//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`]. They differ by at most 15 *noises* divided by
+//! `n . d`. A noise is `32 u S`, where `S` is the size of the configuration and `u = 2^-53`. [`Certificate`]
+//! has the details. The same input gives the same bits on every run, thread and platform.
 //!
-//! # As data
+//! # Serialisation
 //!
-//! With the feature `serde` answers, proofs, features, poses and choices can be written and read in any
-//! of its formats. A case of several is written as its name in lower case (`blocked`, with what it
-//! holds), choices by the names that they print and parse, a pose column by column, an infinite bound as
-//! nothing (`null`). Numbers come back as the same bits. What is read is checked where it is a pose or a
-//! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. An answer as front
-//! ends write it, for people and programs that do not check it, is a struct of `record`. The feature
-//! `json` adds whole queries and proofs as files (`Case`, `ProofFile`).
+//! With the feature `serde`, answers, proofs, features, poses and options can be serialised. An enum variant
+//! is written as its name in snake case (for example `blocked`) with its contents, an option as the name that
+//! it prints and parses, a pose by its columns, and an infinite bound as `null`. Numbers are read back with
+//! the same bits. Poses and the options of a cast are checked when they are read. A proof is not checked
+//! before [`Cast::verify`]. The structs of `record` are answers in the form of the front ends, for users and
+//! programs that do not check proofs. The feature `json` adds files of whole queries and proofs (`Case`,
+//! `ProofFile`).
 //!
-//! # What may change
+//! # Compatibility
 //!
-//! Choices, contacts, counts of work and errors may grow: make choices from their defaults
-//! (`Options::default().with_solver(..)`), match with `..`. Vectors and matrices are those of [`glam`],
-//! which is exported as `colltrans::glam`: use that one, and versions fit. A new major version of
-//! `glam` (a minor one while that is `0.x`) makes a new major version of this crate (minor while `0.x`).
+//! Options, contacts, amounts of work and errors may get more fields or variants. Therefore build options
+//! from their defaults (`Options::default().with_solver(..)`), and match with `..`. Vectors and matrices are
+//! those of [`glam`], which is exported as `colltrans::glam` so that versions match. A new major version of
+//! `glam` (a minor one while it is `0.x`) leads to a new major version of this crate (a minor one while it is
+//! `0.x`).
 //!
-//! # How it works
+//! # Algorithm
 //!
-//! The Minkowski difference `M = {q - p}` is never built. A search narrows down which face of `M`
-//! the line `t d` enters first: *portal refinement*, which exchanges the corners of a triangle of
-//! points of `M` that the line pierces, alone or after the *collision translation algorithm*,
-//! a convex minimisation over pairs of planar sections of the bodies (Mirolo, Carpin and Pagello,
-//! "Incremental Convex Minimization for Computing Collision Translations of Convex
-//! Polyhedra", IEEE Transactions on Robotics 23(3), 2007: *the paper* of all comments). Both end
-//! in the same portal, whose plane is the lower bound and whose corners are the upper one.
-//! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
-//! whole numbers.
+//! The Minkowski difference `M = {q - p}` is never built. A search finds the face of `M` that the line `t d`
+//! enters first. *Portal refinement* exchanges the corners of a triangle of points of `M` that the line
+//! pierces. It runs alone, or after the *collision translation algorithm*, a convex minimisation over pairs
+//! of planar sections of the bodies. Reference: Mirolo, Carpin and Pagello, "Incremental Convex Minimization
+//! for Computing Collision Translations of Convex Polyhedra", IEEE Transactions on Robotics 23(3), 2007,
+//! which comments call *the paper*. Both end in the same portal. Its plane is the lower bound, its corners
+//! are the upper one. If rounding prevents a decision on which side of an edge the line passes, exact
+//! integers decide.
 //!
 //! # Features
 //!
@@ -141,10 +139,10 @@
 //!
 //! # Crates
 //!
-//! The code is in crates of its own, each using only those before it: `colltrans-kernel` (numbers, predicates, poses),
-//! `colltrans-convex` (convex bodies), `colltrans-solid`, then `colltrans-removal` ([`free`], [`ways`]), `colltrans-scene`
-//! ([`Among`], [`FixedRotations`]) and `colltrans-motion` ([`motion`]), and `colltrans-proof` (files). [`solid`] holds what
-//! is of solids alone.
+//! The code is in several crates, each of which uses only the previous ones: `colltrans-kernel` (numbers,
+//! predicates, poses), `colltrans-convex` (convex bodies), `colltrans-solid`, then `colltrans-removal`
+//! ([`free`], [`ways`]), `colltrans-scene` ([`Among`], [`FixedRotations`]) and `colltrans-motion`
+//! ([`motion`]), and `colltrans-proof` (files). [`solid`] contains items for solids only.
 
 #[cfg(feature = "motion")]
 pub mod motion;
@@ -162,7 +160,7 @@ pub use colltrans_convex::{
     Tracker, UnknownName, VertexId, VertexPair, WhyFree, Within, WitnessPoints, convexity_defect,
     cta, observe,
 };
-// The function alone: the name of the core's module is the same.
+// Only the function, because a module of the core has the same name.
 #[doc(inline)]
 pub use colltrans_convex::cast::cast;
 #[doc(no_inline)]

@@ -1,15 +1,15 @@
-//! Bodies that turn: when do two of them first touch?
+//! First contact of two bodies that rotate.
 //!
-//! A [`Motion`] says where a body is at every time from 0 to 1: it slides, turns, unscrews, is thrown, or
-//! goes through poses. A [`MotionCast`] answers when two such bodies first meet, with bounds on that time
-//! that are bounds, or proves that they never do. `colltrans_motion` says how.
+//! A [`Motion`] is the pose of a body at every time from 0 to 1: a translation, a rotation, a screw, a throw,
+//! or an interpolation of poses. A [`MotionCast`] computes when two such bodies first meet, with proven
+//! bounds of that time, or proves that they never do. `colltrans_motion` explains the algorithm.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
 //! use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 //! use colltrans::{ConvexPolyhedron, Pose};
 //!
-//! // A plank, 2 long, turns by half a turn about its middle; a post stands 0.8 to the side of it.
+//! // A plank of length 2 makes half a turn about its center. A post is 0.8 to the side.
 //! let plank = ConvexPolyhedron::cuboid(DVec3::new(-1.0, -0.1, 0.0), DVec3::new(1.0, 0.1, 0.1))?;
 //! let post = ConvexPolyhedron::cuboid(DVec3::new(-0.1, 0.8, -1.0), DVec3::new(0.1, 1.0, 1.0))?;
 //! let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
@@ -26,7 +26,7 @@ pub use colltrans_motion::*;
 #[doc(inline)]
 pub use colltrans_proof::{MotionCase, MotionStatement, SolidMotionStatement};
 
-/// Paths of joints: when do bodies of a mechanism first meet?
+/// Paths of joints, and the first contact of bodies of a mechanism.
 pub mod path {
     #[doc(inline)]
     pub use colltrans_motion::path::*;

@@ -1,5 +1,5 @@
-//! What is of solids alone: the answers, proofs and choices of a [`Cast`](crate::Cast) of
-//! `Solid`s, and what is said of their surfaces.
+//! Items for solids only: the answers, proofs and options of a [`Cast`](crate::Cast) of `Solid`s, and reports
+//! on their surfaces.
 
 #[cfg(feature = "json")]
 #[doc(inline)]

@@ -1,16 +1,13 @@
-//! Search over placements, in order of fewest legs, or best first with preference for regions with few
-//! placements.
+//! Search over placements: fewest legs first, or best first with preference for regions with few placements.
 //!
-//! At a placement each pair of bodies is cast along all directions. Bodies that are hit within a minimum move
-//! join the group, so each body and direction have a smallest group. A group that never hits the others is
-//! removed, which ends the search. Otherwise it stops within the openings for other directions and before the
-//! first contact. If two bodies have no placement left, all free directions are computed at explored placements,
-//! for last legs in other directions.
+//! At a placement each pair of bodies is cast along all directions. Bodies hit within a minimum move join the
+//! group. A group that never hits the others is removed, which ends the search. Otherwise it stops within
+//! openings for other directions and before the first contact. If two bodies have no placement left, last
+//! legs along any free direction are tried.
 //!
-//! - The base, a fixed body or the largest one, never moves. If a group contains it, the other bodies move
-//!   backwards.
+//! - The base, a fixed body or the largest one, never moves. The other bodies move backwards instead.
 //! - Displacements lie on a grid that is finer than the slack. Their differences are exact.
-//! - Two placements are equal if all bodies are in the same cells of a coarse grid and the same moves are
+//! - Placements are equal if all bodies are in the same cells of a coarse grid and the same moves are
 //!   possible.
 //! - A group does not continue along the line on which it came.
 

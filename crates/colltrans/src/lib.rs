@@ -55,7 +55,7 @@
 //! Directions, normals and points of answers are in the world frame. Both bodies have the same unit of
 //! length, which the caller chooses. Translations are multiples of the direction, so they are lengths if the
 //! direction has length 1. Normals are unit vectors and point from the moving body to the fixed one. Numbers
-//! are `f64`. Those that are not 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to
+//! are `f64`. Numbers other than 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to
 //! `2^200`.
 //!
 //! # Queries and answers
@@ -117,7 +117,7 @@
 //! Options, contacts, amounts of work and errors may get more fields or variants. Therefore build options
 //! from their defaults (`Options::default().with_solver(..)`), and match with `..`. Vectors and matrices are
 //! those of [`glam`], which is exported as `colltrans::glam` so that versions match. A new major version of
-//! `glam` (a minor one while it is `0.x`) leads to a new major version of this crate (a minor one while it is
+//! `glam` (a minor one while it is `0.x`) means a new major version of this crate (a minor one while it is
 //! `0.x`).
 //!
 //! # Algorithm

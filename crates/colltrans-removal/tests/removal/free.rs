@@ -121,7 +121,7 @@ fn plate_between_plates_has_full_circle() {
 
 #[test]
 fn bar_in_closed_v_groove_has_quarter_arc() {
-    // A bar with a square section stands on its edge in a V-groove with closed ends. It can only move up between the
+    // A bar with a square section rests on its edge in a V-groove with closed ends. It can only move up between the
     // two planes.
     let turn = DMat3::from_cols(
         DVec3::new(3.0, 4.0, 0.0) / 5.0,

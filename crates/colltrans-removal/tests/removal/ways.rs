@@ -166,7 +166,7 @@ fn cube_leaves_chambers_through_large_holes_and_small_ones_are_proven_closed() {
         assert!(proof.cells() < 4_000, "{holes:?}: {}", proof.cells());
         assert_overlap_in_blocked_cells(&proof, &cube.at(at), &walls.at(at));
     }
-    // If two coordinates must be right at once, cells without contact lead to the hole.
+    // If two coordinates must be right at once, the path to the hole follows cells without contact.
     for (two, holes, legs) in [(false, [1.1, 0.0, 0.0], 3), (true, [0.0, 1.1, 1.5], 5)] {
         let found = find_path(&[cube.clone(), chambers(two, holes)], at, &WayOptions::default());
         let way = found.expect("a way");

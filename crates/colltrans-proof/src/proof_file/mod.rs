@@ -3,7 +3,7 @@
 //! A file contains the bodies, exact in bits, then their placement, the query, and one statement with its
 //! certificates.
 //!
-//! - [`file`] is the format, [`body`] the bodies in it.
+//! - [`file`](mod@file) is the format, [`body`] the bodies in it.
 //! - [`statement`], [`scene`], [`motion`] and [`path`] are the statements, [`proven`] the results of their
 //!   checks.
 //! - [`verify`] joins a statement with its bodies and checks it. [`text`] renders statements as text.
@@ -49,7 +49,7 @@ pub use proven::{Proven, Verify};
 pub use statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Stop};
 use statement::{solid_options, with_file_facets};
 
-/// Statement of a [`ProofFile`](crate::ProofFile) about its bodies.
+/// Statement of a [`ProofFile`] about its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Statement {

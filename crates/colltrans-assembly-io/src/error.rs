@@ -5,94 +5,94 @@ use std::path::PathBuf;
 use colltrans_assembly::AssemblyError;
 use thiserror::Error;
 
-/// Why an assembly could not be read.
+/// An error that occurs while an assembly is read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// A file or folder cannot be opened.
-    #[error("{}: cannot be read: {source}", path.display())]
+    /// A file or folder cannot be opened or read.
+    #[error("{}: cannot read: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// Neither a folder nor a kind of file that is known.
+    /// The path is neither a folder nor a file of a known format.
     #[error(
-        "{}: neither a folder of meshes nor a known file: a manifest (.toml, .json), .urdf, .glb, \
+        "{}: unknown kind of source; accepted: a folder of meshes, a manifest (.toml, .json), .urdf, .glb, \
          .gltf, .3mf, or a mesh",
         path.display()
     )]
     UnknownSource {
-        /// What was given.
+        /// The path that was given.
         path: PathBuf,
     },
-    /// A STEP file, which has to be converted first.
+    /// A STEP file, which this crate does not read.
     #[error(
-        "{}: STEP files are converted to GLB first, which `colltrans assembly` and Python's `Assembly.read` do",
+        "{}: STEP is not read directly; convert the file to GLB, or use `colltrans assembly` or Python's `Assembly.read`, which convert it",
         path.display()
     )]
     Step {
         /// The file.
         path: PathBuf,
     },
-    /// The contents are not what the format prescribes.
+    /// The contents violate the format.
     #[error("{}: {place}: {reason}", path.display())]
     Contents {
         /// The file.
         path: PathBuf,
-        /// Where in it.
+        /// The place in the file.
         place: String,
-        /// What is wrong.
+        /// The reason, with the value that is rejected.
         reason: String,
     },
-    /// It names a file that it must not.
+    /// The source refers to a file outside of the folders that may be read.
     #[error(
-        "{}: {name} is named by an absolute path or lies outside of the folder that names it, and is \
-         not read",
+        "{}: rejected reference {name}; references must be relative and inside the folder of the \
+         file",
         path.display()
     )]
     Outside {
-        /// The source.
+        /// The source that has the reference.
         path: PathBuf,
-        /// The file, as it is named, or where it is.
+        /// The reference as written in the source, or the path to which it leads.
         name: String,
     },
-    /// Nothing in it is a part.
-    #[error("{}: holds no parts: {holds}", path.display())]
+    /// The source has no parts.
+    #[error("{}: no parts found: {holds}", path.display())]
     NoParts {
         /// The source.
         path: PathBuf,
-        /// What it holds instead.
+        /// A description of the contents.
         holds: String,
     },
-    /// Files that are named and do not exist.
+    /// The source refers to mesh files that do not exist.
     #[error(
-        "{}: {} of the meshes it names cannot be found, the first is {}; give the roots of \
-         packages, or skip what is missing",
+        "{}: {} referenced meshes not found, the first is {}; give the package roots, or skip \
+         missing meshes",
         path.display(), missing.len(), missing[0]
     )]
     Missing {
-        /// The file that names them.
+        /// The file that has the references.
         path: PathBuf,
-        /// Their names, as written there.
+        /// The references as written in the file.
         missing: Vec<String>,
     },
     /// A mesh cannot be read.
     #[error(transparent)]
     Mesh(#[from] colltrans_mesh::Error),
-    /// The parts do not make an assembly.
+    /// The parts do not form a valid assembly.
     #[error("{}: {source}", path.display())]
     Assembly {
-        /// Where they come from.
+        /// The source of the parts.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         source: AssemblyError,
     },
 }
 
 impl ReadError {
-    /// Checks whether the file does not exist.
+    /// Checks whether the error means that the source, or a file that must exist, was not found.
     pub fn is_missing_file(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
     }

@@ -1,12 +1,15 @@
-//! Reads assemblies and robots from the files that people have.
+//! Reads assemblies and robots from files.
 //!
-//! Data flow: a folder of meshes, a manifest, URDF, glTF or 3MF -> [`read()`] -> an [`Assembly`](colltrans_assembly::Assembly):
-//! parts in one world and one unit, with what the file says about them. Or: URDF -> [`read::robot`] -> a [`Robot`]: links,
-//! joints, and paths of it that are asked ([`robot`]).
+//! - [`read()`] reads a folder of meshes, a manifest, URDF, glTF or 3MF. It returns an
+//!   [`Assembly`](colltrans_assembly::Assembly), which has parts in one world frame and one unit.
+//! - [`read::robot`] reads URDF. It returns a [`Robot`], which has links, joints, and queries about paths
+//!   ([`robot`]).
 //!
-//! [`robot`] takes convex bodies around round shapes, assemblies take them inside, so that parts which fit do not overlap.
+//! Round shapes are replaced by polyhedra. For a [`Robot`] they are circumscribed, so that a path that is
+//! proven free is free for the true shapes. For an assembly they are inscribed, so that parts which fit do not
+//! overlap.
 //!
-//! Without the feature `files` GLB alone is read, from memory: for a page.
+//! Without the feature `files` the crate reads only GLB from memory, as the web page does.
 
 mod error;
 mod plain;

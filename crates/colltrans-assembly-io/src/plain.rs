@@ -1,13 +1,13 @@
-//! What parsers of JSON and TOML say, in words of the file.
+//! Rewrites error messages of the parsers of JSON and TOML in the terms of the file.
 
-/// What is wrong with JSON, in words of the file and without the place.
+/// Returns the message of a JSON error in the terms of the file, without line and column.
 pub fn plain(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     plain_words(message.strip_suffix(&place).unwrap_or(&message))
 }
 
-/// A parser's message in words of the file, not of the parser.
+/// Replaces the Rust types in a parser's message by terms of the file.
 pub(crate) fn plain_words(message: &str) -> String {
     const WORDS: [(&str, &str); 20] = [
         ("expected ident", "it is not JSON"),
@@ -18,7 +18,7 @@ pub(crate) fn plain_words(message: &str) -> String {
         ("invalid length ", "found a list of "),
         ("expected f64", "expected a number"),
         ("expected f32", "expected a number"),
-        ("found map, expected enum", "there is no field that says of which kind it is"),
+        ("found map, expected enum", "the field that gives the kind is missing"),
         ("expected usize", "expected a whole number"),
         ("expected u32", "expected a whole number"),
         ("expected a sequence", "expected a list"),
@@ -28,7 +28,7 @@ pub(crate) fn plain_words(message: &str) -> String {
         ("recursion limit exceeded", "it is nested too deep"),
         ("unknown variant ", "unknown word "),
         ("expected an array of length ", "expected a list of "),
-        ("trailing characters", "there is more than there should be"),
+        ("trailing characters", "unexpected text after the end"),
         (", expected literal string", ""),
     ];
     let types_named =

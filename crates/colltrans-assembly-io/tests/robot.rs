@@ -1,4 +1,4 @@
-//! Robots that move: what is read of URDF and SRDF, rows by names and by order, pairs; a wire that samples miss.
+//! Tests robots: URDF and SRDF files, rows by name and by order, pairs, and a wire that all samples miss.
 
 use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ fn arm() -> Robot {
     robot(data("arm.urdf"), &ReadOptions::default()).expect("a robot")
 }
 
-/// A robot of a text.
+/// Reads a robot from the elements in a text.
 fn of(text: &str) -> Result<Robot, ReadError> {
     let folder = TemporaryFolder::new();
     let file = folder.path().join("robot.urdf");
@@ -28,7 +28,7 @@ fn of(text: &str) -> Result<Robot, ReadError> {
     robot(&file, &ReadOptions::default())
 }
 
-/// A link with a cube.
+/// Returns a link with a cube.
 fn link(name: &str) -> String {
     format!(
         "<link name=\"{name}\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
@@ -66,7 +66,7 @@ fn links_and_joints_are_those_of_the_file() {
 
 #[test]
 fn frames_stand_where_the_assembly_reader_has_the_links() {
-    // The same file in one configuration, read as parts that stand in the world.
+    // The same file in one configuration, read as parts placed in the world.
     let arm = arm();
     let values = [("shoulder", 0.7), ("elbow", -0.4), ("reach", 0.05)];
     let joints: BTreeMap<String, f64> = values.map(|(name, x)| (name.to_owned(), x)).into();
@@ -88,7 +88,7 @@ fn frames_stand_where_the_assembly_reader_has_the_links() {
             let at = place.transform_point3(*v);
             let off = |w: &DVec3| w.distance(at);
             let least = part.solid().vertices().iter().map(off).fold(f64::INFINITY, f64::min);
-            // What is round is around the true shape here, and inside it there: 64 sides, a radius of 0.002.
+            // A round shape is circumscribed here and inscribed there, with 64 sides and a radius of 0.002.
             let bound = if part.name() == "tool" { 0.002 * 1.21e-3 } else { 0.0 };
             assert!(least < bound + 1e-12, "{least:e} of {}", part.name());
         }
@@ -113,18 +113,19 @@ fn rows_are_by_name_or_by_order() {
     assert_eq!(path("0.1,0.2\n0.3,0.4\n", &rest).expect("a path").0.rows(), by_order.rows());
     let (_, notes) = path("0,0,0\n0,0,0.2\n4,0,0.3\n", &none).expect("a path");
     assert_eq!(notes.len(), 2);
-    assert!(
-        notes[1].contains(
-            "joint reach is beyond its limits, 0 to 0.1 m, in 2 of 3 rows: first in row 1"
-        )
-    );
+    assert!(notes[1].contains(
+        "joint reach exceeds its limits, 0 to 0.1 m, in 2 of 3 rows; first: 0.2 in row 1"
+    ));
     let told = |text: &str, rest: &BTreeMap<String, f64>| path(text, rest).unwrap_err().to_string();
-    assert!(told("elbow,reach\n0,0\n", &none).contains("no values for joint shoulder"));
-    assert!(told("wrist,elbow\n0,0\n", &none).contains("column wrist is of no joint"));
-    assert!(told("0,0\n", &none).contains("rows have 2 values, and 3 joints have one each"));
-    assert!(told("0,0,0\n", &rest).contains("rows have 3 values, and 2 joints"));
+    assert!(told("elbow,reach\n0,0\n", &none).contains("missing values for joint shoulder"));
+    assert!(
+        told("wrist,elbow\n0,0\n", &none)
+            .contains("column wrist does not name an independent joint")
+    );
+    assert!(told("0,0\n", &none).contains("rows have 2 values, expected 3, one for each joint"));
+    assert!(told("0,0,0\n", &rest).contains("rows have 3 values, expected 2"));
     let wrong = BTreeMap::from([("wrist".to_owned(), 0.0)]);
-    assert!(told("0,0,0\n", &wrong).contains("joint wrist is none that moves by itself"));
+    assert!(told("0,0,0\n", &wrong).contains("joint wrist is not an independent joint"));
     assert!(
         told("time,shoulder,elbow,reach\n1,0,0,0\n1,0,0,0\n", &none)
             .contains("not after the one before")
@@ -145,13 +146,13 @@ fn joints_follow_others() {
     let ring = of(&(text
         + &joint("b", "prismatic", ["base", "left"], &ring("a"))
         + &joint("a", "prismatic", ["base", "right"], &ring("b"))));
-    assert!(ring.unwrap_err().to_string().contains("form a ring"));
+    assert!(ring.unwrap_err().to_string().contains("form a cycle"));
 }
 
 #[test]
 fn pairs_leave_out_neighbours_or_what_srdf_says() {
     let arm = arm();
-    // base, upper, fore, tool: one joint between each two.
+    // base, upper, fore, tool: a chain with one joint between neighbours.
     assert_eq!(arm.pairs(None).expect("pairs"), [[0, 2], [0, 3], [1, 3]]);
     let folder = TemporaryFolder::new();
     let file = folder.path().join("arm.srdf");
@@ -165,7 +166,7 @@ fn pairs_leave_out_neighbours_or_what_srdf_says() {
     std::fs::write(&file, "<robot><disable_collisions link1=\"a\"/></robot>").unwrap();
     let told = disabled(&file).unwrap_err().to_string();
     assert!(told.contains("<disable_collisions> has no attribute link2"), "{told}");
-    // What a fixed joint holds together never moves against each other.
+    // Links that a fixed joint connects never move relative to each other.
     let held =
         of(&(link("a") + &link("b") + &joint("j", "fixed", ["a", "b"], ""))).expect("a robot");
     assert_eq!(held.pairs(Some(&[])).expect("pairs"), Vec::<[usize; 2]>::new());
@@ -177,17 +178,17 @@ fn what_cannot_move_is_told() {
     let two = link("a") + &link("b");
     let told = |text: String| of(&text).unwrap_err().to_string();
     let floating = told(two.clone() + &joint("j", "floating", ["a", "b"], ""));
-    assert!(floating.contains("joint j: it is floating: a path has one value"), "{floating}");
+    assert!(floating.contains("joint j: unsupported type floating"), "{floating}");
     let axis = told(two.clone() + &joint("j", "revolute", ["a", "b"], "<axis xyz=\"0 0 0\"/>"));
-    assert!(axis.contains("joint j: its axis [0.0, 0.0, 0.0] is none"), "{axis}");
+    assert!(axis.contains("joint j: invalid axis [0.0, 0.0, 0.0]"), "{axis}");
     let mimic = joint("j", "revolute", ["a", "b"], "<mimic joint=\"k\"/>");
-    assert!(told(two.clone() + &mimic).contains("it follows k, which is no joint that moves"));
+    assert!(told(two.clone() + &mimic).contains("it mimics k, which is not a moving joint"));
     let none = "<link name=\"a\"/>".to_owned();
-    assert!(told(none).contains("none of its 1 links collides with anything"));
+    assert!(told(none).contains("none of its 1 links has collision geometry"));
     let capsule = "<link name=\"a\"><collision><geometry><capsule radius=\"1\" length=\"1\"/></geometry>\
                    </collision></link>";
-    assert!(told(two + capsule).contains("a second link has this name"));
-    assert!(told(capsule.to_owned()).contains("give it as a cylinder and two spheres"));
+    assert!(told(two + capsule).contains("duplicate link name"));
+    assert!(told(capsule.to_owned()).contains("replace the capsule by a cylinder and two spheres"));
 }
 
 #[test]

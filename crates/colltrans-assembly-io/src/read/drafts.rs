@@ -1,4 +1,4 @@
-//! From what a source places to parts: each thing as it is placed, or what it consists of.
+//! Builds parts from the meshes that a source places, whole or split into bodies.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -16,29 +16,30 @@ use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly::{Assembly, Part, Piece};
 
-/// Names that a note lists.
+/// Maximum number of names that a note lists.
 pub(super) const MOST_NAMED: usize = 4;
 
-/// Which parts are made of what a source places.
+/// The rule by which placed meshes are split into parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Split {
-    /// What would be a single part is taken apart: into what its file names, or else into its bodies. All else is as
-    /// with [`Never`](Self::Never), but that each object of 3MF with a mesh is a part.
+    /// Splits only a source with a single mesh: into the named objects of its file, or into its bodies if the
+    /// file names none. Other sources are read as with [`Never`](Self::Never), except that each 3MF object with
+    /// a mesh is a part.
     #[default]
     Auto,
-    /// Each mesh file, node of glTF, link, or item of a 3MF build is a part, whatever it consists of.
+    /// Each mesh file, glTF node, URDF link or item of a 3MF build is one part.
     Never,
     /// Each object, group or solid that a mesh file names is a part.
     Names,
-    /// Each body is a part: a closed shell with the cavities in it, or an open shell.
+    /// Each body is a part: a closed shell with its cavities, or an open shell.
     Bodies,
 }
 
 impl Split {
-    /// All of them.
+    /// All rules.
     pub const ALL: [Self; 4] = [Self::Auto, Self::Never, Self::Names, Self::Bodies];
 
-    /// `auto`, `never`, `names` or `bodies`.
+    /// Returns the name of the rule: `auto`, `never`, `names` or `bodies`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -54,30 +55,32 @@ impl FromStr for Split {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|split| split.name() == text);
-        known.ok_or_else(|| format!("{text} is none of {}", Self::ALL.map(Self::name).join(", ")))
+        known.ok_or_else(|| {
+            format!("unknown split {text}; accepted: {}", Self::ALL.map(Self::name).join(", "))
+        })
     }
 }
 
-/// A part in the making.
+/// A part before its solid is built.
 pub(super) struct Draft {
     pub(super) name: String,
     pub(super) pieces: Vec<Placed>,
     pub(super) fixed: bool,
-    /// In the unit of the assembly.
+    /// The chord error, in the unit of the assembly.
     pub(super) chord_error: Option<f64>,
-    /// As screens have it.
+    /// The colour, as red, green and blue in sRGB.
     pub(super) colour: Option<[f64; 3]>,
-    /// The source says that this is one part.
+    /// Whether the source declares this to be one part.
     pub(super) is_told: bool,
-    /// What the source says of it alone.
+    /// The rule of the source for this part, which overrides the option.
     pub(super) split: Option<Split>,
-    /// The file that it is of, if it is not the source.
+    /// The file of the part, if it is not the source.
     pub(super) file: Option<PathBuf>,
-    /// Where in the source it is placed, for messages.
+    /// The place in the source, for messages.
     pub(super) place: Option<String>,
 }
 
-/// A mesh at a place.
+/// A mesh and its transformation to the world.
 #[derive(Clone)]
 pub(super) struct Placed {
     pub(super) mesh: Arc<Mesh>,
@@ -105,12 +108,12 @@ impl Draft {
         }
     }
 
-    /// The same, of which the source says that it is one part.
+    /// Marks the draft as one part by declaration of the source.
     pub(super) fn told(self) -> Self {
         Self { is_told: true, ..self }
     }
 
-    /// What is wrong with it, with its file and its place.
+    /// Adds the file and the place of the draft to an error.
     fn refused(&self, source: &Source, error: AssemblyError) -> ReadError {
         let path = self.file.as_deref().unwrap_or(source.path);
         match &self.place {
@@ -120,7 +123,7 @@ impl Draft {
     }
 }
 
-/// An assembly of what one source places; what the source `holds` instead is said where that is nothing.
+/// Builds the assembly of a source. `holds` describes the source for the error if there are no drafts.
 pub(super) fn assembled(
     source: Source,
     drafts: Vec<Draft>,
@@ -137,7 +140,9 @@ pub(super) fn assembled(
     for draft in drafts {
         made.draft(&source, &draft, alone)?;
         if made.parts.len() > MOST_PLACED {
-            let reason = format!("more than {MOST_PLACED} bodies are placed");
+            let reason = format!(
+                "more than {MOST_PLACED} bodies are placed; split the source into smaller ones"
+            );
             return Err(contents(path, "bodies", reason));
         }
     }
@@ -147,7 +152,7 @@ pub(super) fn assembled(
     Ok(notes.fold(assembly, Assembly::with_note).with_files(source.into_files()))
 }
 
-/// The same with the factors that are asked for.
+/// Applies the scale factors of the options. Rejects invalid factors and names without a draft.
 fn scaled(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, ReadError> {
     for (name, &factor) in &source.options.scales {
         let refused = |error| in_file(source.path)(error);
@@ -173,17 +178,19 @@ fn scaled(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, ReadErr
     Ok(drafts)
 }
 
-/// Parts that are made.
+/// The parts that were built.
 #[derive(Default)]
 struct Made {
     parts: Vec<Part>,
     names: Names,
     notes: Vec<String>,
-    /// What was kept together, with the number of its closed bodies.
+    /// The names of the parts that consist of several closed bodies, with the number of bodies.
     kept: Vec<(String, usize)>,
 }
 
 impl Made {
+    /// Builds the part of a draft, or several if it is split. `alone` means that the source has no other
+    /// drafts.
     fn draft(&mut self, source: &Source, draft: &Draft, alone: bool) -> Result<(), ReadError> {
         let split = draft.split.unwrap_or(source.options.split);
         let is_single = alone && !draft.is_told && draft.pieces.len() == 1;
@@ -209,7 +216,7 @@ impl Made {
         }
         if split == Split::Auto {
             self.notes.push(format!(
-                "{}: {} in one mesh, each taken as a part; with `split never` they are one",
+                "{}: {} bodies in one mesh, each read as a part; use `split never` to read them as one part",
                 draft.name,
                 apart.len()
             ));
@@ -222,7 +229,8 @@ impl Made {
         Ok(())
     }
 
-    /// The bodies of what a draft names, or of itself; nothing if it is one.
+    /// Splits the named objects of a draft, or the draft itself, into bodies. Returns an empty list if there is
+    /// only one.
     fn bodies(
         &mut self,
         source: &Source,
@@ -252,20 +260,20 @@ impl Made {
         Ok(apart)
     }
 
-    /// What is said of parts that consist of several bodies.
+    /// Returns a note on the parts that consist of several bodies; `None` if there are none.
     fn kept(&self) -> Option<String> {
         let told = |(name, bodies): &(String, usize)| format!("{name} ({bodies})");
         let named: Vec<String> = self.kept.iter().map(told).collect();
         (!named.is_empty()).then(|| {
             format!(
-                "several bodies are one part: {}; with `split bodies` each is a part",
+                "parts with several bodies: {}; use `split bodies` to read each body as a part",
                 first_named(&named, MOST_NAMED)
             )
         })
     }
 }
 
-/// What the files of a draft name; nothing if that is not several.
+/// Returns the objects that the files of a draft name, or an empty list if no file names several.
 fn named(draft: &Draft) -> Vec<(String, Placed)> {
     let mut all = Vec::new();
     let mut several = false;
@@ -283,6 +291,7 @@ fn named(draft: &Draft) -> Vec<(String, Placed)> {
     if several { all } else { Vec::new() }
 }
 
+/// Builds a part from placed meshes.
 fn made(source: &Source, draft: &Draft, name: &str, placed: &[Placed]) -> Result<Part, ReadError> {
     let piece =
         |placed: &Placed| Piece { mesh: Mesh::clone(&placed.mesh), world_from_piece: placed.world };

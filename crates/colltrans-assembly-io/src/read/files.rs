@@ -1,9 +1,9 @@
-//! The files that a source names: inside the folders it may read, and nowhere else.
+//! Opens the files that a source refers to, inside the permitted folders only.
 //!
-//! A source comes from whoever sent it. What it names is looked for in its own folder and in those
-//! that the caller gives, where links may not lead out of them either: neither `/etc/passwd` nor a
-//! device nor an address on the net, unless the caller says otherwise. Invariant: a file is opened
-//! after its canonical path was found to be inside.
+//! A source is untrusted. References are resolved inside its own folder and the folders that the caller
+//! permits. Symbolic links must not lead out of these folders. For example, `/etc/passwd`, devices and network
+//! addresses are rejected, unless the caller allows all files. Invariant: a file is opened only after its
+//! canonical path was found to be inside.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -12,32 +12,32 @@ use std::path::{Component, Path, PathBuf};
 use super::ReadOptions;
 use crate::error::ReadError;
 
-/// Why a file gives no bytes.
+/// The reason why a file was not read.
 #[derive(Debug)]
 pub enum FileFault {
-    /// It lies outside of the folders that may be read.
+    /// The file lies outside of the permitted folders.
     Outside,
-    /// It cannot be read.
+    /// The file cannot be read.
     Io(std::io::Error),
 }
 
-/// Where the files of a source come from.
+/// A provider of the files of a source.
 pub trait Files {
-    /// The bytes of a file; `None` if there is none.
+    /// Returns the contents of a file; `None` if it does not exist.
     ///
     /// # Errors
-    /// It cannot be read, or must not be.
+    /// [`FileFault`] if the file cannot be read or lies outside of the permitted folders.
     fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault>;
 }
 
-/// Files in memory, by their paths.
+/// Files in memory, by path.
 impl Files for BTreeMap<PathBuf, Vec<u8>> {
     fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
         Ok(self.get(path).cloned())
     }
 }
 
-/// No files at all.
+/// A provider without files.
 pub(super) struct Nothing;
 
 impl Files for Nothing {
@@ -46,21 +46,21 @@ impl Files for Nothing {
     }
 }
 
-/// The files of some folders.
+/// The files in a list of folders.
 #[cfg(feature = "files")]
 pub(super) struct Folders {
-    /// Canonical; `None` where all files may be read.
+    /// The canonical paths of the folders; `None` if all files may be read.
     inside: Option<Vec<PathBuf>>,
 }
 
 #[cfg(feature = "files")]
 impl Folders {
-    /// The folder of a source, or the source itself if it is one, and those of packages.
+    /// Permits the folder of the source (the source itself if it is a folder) and the folders of packages.
     pub(super) fn of(source: &Path, options: &ReadOptions) -> Self {
         let own = if source.is_dir() { source } else { folder_of(source) };
         let own = if own.as_os_str().is_empty() { Path::new(".") } else { own };
         let all = std::iter::once(own).chain(options.packages.iter().map(PathBuf::as_path));
-        // A folder that is not there holds nothing.
+        // A missing folder contains no files.
         let inside = all.filter_map(|folder| folder.canonicalize().ok()).collect();
         Self { inside: (!options.allow_outside).then_some(inside) }
     }
@@ -82,7 +82,7 @@ impl Files for Folders {
     }
 }
 
-/// The source itself, which is read wherever it lies, and what it may name.
+/// The source itself, which is read from any location, and the files that it refers to.
 #[cfg(feature = "files")]
 pub(super) struct Given<'a> {
     pub(super) path: &'a Path,
@@ -99,12 +99,12 @@ impl Files for Given<'_> {
     }
 }
 
-/// The folder that a file lies in.
+/// Returns the folder that contains a file.
 pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// A source, its choices, and the files it has read.
+/// A source with its options and a record of the files that were read.
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,
     pub(super) options: &'a ReadOptions,
@@ -117,39 +117,42 @@ impl<'a> Source<'a> {
         Self { path, options, files, read: RefCell::default() }
     }
 
-    /// The bytes of the source itself.
+    /// Returns the contents of the source itself.
     #[cfg(feature = "files")]
     pub(super) fn own(&self) -> Result<Vec<u8>, ReadError> {
         self.at(self.path)
     }
 
-    /// The bytes of a file that must be there.
+    /// Returns the contents of a file, or an error if it does not exist.
     #[cfg(feature = "files")]
     pub(super) fn at(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
         let none = || super::io(path)(std::io::Error::from(std::io::ErrorKind::NotFound));
         self.open(path)?.ok_or_else(none)
     }
 
-    /// The text of the source itself.
+    /// Returns the text of the source itself.
     #[cfg(feature = "files")]
     pub(super) fn text(&self) -> Result<String, ReadError> {
         colltrans_mesh::file::decoded(self.own()?).map_err(super::io(self.path))
     }
 
-    /// A file that the source names, relative to its folder: where it is, and its bytes.
+    /// Opens a file by a reference relative to the folder of the source. Returns its path and contents; `None`
+    /// if it does not exist.
     pub(super) fn named(&self, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
         self.beside(folder_of(self.path), name)
     }
 
-    /// A file by its name, relative to a folder.
+    /// Opens a file by a reference relative to `folder`. Returns its path and contents; `None` if it does not
+    /// exist.
     pub(super) fn beside(
         &self,
         folder: &Path,
         name: &str,
     ) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
         if let Some((scheme, _)) = name.split_once("://") {
-            let reason = format!("{name} is an address ({scheme}); only files are read");
-            return Err(super::contents(self.path, "names of files", reason));
+            let reason =
+                format!("{name} is a network address ({scheme}); accepted: paths of files");
+            return Err(super::contents(self.path, "file references", reason));
         }
         let outside = || ReadError::Outside { path: self.path.into(), name: name.into() };
         if Path::new(name).has_root() && !self.options.allow_outside {
@@ -163,6 +166,7 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// Returns the contents of a file and records its path; `None` if it does not exist.
     fn open(&self, path: &Path) -> Result<Option<Vec<u8>>, ReadError> {
         let refused = |fault| match fault {
             FileFault::Outside => {
@@ -177,13 +181,13 @@ impl<'a> Source<'a> {
         Ok(bytes)
     }
 
-    /// The files that were read.
+    /// Returns the files that were read.
     pub(super) fn into_files(self) -> Vec<PathBuf> {
         self.read.into_inner()
     }
 }
 
-/// Whether a name leads out of the folder that it is relative to, as it is written.
+/// Checks whether a path, as written, leads out of the folder to which it is relative.
 fn leaves(name: &str) -> bool {
     let mut depth = 0_usize;
     for part in Path::new(name).components() {
@@ -197,12 +201,13 @@ fn leaves(name: &str) -> bool {
     false
 }
 
-/// A name as a URI writes it: `%20` is a blank.
+/// Decodes the escapes of a URI, for example `%20` to a space.
 pub(super) fn unescaped(uri: &str) -> Result<String, String> {
     let name = String::from_utf8(percent_decoded(uri)?);
-    name.map_err(|_| format!("{uri} is not text in UTF-8"))
+    name.map_err(|_| format!("invalid URI {uri}: not UTF-8"))
 }
 
+/// Decodes the escapes of a URI to bytes.
 pub(super) fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
     let mut rest = text.as_bytes();
     let mut bytes = Vec::with_capacity(rest.len());
@@ -213,9 +218,13 @@ pub(super) fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
             continue;
         }
         let digit = |b: &u8| char::from(*b).to_digit(16);
-        let [high, low, tail @ ..] = rest else { return Err(format!("{text} ends in a %")) };
+        let [high, low, tail @ ..] = rest else {
+            return Err(format!(
+                "invalid URI {text}: % at the end, expected % and two hexadecimal digits"
+            ));
+        };
         let (Some(high), Some(low)) = (digit(high), digit(low)) else {
-            return Err(format!("{text} has a % without two digits"));
+            return Err(format!("invalid URI {text}: expected two hexadecimal digits after %"));
         };
         bytes.push((high * 16 + low) as u8);
         rest = tail;

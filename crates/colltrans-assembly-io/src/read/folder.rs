@@ -1,4 +1,4 @@
-//! A folder of mesh files, each a part in its place, named as the file.
+//! Reads a folder of mesh files: each file is a part, named after the file, at the position of its coordinates.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,29 +13,32 @@ use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::units;
 
+/// Reads all mesh files of a folder.
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (mut files, mut others) = (Vec::new(), Others::default());
     for entry in std::fs::read_dir(source.path).map_err(io(source.path))? {
         let file = entry.map_err(io(source.path))?.path();
-        // A link that leads nowhere and a pipe are refused when they are read, not left out.
+        // A dangling link and a pipe are rejected when they are read, not skipped.
         if !file.is_dir() && Format::of_path(&file).is_ok() {
             files.push(file);
         } else {
             others.count(&file);
         }
     }
-    // Folders list their files in any order.
+    // The order of directory entries depends on the file system.
     files.sort_by_key(|file| natural(&stem(file)));
     let notes = others.unread();
     let assembly = read_files(source, &files, &others.told())?;
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
+/// Reads a single mesh file.
 pub(super) fn read_file(source: Source) -> Result<Assembly, ReadError> {
     let file = source.path.to_owned();
     read_files(source, &[file], "")
 }
 
+/// Reads mesh files as parts of one assembly. `holds` describes the source for the error if there are none.
 fn read_files(source: Source, files: &[PathBuf], holds: &str) -> Result<Assembly, ReadError> {
     let mut drafts = Vec::with_capacity(files.len());
     let mut units = Units::default();
@@ -52,7 +55,7 @@ fn read_files(source: Source, files: &[PathBuf], holds: &str) -> Result<Assembly
     Ok(units.name.into_iter().fold(assembly, Assembly::with_unit))
 }
 
-/// The unit of an assembly: that of the first file that says one.
+/// The unit of an assembly: that of the first file that has one.
 #[derive(Default)]
 struct Units {
     name: Option<&'static str>,
@@ -60,7 +63,8 @@ struct Units {
 }
 
 impl Units {
-    /// The scale of a mesh. What does not say its unit is in that of the others; a unit without a name becomes metres.
+    /// Returns the scale of a mesh to the unit of the assembly. A mesh without a unit is not scaled. If the
+    /// first unit has no name, the assembly is in metres.
     fn world_from(&mut self, mesh: &Mesh) -> DAffine3 {
         let Some(own) = mesh.unit else { return DAffine3::IDENTITY };
         let metres = *self.metres.get_or_insert_with(|| {
@@ -75,16 +79,18 @@ impl Units {
     }
 }
 
-/// What is in a folder that is no mesh.
+/// The entries of a folder that are not mesh files.
 #[derive(Default)]
 struct Others {
     folders: usize,
     by_kind: BTreeMap<String, usize>,
-    /// Names of what may say where parts are: not JSON, which is anything, answers of this crate among it.
+    /// Names of files that may place the parts (`.toml`, `.urdf`). JSON is left out, because it may be
+    /// anything, for example an answer of this crate.
     manifests: Vec<String>,
 }
 
 impl Others {
+    /// Counts an entry of the folder.
     fn count(&mut self, file: &Path) {
         if file.is_dir() {
             self.folders += 1;
@@ -98,21 +104,21 @@ impl Others {
         *self.by_kind.entry(kind).or_default() += 1;
     }
 
-    /// What is not read though there are meshes.
+    /// Returns a note on the files that may place the parts and are not read; `None` if there are none.
     fn unread(&self) -> Option<String> {
         let mut names = self.manifests.clone();
         names.sort();
         (!names.is_empty()).then(|| {
             format!(
-                "not read: {}; parts are where their files have them, unless it is given itself",
+                "not read: {}; the parts keep the coordinates of their mesh files; to place them, give this file as the source",
                 names.join(", ")
             )
         })
     }
 
-    /// What was found, and what to do.
+    /// Describes the folder's contents for the error that it has no mesh, with advice.
     fn told(&self) -> String {
-        let none = format!("no {} file is in this folder", Format::names("or"));
+        let none = format!("the folder has no {} file", Format::names("or"));
         let counted = |count: usize, what: &str| {
             if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
         };
@@ -125,15 +131,15 @@ impl Others {
             found.push(counted(*count, &what));
         }
         if found.is_empty() {
-            return format!("{none}; it is empty");
+            return format!("{none}; the folder is empty");
         }
         let has = |kinds: &[&str]| kinds.iter().any(|kind| self.by_kind.contains_key(*kind));
         let advice = if has(&["step", "stp"]) {
-            "; give a STEP file itself"
+            "; give the path of the STEP file"
         } else if has(&["toml", "json", "urdf", "glb", "gltf", "3mf"]) {
-            "; give the manifest, URDF, glTF or 3MF file itself"
+            "; give the path of the manifest, URDF, glTF or 3MF file"
         } else if self.folders > 0 {
-            "; give the folder that holds the meshes"
+            "; give the folder that contains the meshes"
         } else {
             ""
         };
@@ -142,7 +148,7 @@ impl Others {
     }
 }
 
-/// A key by which `bolt_2` comes before `bolt_10`.
+/// Returns a sort key that orders numbers in names by value, for example `bolt_2` before `bolt_10`.
 fn natural(name: &str) -> (Vec<(String, u64)>, String) {
     let mut key = Vec::new();
     let mut rest = name;

@@ -1,8 +1,9 @@
-//! glTF and GLB: every node with a mesh is a part, in metres, its transform and those above applied.
+//! Reads glTF and GLB: each node with a mesh is a part, in metres, with the transforms of the node and its
+//! ancestors.
 //!
-//! Vertices of one place that differ in normal or texture are welded: glTF stores them apart. Nothing
-//! is read of pictures and animations, of materials one colour for each part: that of its largest primitive. Every offset, stride and count is held against the
-//! bytes that are there before anything is made of them.
+//! Vertices that differ only in normal or texture coordinates are welded, because glTF stores them separately.
+//! Textures and animations are ignored. A part has one colour, that of the material of its largest primitive.
+//! Offsets, strides and counts are checked against the available bytes before use.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -23,10 +24,9 @@ use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::colour::on_screen;
 
-/// Nodes nested deeper than this are a ring.
+/// Maximum depth of nested nodes. Deeper ones are rejected as a possible cycle.
 const DEEPEST: usize = 256;
-/// Extensions that say nothing of shapes, by how their names begin; and those that are read: positions
-/// in whole numbers, hidden nodes.
+/// Prefixes of the names of supported extensions: those without shapes, quantised positions, and hidden nodes.
 const HARMLESS: [&str; 8] = [
     "KHR_materials_",
     "KHR_texture_",
@@ -37,9 +37,10 @@ const HARMLESS: [&str; 8] = [
     "KHR_mesh_quantization",
     VISIBILITY,
 ];
-/// The extension that hides nodes, and all below them.
+/// The extension that hides a node and all nodes below it.
 const VISIBILITY: &str = "KHR_node_visibility";
 
+/// Reads the assembly of a glTF or GLB file.
 pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> {
     let path = source.path;
     let refused = |reason: String| contents(path, "glTF", reason);
@@ -49,7 +50,8 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     let buffers = buffers(&source, &document, binary)?;
     let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
     let scene = document.scenes.get(document.scene.unwrap_or(0));
-    let scene = scene.ok_or_else(|| contents(path, "scenes", "there is no scene"))?;
+    let scene =
+        scene.ok_or_else(|| contents(path, "scenes", "the default scene does not exist"))?;
     let budget = Budget::of(size);
     let frame = document.asset.extras.frame();
     let (shown, left_out) = (Vec::new(), Vec::new());
@@ -70,7 +72,8 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     let unplaced = document.unplaced(scene);
     if !unplaced.is_empty() {
         let named = first_named(&unplaced, drafts::MOST_NAMED);
-        assembly = assembly.with_note(format!("left out, as they are not in the scene: {named}"));
+        assembly =
+            assembly.with_note(format!("left out because they are not in the scene: {named}"));
     }
     if !left_out.is_empty() {
         assembly =
@@ -82,12 +85,11 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     Ok(if at_rest == 0 {
         assembly
     } else {
-        assembly
-            .with_note("morph targets and skins are left out: meshes are taken as they are at rest")
+        assembly.with_note("morph targets and skins are ignored: meshes have their rest shape")
     })
 }
 
-/// The JSON text, and the binary chunk of a GLB file.
+/// Returns the JSON text, and the binary chunk of a GLB file if it has one.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if !bytes.starts_with(b"glTF") {
         return Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None));
@@ -96,25 +98,25 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
         let word = bytes.get(at..)?.first_chunk::<4>()?;
         Some(u32::from_le_bytes(*word) as usize)
     };
-    let short = || "the file is cut short".to_owned();
+    let short = || "the file is truncated".to_owned();
     let (version, length) = (word(4).ok_or_else(short)?, word(8).ok_or_else(short)?);
     if version != 2 {
-        return Err(format!("a GLB file of version {version}, not 2"));
+        return Err(format!("GLB version {version} is not supported; accepted: 2"));
     }
     if length > bytes.len() {
-        return Err(format!("the file is cut short: {} bytes of {length}", bytes.len()));
+        return Err(format!("the file is truncated: {} bytes, expected {length}", bytes.len()));
     }
     let chunk = |at: usize| {
         let size = word(at)?;
         let data = bytes.get(at + 8..length)?.get(..size)?;
         Some((bytes.get(at + 4..at + 8)?, data))
     };
-    let Some((b"JSON", json)) = chunk(12) else { return Err("its first chunk is not JSON".into()) };
+    let Some((b"JSON", json)) = chunk(12) else { return Err("the first chunk is not JSON".into()) };
     let next = 12 + 8 + json.len().next_multiple_of(4);
     let binary = match chunk(next) {
         Some((b"BIN\0", data)) => Some(data),
         _ if next + 8 <= length && bytes.get(next + 4..next + 8) == Some(b"BIN\0") => {
-            return Err("its binary chunk is cut short".into());
+            return Err("the binary chunk is truncated".into());
         }
         _ => None,
     };
@@ -122,7 +124,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "an object that holds a glTF file")]
+#[serde(rename_all = "camelCase", expecting = "a glTF document, an object")]
 struct Document {
     asset: Asset,
     scene: Option<usize>,
@@ -152,7 +154,7 @@ struct Asset {
     extras: Extras,
 }
 
-/// What `colltrans.step` writes beside what is glTF, whatever others write there.
+/// The data that `colltrans.step` adds to a glTF file (`extras.colltrans`). Data of other writers are ignored.
 #[derive(Deserialize, Default)]
 #[serde(from = "Value")]
 struct Extras(Value);
@@ -163,7 +165,7 @@ impl From<Value> for Extras {
     }
 }
 
-/// The frame of the file that a glTF file was made of, in which all is told.
+/// The frame and unit of the file from which a glTF file was converted. Results are in this frame.
 struct Frame {
     world: DAffine3,
     per_metre: f64,
@@ -172,6 +174,7 @@ struct Frame {
 }
 
 impl Extras {
+    /// Returns the frame of the original file, or that of glTF.
     fn frame(&self) -> Frame {
         let per_metre = self.0.get("per_metre").and_then(Value::as_f64);
         let unit = self.0.get("unit").and_then(Value::as_str);
@@ -188,18 +191,18 @@ impl Extras {
         Frame { world, per_metre, unit: unit.to_owned(), up }
     }
 
-    /// Returns what the converter says about the file that it read.
+    /// Returns the notes of the converter.
     fn notes(&self) -> impl Iterator<Item = &str> {
         let notes = self.0.get("notes").and_then(Value::as_array);
         notes.into_iter().flatten().filter_map(Value::as_str)
     }
 
-    /// Whether all that is below a node is one part.
+    /// Checks whether all meshes below a node form one part.
     fn is_part(&self) -> bool {
         self.0.get("part").and_then(Value::as_bool).unwrap_or(false)
     }
 
-    /// The chord error of a node's facets, in metres.
+    /// Returns the chord error of a node's facets, in metres.
     fn chord_error(&self) -> Option<f64> {
         let error = self.0.get("chord_error").and_then(Value::as_f64)?;
         (error.is_finite() && error >= 0.0).then_some(error)
@@ -207,14 +210,14 @@ impl Extras {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object that holds a scene")]
+#[serde(expecting = "a scene, an object")]
 struct Scene {
     #[serde(default)]
     nodes: Vec<usize>,
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object that holds a node")]
+#[serde(expecting = "a node, an object")]
 struct Node {
     name: Option<String>,
     mesh: Option<usize>,
@@ -232,14 +235,14 @@ struct Node {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object that holds a mesh")]
+#[serde(expecting = "a mesh, an object")]
 struct Shape {
     name: Option<String>,
     primitives: Vec<Primitive>,
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object that holds a primitive")]
+#[serde(expecting = "a primitive, an object")]
 struct Primitive {
     attributes: Attributes,
     indices: Option<usize>,
@@ -251,14 +254,14 @@ struct Primitive {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object of attributes")]
+#[serde(expecting = "attributes, an object")]
 struct Attributes {
     #[serde(rename = "POSITION")]
     position: Option<usize>,
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "an object that holds an accessor")]
+#[serde(rename_all = "camelCase", expecting = "an accessor, an object")]
 struct Accessor {
     buffer_view: Option<usize>,
     #[serde(default)]
@@ -273,7 +276,7 @@ struct Accessor {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object that holds what differs")]
+#[serde(expecting = "sparse data, an object")]
 struct Sparse {
     count: usize,
     indices: Few,
@@ -281,7 +284,7 @@ struct Sparse {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "an object that names a buffer view")]
+#[serde(rename_all = "camelCase", expecting = "an object with the index of a buffer view")]
 struct Few {
     buffer_view: usize,
     #[serde(default)]
@@ -290,7 +293,7 @@ struct Few {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "an object that holds a buffer view")]
+#[serde(rename_all = "camelCase", expecting = "a buffer view, an object")]
 struct View {
     buffer: usize,
     #[serde(default)]
@@ -300,28 +303,33 @@ struct View {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "an object that holds a buffer")]
+#[serde(rename_all = "camelCase", expecting = "a buffer, an object")]
 struct Buffer {
     byte_length: usize,
     uri: Option<String>,
 }
 
 impl Document {
+    /// Checks the version and the required extensions.
     fn check(&self) -> Result<(), String> {
         if !self.asset.version.starts_with("2.") {
-            return Err(format!("a file of version {}, not 2", self.asset.version));
+            return Err(format!(
+                "glTF version {} is not supported; accepted: 2",
+                self.asset.version
+            ));
         }
         let known = |name: &String| HARMLESS.iter().any(|start| name.starts_with(start));
         match self.extensions_required.iter().find(|name| !known(name)) {
             Some(name) => Err(format!(
-                "whoever reads it must know the extension {name}, which is not known here; save it \
-                 without, as plain meshes"
+                "the required extension {name} is not supported; save the file without it, as plain \
+                 meshes"
             )),
             None => Ok(()),
         }
     }
 }
 
+/// Returns the contents of all buffers.
 fn buffers(
     source: &Source,
     document: &Document,
@@ -338,40 +346,42 @@ fn buffers(
                 } else {
                     let name = unescaped(uri).map_err(refused)?;
                     let file = source.named(&name)?;
-                    Some(file.ok_or_else(|| refused(format!("{name} cannot be found")))?.1)
+                    Some(file.ok_or_else(|| refused(format!("file {name} not found")))?.1)
                 }
             }
         };
         let bytes = bytes.ok_or_else(|| refused("the binary chunk is missing".into()))?;
         if bytes.len() < buffer.byte_length {
-            return Err(refused(format!("has {} bytes of {}", bytes.len(), buffer.byte_length)));
+            return Err(refused(format!("{} bytes, expected {}", bytes.len(), buffer.byte_length)));
         }
         Ok(bytes)
     };
     document.buffers.iter().enumerate().map(read).collect()
 }
 
-/// The bytes of a `data:` URI, of which that was taken off.
+/// Decodes the text of a `data:` URI after `data:`.
 fn embedded(data: &str) -> Result<Vec<u8>, String> {
-    let (kind, text) = data.split_once(',').ok_or("its data have no comma before them")?;
+    let (kind, text) =
+        data.split_once(',').ok_or("invalid data URI: expected a comma before the data")?;
     if kind.ends_with(";base64") {
-        return STANDARD.decode(text).map_err(|_| "its data are not base64".into());
+        return STANDARD.decode(text).map_err(|_| "invalid data URI: not base64".into());
     }
     percent_decoded(text)
 }
 
+/// Reads the meshes of the scene.
 struct Reader<'a> {
     path: &'a Path,
     document: &'a Document,
     buffers: Vec<Vec<u8>>,
     budget: Budget,
     shown: Vec<Shown<'a>>,
-    /// Nodes that are no parts, each with the reason.
+    /// Names of the nodes that are left out, each with the reason.
     left_out: Vec<String>,
 }
 
 impl Document {
-    /// Returns the names of nodes with a mesh that the scene does not reach.
+    /// Returns the names of the nodes with a mesh that are not in the scene.
     fn unplaced(&self, scene: &Scene) -> Vec<String> {
         let mut reached = vec![false; self.nodes.len()];
         let mut open = scene.nodes.clone();
@@ -386,14 +396,15 @@ impl Document {
         unplaced.map(|(k, node)| node.shown_name(k)).collect()
     }
 
-    /// The colour of the largest primitive of some meshes, if it is one colour.
+    /// Returns the colour of the largest primitive of some meshes. `None` if its material has a texture or no
+    /// base colour.
     fn colour(&self, meshes: impl Iterator<Item = usize>) -> Option<[f64; 3]> {
         let count = |accessor: Option<usize>| Some(self.accessors.get(accessor?)?.count);
         let size = |shape: &&Primitive| {
             count(shape.indices).or_else(|| count(shape.attributes.position)).unwrap_or(0)
         };
         let shapes = meshes.flat_map(|mesh| &self.meshes[mesh].primitives);
-        // Of equal ones the first.
+        // If sizes are equal, the first one.
         let largest = shapes.reduce(|a, b| if size(&b) > size(&a) { b } else { a })?;
         let number = usize::try_from(largest.material.as_u64()?).ok()?;
         let look = self.materials.get(number)?.get("pbrMetallicRoughness")?;
@@ -406,7 +417,7 @@ impl Document {
     }
 }
 
-/// What a node shows: its mesh, or all that is below it.
+/// A part: the mesh of a node, or all meshes below it.
 struct Shown<'a> {
     node: usize,
     name: Option<&'a str>,
@@ -414,7 +425,8 @@ struct Shown<'a> {
 }
 
 impl Reader<'_> {
-    /// A node and all below it; a part of `whole`, if that is one part.
+    /// Collects the meshes of a node and of all nodes below it. `whole` is the index of the part to which they
+    /// belong, if a node above is marked as one part.
     fn node(
         &mut self,
         index: usize,
@@ -425,9 +437,9 @@ impl Reader<'_> {
         let refused = |reason: String| contents(self.path, format!("node {index}"), reason);
         let document = self.document;
         let node = document.nodes.get(index);
-        let node = node.ok_or_else(|| refused("there is no such node".into()))?;
+        let node = node.ok_or_else(|| refused("no such node".into()))?;
         if depth > DEEPEST {
-            return Err(refused("nodes are nested too deep, or in a ring".into()));
+            return Err(refused(format!("nodes are nested deeper than {DEEPEST}, or in a cycle")));
         }
         self.budget.place().map_err(refused)?;
         if node.is_hidden() {
@@ -441,9 +453,11 @@ impl Reader<'_> {
         }
         if let Some(mesh) = node.mesh {
             let shape = document.meshes.get(mesh);
-            let shape = shape.ok_or_else(|| refused(format!("there is no mesh {mesh}")))?;
+            let shape = shape.ok_or_else(|| refused(format!("no such mesh {mesh}")))?;
             if let Some(name) = node.extensions.keys().find(|name| name.contains("instancing")) {
-                return Err(refused(format!("its copies by {name} are not read")));
+                return Err(refused(format!(
+                    "instances of {name} are not supported; save the copies as nodes"
+                )));
             }
             if let Some(whole) = whole {
                 self.shown[whole].meshes.push((mesh, world));
@@ -458,8 +472,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A part for each that is shown; every mesh is read once, and all are counted before the
-    /// first part is built.
+    /// Builds a draft for each part. Each mesh is read once, and all are counted before the first part is
+    /// built. Also returns the nodes that are left out.
     fn drafts(mut self, per_metre: f64) -> Result<(Vec<Draft>, Vec<String>), ReadError> {
         let mut budget = std::mem::take(&mut self.budget);
         let mut meshes: HashMap<usize, Arc<Mesh>> = HashMap::new();
@@ -496,7 +510,7 @@ impl Reader<'_> {
         Ok((drafts, self.left_out))
     }
 
-    /// The triangles of all primitives of a mesh.
+    /// Returns the triangles of all primitives of a mesh.
     fn mesh(&self, shape: &Shape, budget: &mut Budget) -> Result<Mesh, String> {
         let mut merged = Mesh::default();
         for primitive in &shape.primitives {
@@ -508,11 +522,13 @@ impl Reader<'_> {
                 Some(index) => self.values(index, "indices", "SCALAR")?.whole_numbers()?,
             };
             if let Some(beyond) = indices.iter().find(|&&k| k >= count) {
-                return Err(format!("index {beyond} of only {count} vertices"));
+                return Err(format!(
+                    "vertex index {beyond} is out of range; there are {count} vertices"
+                ));
             }
             let faces = triangles(primitive.mode.unwrap_or(4), &indices)?;
             budget.facets(faces.len())?;
-            // Primitives may share their vertices: only those in use are taken, in their order.
+            // Primitives may share vertices. Only the vertices in use are copied, in their order.
             let mut used = indices;
             used.sort_unstable();
             used.dedup();
@@ -524,20 +540,21 @@ impl Reader<'_> {
         Ok(merged.with_format(NumberFormat::Single))
     }
 
-    /// The numbers of an accessor.
+    /// Returns the values of an accessor, after checking that all their bytes exist.
     fn values(&self, index: usize, what: &'static str, shape: &str) -> Result<Values<'_>, String> {
-        let missing = || format!("there is no accessor {index} of {what}");
+        let missing = || format!("no such accessor {index} of {what}");
         let accessor = self.document.accessors.get(index).ok_or_else(missing)?;
         if accessor.shape != shape {
-            return Err(format!("its {what} are {}, not {shape}", accessor.shape));
+            return Err(format!("{what} have type {}, expected {shape}", accessor.shape));
         }
         let kind = Kind::of(accessor.component_type, what)?;
         let width = if shape == "VEC3" { 3 } else { 1 };
         let size = width * kind.size();
         let count = accessor.count;
-        u32::try_from(count).map_err(|_| format!("{count} {what} are too many"))?;
+        u32::try_from(count)
+            .map_err(|_| format!("{count} {what} are too many; accepted: less than 2^32"))?;
         let Some(view) = accessor.buffer_view else {
-            return Err(format!("its {what} have no data of their own"));
+            return Err(format!("{what} without a buffer view are not supported"));
         };
         let (bytes, stride) = self.span(view, accessor.byte_offset, count, size, what)?;
         let replaced = match &accessor.sparse {
@@ -548,7 +565,8 @@ impl Reader<'_> {
         Ok(Values { bytes, stride, count, kind, normalized, replaced, what })
     }
 
-    /// The bytes of so many elements of a view, and how far it is from one to the next.
+    /// Returns the bytes of a view from an offset on, which contain `count` elements of `size` bytes, and the
+    /// stride.
     fn span(
         &self,
         view: usize,
@@ -557,13 +575,15 @@ impl Reader<'_> {
         size: usize,
         what: &str,
     ) -> Result<(&[u8], usize), String> {
-        let missing = || format!("there is no buffer view {view} of its {what}");
+        let missing = || format!("no such buffer view {view} of {what}");
         let view = self.document.buffer_views.get(view).ok_or_else(missing)?;
         let stride = view.byte_stride.unwrap_or(size);
         if stride < size {
-            return Err(format!("its {what} of {size} bytes lie {stride} bytes apart"));
+            return Err(format!(
+                "{what} of {size} bytes have a stride of {stride} bytes; accepted: at least {size}"
+            ));
         }
-        let beyond = || format!("its {what} lie beyond their buffer");
+        let beyond = || format!("{what} extend beyond their buffer");
         let buffer = self.buffers.get(view.buffer).ok_or_else(beyond)?;
         let of_view = buffer.get(view.byte_offset..).and_then(|rest| rest.get(..view.byte_length));
         let bytes = of_view.and_then(|bytes| bytes.get(offset..)).ok_or_else(beyond)?;
@@ -575,7 +595,7 @@ impl Reader<'_> {
         Ok((bytes, stride))
     }
 
-    /// Elements that take the place of others, in the order of their numbers.
+    /// Returns the elements that replace others, in increasing order of their indices.
     fn sparse(
         &self,
         sparse: &Sparse,
@@ -585,7 +605,7 @@ impl Reader<'_> {
     ) -> Result<Vec<(u32, &[u8])>, String> {
         let n = sparse.count;
         if n > count {
-            return Err(format!("{n} of {count} {what} are replaced"));
+            return Err(format!("{n} sparse {what} replace only {count} elements"));
         }
         let Few { buffer_view, byte_offset, component_type } = sparse.indices;
         let kind = Kind::of(component_type.unwrap_or(0), what)?;
@@ -596,7 +616,7 @@ impl Reader<'_> {
         if !numbers.is_sorted_by(|a, b| a < b)
             || numbers.last().is_some_and(|&k| k as usize >= count)
         {
-            return Err(format!("the {what} that are replaced are not in order, or not there"));
+            return Err(format!("indices of sparse {what} must be increasing and below {count}"));
         }
         let Few { buffer_view, byte_offset, .. } = sparse.values;
         let (bytes, stride) = self.span(buffer_view, byte_offset, n, size, what)?;
@@ -605,11 +625,13 @@ impl Reader<'_> {
     }
 }
 
+/// Checks whether a name is more than blanks.
 fn is_name(name: &str) -> bool {
     !name.trim().is_empty()
 }
 
 impl Node {
+    /// Returns the name of the node; `None` if it is missing or blank.
     fn name(&self) -> Option<&str> {
         self.name.as_deref().filter(|name| is_name(name))
     }
@@ -625,6 +647,7 @@ impl Node {
         visibility.and_then(|it| it.get("visible")).and_then(Value::as_bool) == Some(false)
     }
 
+    /// Returns the transform of the node relative to its parent.
     fn transform(&self) -> Result<DAffine3, String> {
         let transform = if let Some(columns) = &self.matrix {
             DAffine3::from_mat4(DMat4::from_cols_array(columns))
@@ -638,12 +661,12 @@ impl Node {
         if transform.is_finite() {
             Ok(transform)
         } else {
-            Err("its transform is not finite, or turns about nothing".into())
+            Err("its transform is not finite, or its rotation is zero".into())
         }
     }
 }
 
-/// A kind of number.
+/// The component type of an accessor.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     I8,
@@ -655,6 +678,7 @@ enum Kind {
 }
 
 impl Kind {
+    /// Parses the code of a component type.
     fn of(code: u32, what: &str) -> Result<Self, String> {
         Ok(match code {
             5120 => Self::I8,
@@ -663,10 +687,11 @@ impl Kind {
             5123 => Self::U16,
             5125 => Self::U32,
             5126 => Self::F32,
-            _ => return Err(format!("its {what} are of the unknown kind {code}")),
+            _ => return Err(format!("{what} have the unknown component type {code}")),
         })
     }
 
+    /// Returns the size in bytes.
     fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -675,7 +700,7 @@ impl Kind {
         }
     }
 
-    /// The largest whole number, which stands for 1 where numbers are normalised.
+    /// Returns the largest integer, which represents 1 in normalised values.
     fn largest(self) -> f64 {
         match self {
             Self::I8 => f64::from(i8::MAX),
@@ -687,7 +712,7 @@ impl Kind {
         }
     }
 
-    /// The number that bytes begin with.
+    /// Decodes the first number in some bytes.
     fn number(self, bytes: &[u8]) -> f64 {
         match (self, bytes) {
             (Self::I8, [a, ..]) => f64::from(*a as i8),
@@ -696,25 +721,26 @@ impl Kind {
             (Self::U16, [a, b, ..]) => f64::from(u16::from_le_bytes([*a, *b])),
             (Self::U32, [a, b, c, d, ..]) => f64::from(u32::from_le_bytes([*a, *b, *c, *d])),
             (Self::F32, [a, b, c, d, ..]) => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
-            // Not met: `span` has seen that the bytes are there.
+            // Unreachable: `span` checked that the bytes exist.
             _ => f64::NAN,
         }
     }
 }
 
-/// Numbers in bytes, all of which are there.
+/// The values of an accessor, all of whose bytes exist.
 struct Values<'a> {
     bytes: &'a [u8],
     stride: usize,
     count: usize,
     kind: Kind,
     normalized: bool,
-    /// Elements that others take the place of.
+    /// The elements that replace others, by increasing index.
     replaced: Vec<(u32, &'a [u8])>,
     what: &'static str,
 }
 
 impl Values<'_> {
+    /// Returns the bytes from element `k` on.
     fn element(&self, k: usize) -> &[u8] {
         match self.replaced.binary_search_by_key(&(k as u32), |r| r.0) {
             Ok(found) => self.replaced[found].1,
@@ -722,6 +748,7 @@ impl Values<'_> {
         }
     }
 
+    /// Returns element `k` as a vector.
     fn vector(&self, k: usize) -> DVec3 {
         let element = self.element(k);
         let scale = if self.normalized { self.kind.largest() } else { 1.0 };
@@ -732,20 +759,21 @@ impl Values<'_> {
         DVec3::new(number(0), number(1), number(2))
     }
 
+    /// Returns all elements as integers.
     fn whole_numbers(&self) -> Result<Vec<u32>, String> {
         if !matches!(self.kind, Kind::U8 | Kind::U16 | Kind::U32) {
-            return Err(format!("its {} are no whole numbers", self.what));
+            return Err(format!("{} are not unsigned integers", self.what));
         }
         Ok((0..self.count).map(|k| self.kind.number(self.element(k)) as u32).collect())
     }
 }
 
-/// Triangles, strips and fans; points and lines have no surface.
+/// Returns the triangles of a list, strip or fan. Points and lines have none.
 fn triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, String> {
     Ok(match mode {
         0..=3 => Vec::new(),
         4 if !indices.len().is_multiple_of(3) => {
-            return Err(format!("{} corners do not make triangles", indices.len()));
+            return Err(format!("{} indices are not a multiple of 3", indices.len()));
         }
         4 => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         5 => {
@@ -758,6 +786,6 @@ fn triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, String> {
             [center, rim @ ..] => rim.windows(2).map(|e| [*center, e[0], e[1]]).collect(),
             [] => Vec::new(),
         },
-        _ => return Err(format!("{mode} is not a mode of a primitive")),
+        _ => return Err(format!("unknown primitive mode {mode}; accepted: 0 to 6")),
     })
 }

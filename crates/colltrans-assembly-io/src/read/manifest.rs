@@ -1,6 +1,6 @@
-//! A manifest: which files, where, which of them stay, pairs that let each other pass, and what is asked of plans.
+//! Reads a manifest: files, their placement, fixed parts, pairs with a fit, and constraints on plans.
 //!
-//! The same fields in TOML and JSON; `docs/guide/assemblies.md` lists them.
+//! TOML and JSON have the same fields, which `docs/guide/assemblies.md` lists.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use colltrans_assembly::units;
 use colltrans_assembly::{Assembly, Ignored};
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a manifest")]
+#[serde(deny_unknown_fields, expecting = "a manifest, an object")]
 struct Manifest {
     unit: Option<String>,
     #[serde(default, alias = "part")]
@@ -45,26 +45,29 @@ struct Manifest {
     never: Vec<Kept>,
 }
 
-/// What two parts are to each other.
+/// The fit of two parts.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that says what two parts are to each other")]
+#[serde(deny_unknown_fields, expecting = "an object with two parts and their role or tolerance")]
 struct Contact {
     parts: Exactly<String, 2>,
     role: Option<Role>,
     tolerance: Option<f64>,
 }
 
-/// Parts that leave as one and are taken apart by themselves.
+/// Parts that are removed as one and are disassembled separately.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a subassembly")]
+#[serde(deny_unknown_fields, expecting = "an object with the name and the parts of a subassembly")]
 struct Subassembly {
     name: String,
     parts: Vec<String>,
 }
 
-/// Where parts never go.
+/// A direction that parts never take.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that says where parts never go")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object with parts and the direction that they never take"
+)]
 struct Kept {
     parts: Vec<String>,
     along: Exactly<f64, 3>,
@@ -72,12 +75,13 @@ struct Kept {
     within_degrees: f64,
 }
 
+/// Returns the default of the field `within_degrees`.
 const fn within_degrees() -> f64 {
     WITHIN_DEGREES
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a part")]
+#[serde(deny_unknown_fields, expecting = "an object that describes a part")]
 struct Entry {
     file: OneOrMany,
     name: Option<String>,
@@ -90,14 +94,14 @@ struct Entry {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "a file is a name or a list of names")]
+#[serde(untagged, expecting = "a file must be a name or a list of names")]
 enum OneOrMany {
     One(String),
     Many(Vec<String>),
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "a scale is a number or three of them")]
+#[serde(untagged, expecting = "a scale must be a number or three numbers")]
 enum Scale {
     Same(f64),
     Each([f64; 3]),
@@ -107,7 +111,7 @@ enum Scale {
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "a rotation is { quaternion = [x, y, z, w] }, { rpy_degrees = [roll, pitch, yaw] } or \
+    expecting = "a rotation must be { quaternion = [x, y, z, w] }, { rpy_degrees = [roll, pitch, yaw] } or \
                  { matrix = three rows of three numbers }"
 )]
 enum Rotation {
@@ -124,7 +128,7 @@ enum NamedRotation {
     Matrix([[f64; 3]; 3]),
 }
 
-/// A list of just so many: the reader of TOML drops what is beyond the length of an array.
+/// A list of exactly `N` elements. The TOML parser silently drops elements beyond the length of an array.
 #[derive(Clone)]
 struct Exactly<T, const N: usize>([T; N]);
 
@@ -137,6 +141,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N
     }
 }
 
+/// Reads the assembly of a manifest.
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let path = source.path;
     let text = source.text()?;
@@ -158,8 +163,8 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
     let holds = match missing.len() {
-        0 => "it lists no part".to_owned(),
-        missing => format!("none of its parts has all of its files; {missing} cannot be found"),
+        0 => "it lists no parts".to_owned(),
+        missing => format!("none of its parts has all of its files; {missing} files not found"),
     };
     let mut assembly = assembled(source, drafts, &holds)?;
     let (manifest, dropped) = manifest.without(&left_out, &assembly);
@@ -173,17 +178,17 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         assembly = assembly.with_note(note);
     }
     for said in dropped {
-        assembly = assembly.with_note(format!("{said}, as parts of it are left out"));
+        assembly = assembly.with_note(format!("{said}, because some of its parts are left out"));
     }
     for file in missing {
-        assembly = assembly.with_note(format!("{file} cannot be found and is left out"));
+        assembly = assembly.with_note(format!("{file} not found; left out"));
     }
     Ok(if let Some(unit) = manifest.unit { assembly.with_unit(unit) } else { assembly })
 }
 
 impl Manifest {
-    /// The same without what is said of parts that are left out, and that in words. What is said of several others holds
-    /// of those.
+    /// Removes the parts that are left out from pairs and constraints. Returns the manifest with a note on each
+    /// changed entry. Entries with too few remaining parts are dropped, others apply to the remaining parts.
     fn without(mut self, left_out: &[String], assembly: &Assembly) -> (Self, Vec<String>) {
         let like = |name: &str, part: &String| match name.trim().strip_suffix('*') {
             Some(prefix) => part.starts_with(prefix),
@@ -199,9 +204,9 @@ impl Manifest {
             names.retain(is_there);
             let kept = names.len() >= fewest.min(count);
             if !kept {
-                dropped.push(format!("{what} of {before} is not asked"));
+                dropped.push(format!("{what} of {before} is dropped"));
             } else if names.len() < count {
-                dropped.push(format!("{what} of {before} is asked of {} only", names.join(", ")));
+                dropped.push(format!("{what} of {before} applies to {} only", names.join(", ")));
             }
             kept
         };
@@ -220,7 +225,7 @@ impl Manifest {
         (self, dropped)
     }
 
-    /// The assembly with what is asked of its plans.
+    /// Adds pairs and constraints to the assembly.
     fn constrained(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
         for Contact { parts: Exactly([a, b]), role, tolerance } in &self.pairs {
             let fit = PairFit { role: *role, tolerance: *tolerance };
@@ -243,35 +248,38 @@ impl Manifest {
     }
 }
 
-/// Parts in the making.
+/// The parts while they are gathered.
 #[derive(Default)]
 struct Gathered {
     budget: Budget,
-    /// The unit of the manifest, if it names one that is known.
+    /// The unit of the manifest in metres, if it names a known unit.
     metres: Option<f64>,
     drafts: Vec<Draft>,
     missing: Vec<String>,
-    /// Names of parts of which files are missing.
+    /// Names of parts with missing files.
     left_out: Vec<String>,
     notes: Vec<String>,
 }
 
 impl Gathered {
+    /// Reads the files of part `k` and adds its draft.
     fn part(&mut self, source: &Source, k: usize, entry: &Entry) -> Result<(), ReadError> {
         let files = match &entry.file {
             OneOrMany::One(file) => std::slice::from_ref(file),
             OneOrMany::Many(files) => files,
         };
         let refused = |reason: String| contents(source.path, place(k), reason);
-        let first = files.first().ok_or_else(|| refused("no file is given".into()))?;
+        let first = files
+            .first()
+            .ok_or_else(|| refused("the list of files is empty; give at least one file".into()))?;
         let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
         let (world, normalised) = entry
             .world_from_mesh()
             .map_err(|reason| contents(source.path, format!("{} ({name})", place(k)), reason))?;
         if let Some(off) = normalised {
             self.notes.push(format!(
-                "the rotation of {name} is {off:.0e} off a rotation; it was normalised, and a direction may be \
-                 off by that much"
+                "the rotation of {name} deviates from a rotation by {off:.0e} and was normalised; directions may \
+                 deviate by that much"
             ));
         }
         let (mut pieces, missing) = (Vec::new(), self.missing.len());
@@ -283,7 +291,7 @@ impl Gathered {
             self.budget.read(&path, bytes.len());
             let mesh = mesh(&path, bytes)?;
             self.budget.facets(mesh.faces.len().max(mesh.vertices.len())).map_err(refused)?;
-            // A file that says its unit is told in that of the manifest.
+            // A mesh file with a unit is converted to the unit of the manifest.
             let world = match (mesh.unit, self.metres) {
                 (Some(own), Some(metres)) if own != metres => {
                     world * DAffine3::from_scale(DVec3::splat(own / metres))
@@ -307,10 +315,12 @@ impl Gathered {
     }
 }
 
+/// Returns the place of part `k` for messages.
 fn place(k: usize) -> String {
     format!("part {}", k + 1)
 }
 
+/// Returns line and column of a TOML error.
 fn toml_place(text: &str, error: &toml::de::Error) -> String {
     let offset = error.span().map_or(0, |span| span.start.min(text.len()));
     let before = text.get(..offset).unwrap_or_default();
@@ -320,7 +330,7 @@ fn toml_place(text: &str, error: &toml::de::Error) -> String {
 }
 
 impl Entry {
-    /// Returns the place of the part, and how far its rotation was from one if it was normalised.
+    /// Returns the transformation of the part, and the defect of its rotation if it was normalised.
     fn world_from_mesh(&self) -> Result<(DAffine3, Option<f64>), String> {
         let exact = Ok((DMat3::IDENTITY, None));
         let (rotation, normalised) = self.rotation.as_ref().map_or(exact, Rotation::matrix)?;
@@ -331,10 +341,16 @@ impl Entry {
         };
         let translation = self.translation.as_ref().map_or(DVec3::ZERO, |by| by.0.into());
         if !scale.is_finite() || scale.element_product() == 0.0 {
-            return Err(format!("scale {:?} is zero or not finite", scale.to_array()));
+            return Err(format!(
+                "invalid scale {:?}; accepted: finite and not zero",
+                scale.to_array()
+            ));
         }
         if !translation.is_finite() {
-            return Err(format!("translation {:?} is not finite", translation.to_array()));
+            return Err(format!(
+                "invalid translation {:?}; accepted: finite numbers",
+                translation.to_array()
+            ));
         }
         let matrix = rotation * DMat3::from_diagonal(scale);
         Ok((DAffine3::from_mat3_translation(matrix, translation), normalised))
@@ -342,12 +358,12 @@ impl Entry {
 }
 
 impl Rotation {
-    /// Returns the rotation, and how far it was from one if it was normalised.
+    /// Returns the rotation, and its defect if it was normalised.
     fn matrix(&self) -> Result<(DMat3, Option<f64>), String> {
         match self {
             Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => quaternion(*q),
             Self::Named(NamedRotation::RpyDegrees(rpy)) if rpy.iter().any(|a| !a.is_finite()) => {
-                Err(format!("rpy_degrees {rpy:?} is not finite"))
+                Err(format!("invalid rpy_degrees {rpy:?}; accepted: finite numbers"))
             }
             Self::Named(NamedRotation::RpyDegrees(rpy)) => {
                 Ok((rpy_matrix(rpy.map(f64::to_radians)), None))
@@ -361,7 +377,7 @@ impl Rotation {
 fn quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
     let rotation = DQuat::from_array(q);
     let (_, defect) = Pose::from_rounded(rotation, DVec3::ZERO).map_err(|_| {
-        format!("quaternion {q:?} (x, y, z, w) has length {}, not 1", rotation.length())
+        format!("quaternion {q:?} (x, y, z, w) has length {}, expected 1", rotation.length())
     })?;
     Ok((DMat3::from_quat(rotation.normalize()), defect))
 }
@@ -369,13 +385,15 @@ fn quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
 /// Returns the rotation, and its defect if it was normalised, by the rule of [`Pose::from_rounded_matrix`].
 fn matrix(rows: &[[f64; 3]; 3]) -> Result<(DMat3, Option<f64>), String> {
     let matrix = DMat3::from_cols_array_2d(rows).transpose();
-    let (pose, defect) = Pose::from_rounded_matrix(matrix, DVec3::ZERO)
-        .map_err(|_| format!("matrix {rows:?} is not a rotation; lengths belong into scale"))?;
-    // Exact rotations keep their bits.
+    let (pose, defect) = Pose::from_rounded_matrix(matrix, DVec3::ZERO).map_err(|_| {
+        format!("matrix {rows:?} is not a rotation; give scale factors in the field scale")
+    })?;
+    // An exact rotation keeps its bits.
     Ok((defect.map_or(matrix, |_| pose.matrix()), defect))
 }
 
-/// About x by the first, then about y, then about z, in radians; quarter turns are exact.
+/// Returns the rotation by roll about x, then pitch about y, then yaw about z, in radians. Quarter turns are
+/// exact.
 pub(super) fn rpy_matrix([roll, pitch, yaw]: [f64; 3]) -> DMat3 {
     let turn = |angle: f64| {
         let (s, c) = angle.sin_cos();

@@ -1,8 +1,8 @@
-//! Assemblies as people have them: a folder of meshes, a manifest, URDF, glTF, 3MF.
+//! Reads assemblies from a folder of meshes, a manifest, URDF, glTF or 3MF.
 //!
-//! Every reader gives parts in one world and one unit. Units are what the file says (metres for URDF
-//! and glTF, what a 3MF file or a manifest names); a folder of meshes does not say, and its lengths
-//! are taken as they are.
+//! Each reader returns parts in one world frame and one unit. The unit is that of the file: metres for URDF and
+//! glTF, the named unit for 3MF and manifests. The coordinates of a folder of meshes without a unit are used
+//! unchanged.
 
 mod drafts;
 mod files;
@@ -42,115 +42,116 @@ use drafts::{Draft, Placed, assembled};
 pub use files::{FileFault, Files};
 use files::{Nothing, Source};
 
-/// Which geometry of a URDF link is read.
+/// The geometry of a URDF link to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Geometry {
-    /// What collision checkers use.
+    /// The geometry for collision checks.
     #[default]
     Collision,
-    /// What is drawn.
+    /// The geometry for display.
     Visual,
 }
 
-/// What readers need to know beside the file.
+/// Options of the readers.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Folders in which `package://name/rest` is looked for: as `name/rest`, then as `rest`, then
-    /// with fewer leading folders.
+    /// Package roots, in which `package://name/rest` is searched: as `name/rest`, then as `rest`, then with
+    /// fewer leading folders.
     pub packages: Vec<PathBuf>,
-    /// Whether meshes that cannot be found are left out, with a note.
+    /// Whether missing mesh files are skipped, with a note. Otherwise they are an error.
     pub skip_missing: bool,
-    /// Which geometry of a URDF link is read.
+    /// The geometry of URDF links to read.
     pub geometry: Geometry,
-    /// Positions of joints by name, in radians or metres; 0 for those not named.
+    /// Positions of joints by name, in radians or metres. The position of other joints is 0, unless they mimic
+    /// a joint.
     pub joints: BTreeMap<String, f64>,
-    /// Whether surfaces that have to be mended are refused.
+    /// Whether surfaces that need repair are rejected.
     pub as_is: bool,
-    /// Which parts are made of a file with several bodies.
+    /// The rule by which files with several bodies are split into parts.
     pub split: Split,
-    /// Whether a source may name files that lie neither in its own folder nor in one of `packages`,
-    /// by absolute paths, `..` or links.
+    /// Whether a source may refer to files outside of its own folder and of `packages`, by absolute paths, `..`
+    /// or symbolic links.
     pub allow_outside: bool,
-    /// Factors of parts whose files are in another unit, about the origin, by name; `bolt*` is all whose names begin with
-    /// `bolt`.
+    /// Scale factors of parts about the origin, by name, for files in another unit. The name `bolt*` matches
+    /// all names that begin with `bolt`.
     pub scales: BTreeMap<String, f64>,
-    /// Links of a robot whose meshes are taken as their convex hulls, by name; `*` is all links.
+    /// Names of the links of a robot whose meshes are replaced by their convex hulls; `*` matches all links.
     pub hulls: Vec<String>,
 }
 
 impl ReadOptions {
-    /// The same with other [`hulls`](Self::hulls).
+    /// Sets [`hulls`](Self::hulls).
     #[must_use]
     pub fn with_hulls(self, hulls: Vec<String>) -> Self {
         Self { hulls, ..self }
     }
 
-    /// Checks whether the meshes of a link are taken as their convex hulls.
+    /// Checks whether the meshes of a link are replaced by their convex hulls.
     #[cfg(feature = "files")]
     fn takes_hull(&self, link: &str) -> bool {
         self.hulls.iter().any(|name| name == link || name == "*")
     }
 
-    /// The same with other [`scales`](Self::scales).
+    /// Sets [`scales`](Self::scales).
     #[must_use]
     pub fn with_scales(self, scales: BTreeMap<String, f64>) -> Self {
         Self { scales, ..self }
     }
 
-    /// The same with another [`packages`](Self::packages).
+    /// Sets [`packages`](Self::packages).
     #[must_use]
     pub fn with_packages(self, packages: Vec<PathBuf>) -> Self {
         Self { packages, ..self }
     }
 
-    /// The same with another [`skip_missing`](Self::skip_missing).
+    /// Sets [`skip_missing`](Self::skip_missing).
     #[must_use]
     pub fn with_skip_missing(self, skip_missing: bool) -> Self {
         Self { skip_missing, ..self }
     }
 
-    /// The same with another [`geometry`](Self::geometry).
+    /// Sets [`geometry`](Self::geometry).
     #[must_use]
     pub fn with_geometry(self, geometry: Geometry) -> Self {
         Self { geometry, ..self }
     }
 
-    /// The same with another [`joints`](Self::joints).
+    /// Sets [`joints`](Self::joints).
     #[must_use]
     pub fn with_joints(self, joints: BTreeMap<String, f64>) -> Self {
         Self { joints, ..self }
     }
 
-    /// The same with another [`as_is`](Self::as_is).
+    /// Sets [`as_is`](Self::as_is).
     #[must_use]
     pub fn with_as_is(self, as_is: bool) -> Self {
         Self { as_is, ..self }
     }
 
-    /// The same with another [`split`](Self::split).
+    /// Sets [`split`](Self::split).
     #[must_use]
     pub fn with_split(self, split: Split) -> Self {
         Self { split, ..self }
     }
 
-    /// How bodies are made.
+    /// Returns the options for building bodies from meshes.
     fn body(&self) -> BodyOptions {
         BodyOptions::default().with_as_is(self.as_is)
     }
 
-    /// The same with another [`allow_outside`](Self::allow_outside).
+    /// Sets [`allow_outside`](Self::allow_outside).
     #[must_use]
     pub fn with_allow_outside(self, allow_outside: bool) -> Self {
         Self { allow_outside, ..self }
     }
 }
 
-/// Reads an assembly: a folder, a manifest (`.toml`, `.json`), `.urdf`, `.glb`, `.gltf`, `.3mf`, or a
-/// single mesh. Only ordinary files are read, never a device, a pipe or an address.
+/// Reads an assembly from a folder, a manifest (`.toml`, `.json`), `.urdf`, `.glb`, `.gltf`, `.3mf`, or a
+/// single mesh. Reads regular files only, never a device, a pipe or a network address.
 ///
 /// # Errors
-/// What cannot be read, with the file and the place; a source that has no parts.
+/// [`ReadError`] if a file cannot be read, with the file and the place, or if the source has no parts.
 #[cfg(feature = "files")]
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
     let path = path.as_ref();
@@ -162,7 +163,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, R
     match path.metadata() {
         Err(e) => Err(io(path)(e)),
         Ok(_) if !known => Err(unknown(path)),
-        // Whoever gives a link to the source means it.
+        // The source itself may be a symbolic link.
         Ok(_) => {
             let files = files::Given { path, files: &folders };
             read_from(path, &files, options)
@@ -171,6 +172,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, R
 }
 
 #[cfg(feature = "files")]
+/// Checks whether the extension is that of a supported source.
 fn is_known(path: &Path) -> bool {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let extension = extension.to_ascii_lowercase();
@@ -178,10 +180,11 @@ fn is_known(path: &Path) -> bool {
     sources.contains(&extension.as_str()) || colltrans_mesh::Format::of_path(path).is_ok()
 }
 
-/// [`read`], from files that lie wherever `files` has them; `path` is the source, and tells what it is.
+/// Reads an assembly like [`read`], from a provider of files. The extension of `path`, the source, selects the
+/// reader.
 ///
 /// # Errors
-/// As [`read`].
+/// The errors of [`read`].
 #[cfg(feature = "files")]
 pub fn read_from(
     path: impl AsRef<Path>,
@@ -205,6 +208,7 @@ pub fn read_from(
 }
 
 #[cfg(feature = "files")]
+/// Builds the error for an unsupported source.
 fn unknown(path: &Path) -> ReadError {
     let extension = path.extension().unwrap_or_default();
     let is_step = ["step", "stp"].iter().any(|known| extension.eq_ignore_ascii_case(known));
@@ -212,10 +216,11 @@ fn unknown(path: &Path) -> ReadError {
     if is_step { ReadError::Step { path } } else { ReadError::UnknownSource { path } }
 }
 
-/// Reads a robot that moves, from a URDF file: links with their bodies, and joints.
+/// Reads a robot from a URDF file: links with their bodies, and joints.
 ///
 /// # Errors
-/// What cannot be read, with the file and the place; joints that have not one value; a robot without geometry.
+/// [`ReadError`] if a file cannot be read, with the file and the place, if a joint has not exactly one degree
+/// of freedom (except fixed joints), or if the robot has no geometry.
 #[cfg(feature = "files")]
 pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Robot, ReadError> {
     let path = path.as_ref();
@@ -223,10 +228,10 @@ pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Rob
     robot::read(Source::new(path, options, &files::Given { path, files: &folders }))
 }
 
-/// Reads which links are not held against each other, from an SRDF file.
+/// Reads the pairs of links that an SRDF file excludes from collision checks.
 ///
 /// # Errors
-/// What cannot be read, with the file and the place.
+/// [`ReadError`] if the file cannot be read, with the file and the place.
 #[cfg(feature = "files")]
 pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
     let (path, options) = (path.as_ref(), ReadOptions::default());
@@ -234,18 +239,18 @@ pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
     srdf::read(&Source::new(path, &options, &files::Given { path, files: &folders }))
 }
 
-/// Reads a GLB file that is in memory, of which nothing lies elsewhere.
+/// Reads a GLB file from memory. The file must not refer to other files.
 ///
 /// # Errors
-/// What cannot be read, with the place; a file without parts.
+/// [`ReadError`] if the contents are invalid, with the place, or if the file has no parts.
 pub fn glb(name: impl AsRef<Path>, bytes: &[u8]) -> Result<Assembly, ReadError> {
     glb_with(name, bytes, &ReadOptions::default())
 }
 
-/// [`glb`] with options.
+/// Reads a GLB file like [`glb`], with options.
 ///
 /// # Errors
-/// As [`glb`].
+/// The errors of [`glb`].
 pub fn glb_with(
     name: impl AsRef<Path>,
     bytes: &[u8],
@@ -255,33 +260,35 @@ pub fn glb_with(
 }
 
 #[cfg(feature = "files")]
+/// Returns a function that adds the path to an error of the operating system.
 fn io(path: &Path) -> impl Fn(std::io::Error) -> ReadError + '_ {
     move |source| ReadError::Io { path: path.into(), source }
 }
 
+/// Returns a function that adds the path to an error of an assembly.
 fn in_file(path: &Path) -> impl Fn(AssemblyError) -> ReadError + '_ {
     move |source| ReadError::Assembly { path: path.into(), source }
 }
 
+/// Builds an error about the contents of a file.
 fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Display) -> ReadError {
     ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
 }
 
-/// The mesh of a file's bytes.
+/// Parses a mesh file. Its extension selects the format.
 #[cfg(feature = "files")]
 fn mesh(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
     let format = colltrans_mesh::Format::of_path(path)?;
     Ok(colltrans_mesh::parse(format, bytes, path)?)
 }
 
-/// Nodes, components, links or parts of a source, each as often as it is placed, at most.
+/// Maximum number of nodes, components, links or parts of a source, each counted as often as it is placed.
 pub const MOST_PLACED: usize = 1 << 16;
-/// Facets that are placed beyond one for each byte of the files, at most: shapes that are placed
-/// again and again.
+/// Maximum number of placed facets beyond one per byte of the files. It bounds sources that place the same
+/// shape very often.
 pub const MOST_REPEATED: usize = 1 << 23;
 
-/// What a source places, counted before it is built: a few lines can place a shape as often as they
-/// like.
+/// Counts what a source places before it is built, because a few lines can place a shape arbitrarily often.
 #[derive(Default)]
 struct Budget {
     bytes: usize,
@@ -292,11 +299,12 @@ struct Budget {
 }
 
 impl Budget {
+    /// Builds the budget of a source with this number of bytes.
     fn of(bytes: usize) -> Self {
         Self { bytes, ..Self::default() }
     }
 
-    /// A file that was read, whose bytes count once.
+    /// Adds the bytes of a file that was read. Each file counts once.
     #[cfg(feature = "files")]
     fn read(&mut self, file: &Path, bytes: usize) {
         if self.files.insert(file.into()) {
@@ -304,20 +312,24 @@ impl Budget {
         }
     }
 
+    /// Counts a placed node, component, link or part.
     fn place(&mut self) -> Result<(), String> {
         self.placed += 1;
         if self.placed > MOST_PLACED {
-            return Err(format!("more than {MOST_PLACED} things are placed, one in another"));
+            return Err(format!(
+                "more than {MOST_PLACED} nodes, components or parts are placed; split the source into smaller ones"
+            ));
         }
         Ok(())
     }
 
+    /// Counts placed facets.
     fn facets(&mut self, count: usize) -> Result<(), String> {
         self.facets += count;
         if self.facets > self.bytes + MOST_REPEATED {
             return Err(format!(
-                "{} facets are placed, of files of {} bytes: no more than {MOST_REPEATED} may be \
-                 repeated",
+                "{} facets are placed from files of {} bytes; accepted: one per byte and {MOST_REPEATED} \
+                 more",
                 self.facets, self.bytes
             ));
         }
@@ -325,26 +337,27 @@ impl Budget {
     }
 }
 
-/// The file's name without its extension.
+/// Returns the name of a file without its extension.
 #[cfg(feature = "files")]
 fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Names that a file gives more than once are numbered, from the second on.
+/// The names in use. A name that a file uses again gets a number, from 2 on.
 #[derive(Default)]
 struct Names {
     taken: HashSet<String>,
-    /// The next number of a name that was given before.
+    /// The next number of a name that is in use.
     next: HashMap<String, usize>,
 }
 
 impl Names {
-    /// Names that are given to others.
+    /// Reserves the names of other parts.
     fn take<'a>(&mut self, names: impl Iterator<Item = &'a String>) {
         self.taken.extend(names.cloned());
     }
 
+    /// Returns the name, with a number appended if it is in use.
     fn unique(&mut self, name: &str) -> String {
         let number = self.next.entry(name.to_owned()).or_insert(2);
         let mut chosen = name.to_owned();

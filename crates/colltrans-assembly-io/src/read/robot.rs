@@ -1,8 +1,9 @@
-//! Robots that move: links with their bodies, each in its own frame, and the joints between them.
+//! Reads a URDF robot with its joints: links with bodies, each in the frame of its link.
 //!
-//! A link stands in the frame of the joint that leads to it, or in the world. Rotations are made of the angles that
-//! the file gives, once: their nine entries define where a joint is from then on. Round shapes are polyhedra around
-//! them: what is proven free is so of the true shapes.
+//! - The frame of a link is that of the joint above it, or the world.
+//! - The angles of the file are converted once to matrices, whose entries define the frames from then on.
+//! - Round shapes become circumscribed polyhedra, so that a path that is proven free is free for the true
+//!   shapes.
 
 use std::collections::HashMap;
 
@@ -21,10 +22,11 @@ use colltrans_assembly::AssemblyError;
 use colltrans_assembly::Piece;
 use colltrans_mesh::xml::Element;
 
+/// Reads a robot from a URDF file.
 pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let (element, bytes) = urdf::robot(&source)?;
     let joints = urdf::joints(&source, &element)?;
-    // Rings, links that do not exist, and second parents are told there.
+    // Rejects cycles, unknown links, and links with two parents.
     urdf::places(&source, &element, &joints)?;
     let mut made =
         Made { source: &source, frames: Vec::new(), of_link: HashMap::new(), joints: Vec::new() };
@@ -33,7 +35,7 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let names: Vec<&str> =
         element.all("link").map(|link| urdf::named(&source, link)).collect::<Result<_, _>>()?;
     for name in &names {
-        // Up to a link that has its frame, and down again.
+        // Collects the links up to one whose frame is known, then adds their frames downwards.
         let mut way = vec![*name];
         while let Some((_, joint)) = above.get(way[way.len() - 1])
             && !made.of_link.contains_key(joint.parent)
@@ -50,7 +52,7 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let hulls = source.options.hulls.iter().filter(|name| *name != "*");
     if let Some(name) = hulls.into_iter().find(|name| !names.contains(&name.as_str())) {
         let reason =
-            format!("there is no link {name} to take the hull of; links: {}", names.join(", "));
+            format!("cannot use the hull of unknown link {name}; links: {}", names.join(", "));
         return Err(contents(source.path, "links", reason));
     }
     let mut gathered = Gathered::new(&source, bytes, Round::Around);
@@ -67,7 +69,7 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
             let loaded = any_body(piece, &options).map_err(|refused| {
                 in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
             })?;
-            // A hull that is its mesh needs no note.
+            // If the hull equals the mesh, there is no note.
             is_hull |= takes_hull && !loaded.notes.is_empty();
             dent = dent.into_iter().chain(loaded.dent()).reduce(f64::max);
             let whose = if takes_hull { " as its convex hull" } else { "" };
@@ -80,22 +82,22 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     }
     let Gathered { missing, notes: left_out, .. } = gathered;
     if let Some(capsule) = left_out.first() {
-        let reason = format!("{capsule}; give it as a cylinder and two spheres");
+        let reason = format!("{capsule}; replace the capsule by a cylinder and two spheres");
         return Err(contents(source.path, "links", reason));
     }
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: source.path.into(), missing });
     }
-    notes.extend(missing.iter().map(|file| format!("{file} cannot be found and is left out")));
+    notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
     if links.iter().all(|link| link.bodies.is_empty()) {
-        let holds = format!("none of its {} links collides with anything", links.len());
+        let holds = format!("none of its {} links has collision geometry", links.len());
         return Err(ReadError::NoParts { path: source.path.into(), holds });
     }
     let name = element.get("name").unwrap_or_default().to_owned();
     Ok(Robot { name, links, joints, mechanism, notes, files: source.into_files() })
 }
 
-/// Frames in the making.
+/// The kinematic tree while it is built.
 struct Made<'a> {
     source: &'a Source<'a>,
     frames: Vec<Frame>,
@@ -104,7 +106,7 @@ struct Made<'a> {
 }
 
 impl<'a> Made<'a> {
-    /// The frame of a link, below one that is known.
+    /// Adds the frame of a link. The frame of its parent must exist.
     fn link(
         &mut self,
         link: &'a str,
@@ -133,7 +135,7 @@ impl<'a> Made<'a> {
     }
 }
 
-/// How a joint moves.
+/// Returns the kind of a joint (`None` if fixed) and its motion.
 fn moves(element: &Element) -> Result<(Option<Kind>, Joint), String> {
     let axis = match element.first("axis") {
         Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
@@ -144,20 +146,20 @@ fn moves(element: &Element) -> Result<(Option<Kind>, Joint), String> {
     if matches!(kind, "revolute" | "continuous" | "prismatic")
         && !(axis.length() > 0.0 && axis.is_finite())
     {
-        return Err(format!("its axis {:?} is none", axis.to_array()));
+        return Err(format!("invalid axis {:?}; accepted: finite and not zero", axis.to_array()));
     }
     match kind {
         "fixed" => Ok((None, Joint::Fixed)),
         "revolute" => Ok((Some(Kind::Revolute), Joint::Turning(axis))),
         "continuous" => Ok((Some(Kind::Continuous), Joint::Turning(axis))),
         "prismatic" => Ok((Some(Kind::Prismatic), Joint::Sliding(axis))),
-        other => {
-            Err(format!("it is {other}: a path has one value for a joint, that turns or slides"))
-        }
+        other => Err(format!(
+            "unsupported type {other}; accepted: fixed, revolute, continuous, prismatic"
+        )),
     }
 }
 
-/// Its limits, if there are any.
+/// Returns the limits of a joint. `None` if there are no limits, or both are 0.
 fn limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
     let Some(limit) = element.first("limit") else { return Ok(None) };
     let lower = limit.numbers::<1>("lower")?.map_or(0.0, |[x]| x);
@@ -165,7 +167,7 @@ fn limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
     Ok((lower != 0.0 || upper != 0.0).then_some([lower, upper]))
 }
 
-/// Joints with what they follow.
+/// Sets the joint that each joint mimics. Rejects unknown joints and cycles.
 fn mimics(
     source: &Source,
     mut joints: Vec<RobotJoint>,
@@ -178,8 +180,8 @@ fn mimics(
         let Some(found) = elements[name.as_str()].element.first("mimic") else { continue };
         let of = found.need("joint").map_err(refused)?;
         let place = places.get(of).copied();
-        let joint = place
-            .ok_or_else(|| refused(format!("it follows {of}, which is no joint that moves")))?;
+        let joint =
+            place.ok_or_else(|| refused(format!("it mimics {of}, which is not a moving joint")))?;
         let number = |what: &str, default: f64| {
             let number = found.numbers::<1>(what).map_err(refused)?;
             Ok::<f64, ReadError>(number.map_or(default, |[x]| x))
@@ -194,14 +196,14 @@ fn mimics(
             at = &joints[mimic.joint];
         }
         if at.mimic.is_some() {
-            let reason = "the joints that follow each other form a ring";
+            let reason = "mimic elements form a cycle";
             return Err(contents(source.path, format!("joint {}", joint.name), reason));
         }
     }
     Ok(joints)
 }
 
-/// Makes a body of a piece, in the frame of its link: convex if the piece is, otherwise a solid.
+/// Builds a body from a piece, in the frame of its link: convex if the piece is, otherwise a solid.
 fn any_body(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::Refused> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
@@ -213,7 +215,7 @@ fn any_body(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, bod
     crate::robot::body_of(&mesh, options)
 }
 
-/// What is said of shapes that are round.
+/// Returns notes on the round shapes of a link, with the error of the polyhedra.
 fn round(link: &Element) -> impl Iterator<Item = String> + '_ {
     let shapes = link.all("collision").filter_map(|of| of.first("geometry")?.children.first());
     shapes.filter_map(move |shape| {
@@ -224,8 +226,8 @@ fn round(link: &Element) -> impl Iterator<Item = String> + '_ {
         };
         let radius = shape.numbers::<1>("radius").ok()??[0];
         Some(format!(
-            "a {} of radius {radius} is taken as a polyhedron of {SIDES} sides around it, up to {:.1e} \
-             larger",
+            "a {} of radius {radius} is replaced by a circumscribed polyhedron of {SIDES} sides, larger by up \
+             to {:.1e}",
             shape.name,
             (larger - 1.0) * radius
         ))

@@ -1,11 +1,14 @@
-//! The shapes of URDF that are no meshes. Round ones are polyhedra with 64 sides: inside the true shape, touching it at
-//! their vertices, or around it.
+//! Builds meshes of the shapes of URDF: boxes, cylinders and spheres. Round shapes become polyhedra with 64
+//! sides, inscribed (touching the true shape at their vertices) or circumscribed.
 //!
-//! Around it. A regular polygon of `n` sides that is `1 / c` times as large as the inscribed one, `c = cos(pi / n)`,
-//! encloses the circle. Of a sphere all faces lie between two circles of latitude and two meridians: in a meridian
-//! plane the inscribed polyhedron's profile is a polygon of `n` sides, at least `c` from the middle, and halfway between
-//! meridians it is that, made narrower by `c`; so its faces are at least `c^2` from the middle, and `1 / c^2` times as
-//! large it encloses the sphere. A little more than that is taken, for what rounding does to the vertices.
+//! Size of a circumscribed polyhedron, with `c = cos(pi / n)` for `n` sides:
+//!
+//! - A regular polygon scaled by `1 / c` relative to the inscribed one encloses the circle.
+//! - A face of a sphere lies between two circles of latitude and two meridians. In a meridian plane the profile
+//!   of the inscribed polyhedron is a polygon of `n` sides, at least `c` from the centre. Halfway between
+//!   meridians that profile is narrower by `c`. All faces are therefore at least `c^2` from the centre, and the
+//!   factor `1 / c^2` encloses the sphere.
+//! - The factor `MORE` covers the rounding errors of the vertices.
 
 use std::f64::consts::TAU;
 
@@ -14,22 +17,24 @@ use glam::{DAffine3, DVec3};
 
 use colltrans_assembly::Piece;
 
+/// The number of sides of a polyhedron that replaces a round shape.
 pub(super) const SIDES: usize = 64;
 
-/// More than rounding and a hull's own error take off a vertex, relative to the radius.
+/// A factor above 1 that exceeds the rounding errors and the error of a hull at a vertex, relative to the
+/// radius.
 const MORE: f64 = 1.0 + 1e-12;
 
-/// Where the polyhedron of a round shape is.
+/// The position of the polyhedron relative to the round shape that it replaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Round {
-    /// It touches the true shape at its vertices: what fits stays so.
+    /// Inscribed: it touches the true shape at its vertices, so shapes that fit still fit.
     Inside,
-    /// It encloses the true shape: what it does not meet, that does not.
+    /// Circumscribed: it encloses the true shape, so a body that does not meet it does not meet the true shape.
     Around,
 }
 
 impl Round {
-    /// How much larger than the inscribed polyhedron, of a cylinder.
+    /// Returns the size relative to the inscribed polyhedron, for a cylinder.
     pub(super) fn cylinder(self) -> f64 {
         match self {
             Self::Inside => 1.0,
@@ -37,7 +42,7 @@ impl Round {
         }
     }
 
-    /// The same of a sphere.
+    /// Returns the size relative to the inscribed polyhedron, for a sphere.
     pub(super) fn sphere(self) -> f64 {
         match self {
             Self::Inside => 1.0,
@@ -46,6 +51,7 @@ impl Round {
     }
 }
 
+/// Builds a box with edges of length `size`, centred at the origin of the piece.
 pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
     let half = size * 0.5;
     let corner = |k: usize| {
@@ -58,6 +64,7 @@ pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
     Piece { mesh: Mesh::new((0..8).map(corner).collect(), faces), world_from_piece }
 }
 
+/// Builds a cylinder about z, centred at the origin of the piece.
 pub(super) fn cylinder(
     radius: f64,
     length: f64,
@@ -68,6 +75,7 @@ pub(super) fn cylinder(
     turned(&[(radius, -length / 2.0), (radius, length / 2.0)], None, world_from_piece)
 }
 
+/// Builds a sphere, centred at the origin of the piece.
 pub(super) fn sphere(radius: f64, round: Round, world_from_piece: DAffine3) -> Piece {
     let radius = radius * round.sphere();
     let rings = SIDES / 2;
@@ -77,7 +85,8 @@ pub(super) fn sphere(radius: f64, round: Round, world_from_piece: DAffine3) -> P
     turned(&profile, Some([-radius, radius]), world_from_piece)
 }
 
-/// The profile (radius, height), from below, turned about z; with poles, or flat ends.
+/// Builds a solid of revolution: rotates a profile of points (radius, z), in increasing order of z, about z.
+/// Its ends are the points `poles` on the axis, or flat faces if that is `None`.
 fn turned(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAffine3) -> Piece {
     let angle = |k: usize| (k as f64 / SIDES as f64 * TAU).sin_cos();
     let mut vertices: Vec<DVec3> = Vec::new();
@@ -129,14 +138,15 @@ mod tests {
         }
     }
 
-    /// The least and the largest distance of a face's plane, and of a vertex, from the middle.
+    /// Returns the smallest distance of a face's plane and the largest distance of a vertex, from the axis of a
+    /// cylinder (`flat`) or the centre of a sphere. The planes of a cylinder's end faces do not count.
     fn reach(piece: &Piece, flat: bool) -> [f64; 2] {
         let Mesh { vertices, faces, .. } = &piece.mesh;
         let from_axis = |v: DVec3| if flat { v.truncate().length() } else { v.length() };
         let plane = |face: &Vec<u32>| {
             let [a, b, c] = [0, 1, 2].map(|k| vertices[face[k] as usize]);
             let normal = (b - a).cross(c - a).normalize();
-            // Flat ends of a cylinder are at its length.
+            // The end faces of a cylinder do not depend on its radius.
             if flat && normal.z.abs() > 0.5 { f64::INFINITY } else { normal.dot(a) }
         };
         let least = faces.iter().map(plane).fold(f64::INFINITY, f64::min);
@@ -153,7 +163,7 @@ mod tests {
                 {
                     let [least, most] = reach(&piece, flat).map(|x| x / radius);
                     if is_around {
-                        // The bound that is said is the factor of the vertices.
+                        // The reported bound is the factor of the vertices.
                         assert!(least >= 1.0 + 1e-13, "{least}");
                         assert!(most <= 1.0025, "{most}");
                     } else {

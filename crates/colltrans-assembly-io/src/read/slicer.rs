@@ -1,42 +1,44 @@
-//! What slicers say of the objects of a 3MF package beside the model: names, and which bodies only tell the slicer what to do
-//! in them. Of a file that cannot be read nothing is known; it says nothing of shapes.
+//! Reads the files that slicers add to a 3MF package: names of objects, and bodies that are no parts of the
+//! model but instructions for the slicer. These files do not affect shapes; a file that cannot be parsed is
+//! ignored.
 //!
-//! Two dialects: `Metadata/model_settings.config` has a `part` for each component of an object, known by the number of the
-//! object that it places; `Metadata/Slic3r_PE_model.config` a `volume` for each run of triangles of an object's mesh.
+//! - `Metadata/model_settings.config` has a `part` for each component of an object. Its id is that of the
+//!   object that the component places.
+//! - `Metadata/Slic3r_PE_model.config` has a `volume` for each run of triangles of an object's mesh.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use colltrans_mesh::xml::Element;
 
-/// Where these files are in a package.
+/// The paths of these files in a package.
 pub(super) const FILES: [&str; 2] =
     ["Metadata/model_settings.config", "Metadata/Slic3r_PE_model.config"];
 
-/// What is said of the objects of the first model, by their numbers.
+/// The settings of the objects of the root model, by their ids.
 #[derive(Default)]
 pub(super) struct Told(HashMap<String, Whole>);
 
-/// What is said of an object.
+/// The settings of an object.
 #[derive(Default)]
 pub(super) struct Whole {
     pub(super) name: Option<String>,
-    /// Of its components, by the numbers of what they place.
+    /// The settings of its components, by the id of the object that each places.
     pub(super) parts: HashMap<String, Body>,
-    /// Of its triangles, if they are of several bodies.
+    /// The ranges of triangles of its mesh that form separate bodies, with their settings.
     pub(super) volumes: Vec<(Range<usize>, Body)>,
 }
 
-/// What is said of a body.
+/// The settings of a body.
 #[derive(Clone, Default)]
 pub(super) struct Body {
     pub(super) name: Option<String>,
-    /// What it is instead of a part of the model.
+    /// The role of the body if it is not a part of the model.
     pub(super) instead: Option<&'static str>,
 }
 
 impl Told {
-    /// Adds what a file says.
+    /// Adds the settings in a file.
     pub(super) fn add(&mut self, text: &str) {
         let Ok(file) = Element::parse(text) else { return };
         for object in file.all("object") {
@@ -59,13 +61,15 @@ impl Told {
         }
     }
 
+    /// Returns the settings of an object by its id; `None` if the files have none.
     pub(super) fn of(&self, id: &str) -> Option<&Whole> {
         self.0.get(id)
     }
 }
 
 impl Whole {
-    /// Its bodies, if they are runs of all of so many triangles, one after another.
+    /// Returns the bodies if there are several and their consecutive ranges cover exactly `triangles`
+    /// triangles; otherwise `None`.
     pub(super) fn bodies(&self, triangles: usize) -> Option<&[(Range<usize>, Body)]> {
         let mut end = 0;
         for (run, _) in &self.volumes {
@@ -79,12 +83,13 @@ impl Whole {
 }
 
 impl Body {
+    /// Builds the settings of a body from its element and its kind.
     fn of(element: &Element, kind: Option<&str>) -> Self {
         let instead = match kind {
             Some("negative_part" | "NegativeVolume") => Some("negative"),
             Some("modifier_part" | "ParameterModifier") => Some("modifier"),
             Some("support_blocker" | "support_enforcer" | "SupportBlocker" | "SupportEnforcer") => {
-                Some("where supports are")
+                Some("support region")
             }
             _ => None,
         };
@@ -92,7 +97,7 @@ impl Body {
     }
 }
 
-/// The value of a `metadata` in an element, if it is more than blanks.
+/// Returns the value of a `metadata` child with this key; `None` if it is missing or blank.
 fn said(element: &Element, key: &str) -> Option<String> {
     let found = element.all("metadata").find(|said| said.get("key") == Some(key));
     let value = found.and_then(|said| said.get("value"));

@@ -1,17 +1,17 @@
-//! Which links of a robot are not held against each other, as SRDF says it.
+//! Reads the pairs of links that an SRDF file excludes from collision checks.
 
 use super::contents;
 use super::files::Source;
 use crate::error::ReadError;
 use colltrans_mesh::xml::Element;
 
-/// The pairs of `disable_collisions`.
+/// Returns the pairs of links in `disable_collisions` elements.
 pub(super) fn read(source: &Source) -> Result<Vec<[String; 2]>, ReadError> {
     let text = source.text()?;
     let refused = |(place, reason)| contents(source.path, format!("SRDF: {place}"), reason);
     let robot = Element::parse(&text).map_err(refused)?;
     if robot.name != "robot" {
-        let reason = format!("it is not a robot: its first element is {}, not robot", robot.name);
+        let reason = format!("the root element is {}, expected robot", robot.name);
         return Err(contents(source.path, format!("SRDF: line {}", robot.line), reason));
     }
     let pair = |element: &Element| {

@@ -1,14 +1,16 @@
-//! 3MF packages: every item of the build is a part, its transform applied, in the file's unit.
+//! Reads 3MF packages. Each item of the build is a part, with its transform applied, in the unit of the file.
 //!
-//! An object of components becomes one part for each mesh below it, or one part of all ([`Split::Never`]); what has no name
-//! takes that of what it is placed in. A transform is twelve numbers,
-//! the rows of a matrix by which a row vector is multiplied from the right (3MF core specification,
-//! 3.3). Objects may lie in other model files of the package (`p:path` of the production extension), as
-//! slicers write them: an object is known by its file and its number there. Paths may have characters as
-//! `%20`, in the archive as well. Objects that are supports, or of another kind that is never built
-//! (3.4: `support`, `solidsupport`, `other`), are left out, with a note; surfaces are parts that may be
-//! open. What slicers say of objects (`slicer`) are names, and which bodies are none. Whether an item is to be printed (`printable`, which slicers write) is noted, not obeyed. What a file says a reader
-//! must know (`requiredextensions`) and this one does not is refused, for the shapes may be in it.
+//! - An object of components becomes one part for each mesh below it, or one part in total ([`Split::Never`]).
+//!   An object without a name takes the name of the object that contains it.
+//! - A transform is twelve numbers, the rows of a matrix that is multiplied by a row vector from the left (core
+//!   specification, 3.3).
+//! - Objects may be in other model files of the package (`p:path` of the production extension). An object is
+//!   identified by its file and its id. Paths may have escapes such as `%20`.
+//! - Objects of the types `support`, `solidsupport` and `other` (3.4) are left out with a note. Surfaces are
+//!   parts that may be open.
+//! - The module `slicer` supplies names and bodies that are no parts. `printable="0"` is noted and otherwise
+//!   ignored.
+//! - A required extension that is unknown and may have shapes is rejected.
 
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::io::{Cursor, Read};
@@ -30,29 +32,31 @@ use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_mesh::xml::{self, Element, Lines};
 
-/// All models of a package may unpack to so many bytes, and to so many for each byte of it.
+/// Maximum number of unpacked bytes of all models of a package, and maximum ratio of unpacked bytes to the
+/// bytes of the package.
 const LARGEST: u64 = 1 << 30;
 const LARGEST_RATIO: u64 = 256;
-/// Beneath this many bytes the ratio does not matter.
+/// Number of unpacked bytes below which the ratio is not checked.
 const SMALL: u64 = 1 << 24;
-/// Components nested deeper than this are a ring.
+/// Maximum depth of nested components. Deeper ones are rejected as a possible cycle.
 const DEEPEST: usize = 64;
-/// Elements nested deeper are refused.
+/// Maximum depth of nested XML elements.
 const DEEPEST_ELEMENT: usize = 64;
 /// The units of the core specification, 3.4.
 const UNITS: [&str; 6] = ["micron", "millimeter", "centimeter", "inch", "foot", "meter"];
 
 const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
-/// Extensions that say nothing of shapes: colours, and names for sets of triangles.
+/// Extensions without shapes: colours, and names of sets of triangles.
 const WITHOUT_SHAPES: [&str; 3] = [
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
     "http://schemas.microsoft.com/3dmanufacturing/2013/01",
 ];
-/// The relationship by which a package names its model.
+/// The type of the relationship to the root model of a package.
 const START: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
+/// Reads the assembly of a package.
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let bytes = source.own()?;
     let mut budget = Budget::of(bytes.len());
@@ -60,11 +64,11 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let root = package.root()?;
     let models = models(&source, &mut package, &root)?;
     let mut left_out = Vec::new();
-    // All are counted before the first part is built.
+    // All placements are counted before the first part is built.
     let mut placed = Vec::new();
     for (k, item) in models.root.items.iter().enumerate() {
         let place = format!("build item {}", k + 1);
-        // The name of what the item places.
+        // The name of the object that the item places.
         let mut whole = None;
         let mut call = |name: &str, object: &Object, told: Said, world| {
             budget.place()?;
@@ -97,7 +101,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (mut names, mut last) = (Names::default(), None);
     for (k, name, piece) in placed {
         match drafts.last_mut() {
-            // All of an item is one part.
+            // With `Split::Never` all pieces of an item form one part.
             Some(draft) if source.options.split == Split::Never && last == Some(k) => {
                 draft.pieces.push(piece);
             }
@@ -112,7 +116,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let unplaced = models.unplaced(&root);
     if !unplaced.is_empty() {
         let named = first_named(&unplaced, drafts::MOST_NAMED);
-        notes.push(format!("left out, as no item of the build places them: {named}"));
+        notes.push(format!("left out because no item of the build places them: {named}"));
     }
     let (unit, mut holds) = (models.root.unit.clone(), package.holds());
     drop(package);
@@ -123,7 +127,8 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
-/// The bodies of an object's mesh, with their names: all of it, unless a slicer says of which bodies it is.
+/// Returns the bodies of an object's mesh with their names: the whole mesh, unless the slicer's settings divide
+/// it into several bodies.
 fn bodies(
     name: &str,
     object: &Object,
@@ -132,7 +137,7 @@ fn bodies(
 ) -> Vec<(String, Arc<Mesh>)> {
     let mesh = &object.mesh;
     let runs = told.whole.and_then(|whole| whole.bodies(mesh.faces.len()));
-    // A corner that there is not is refused later, with its place.
+    // An invalid vertex index is rejected later, with its place.
     let is_sound = || mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len());
     let Some(runs) = runs.filter(|_| is_sound()) else {
         return vec![(name.to_owned(), Arc::clone(mesh))];
@@ -150,12 +155,12 @@ fn bodies(
     found
 }
 
-/// What was left out, and what is not to be printed.
+/// Returns notes on objects that were left out, and on items that are marked as not printable.
 fn notes(items: &[Placed], left_out: &[String]) -> Vec<String> {
     let mut notes = Vec::new();
     if !left_out.is_empty() {
         let named = first_named(left_out, drafts::MOST_NAMED);
-        notes.push(format!("left out, as they are no parts of the model: {named}"));
+        notes.push(format!("left out because they are not parts of the model: {named}"));
     }
     let printed = |item: &(usize, &Placed)| item.1.unprinted;
     let unprinted: Vec<String> =
@@ -163,48 +168,50 @@ fn notes(items: &[Placed], left_out: &[String]) -> Vec<String> {
     if !unprinted.is_empty() {
         let listed = unprinted.join(", ");
         notes.push(format!(
-            "read all the same, though not to be printed (printable=\"0\"): build item {listed}"
+            "read although marked as not printable (printable=\"0\"): build item {listed}"
         ));
     }
     notes
 }
 
-/// The zip archive around the models.
+/// The zip archive of a package.
 struct Package<'a> {
     source: &'a Source<'a>,
     archive: ZipArchive<Cursor<Vec<u8>>>,
-    /// Bytes that may still be unpacked.
+    /// The number of bytes that may still be unpacked.
     left: u64,
 }
 
 impl<'a> Package<'a> {
+    /// Opens the archive.
     fn open(source: &'a Source<'a>, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let left = LARGEST.min((bytes.len() as u64).saturating_mul(LARGEST_RATIO).max(SMALL));
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
             let reason =
-                "it is not a 3MF file: those are zip archives, and this is none, or is cut short";
+                "not a 3MF file: expected a zip archive; the file has another format or is truncated";
             contents(source.path, "package", reason)
         })?;
         Ok(Self { source, archive, left })
     }
 
-    /// The files in it.
+    /// Returns the names of the files in the archive.
     fn names(&self) -> Vec<String> {
         self.archive.file_names().flatten().map(std::borrow::Cow::into_owned).collect()
     }
 
-    /// What it holds, in words.
+    /// Describes the contents for the error that there are no parts.
     fn holds(&self) -> String {
-        format!("its build places no mesh; the package holds {} files", self.archive.len())
+        format!("its build places no mesh; the package has {} files", self.archive.len())
     }
 
-    /// The name of the file of a path in the package, whose letters may be of either case.
+    /// Returns the name of a file in the archive, found by its path regardless of case; `None` if it does not
+    /// exist.
     fn find(&self, path: &str) -> Option<String> {
         let wanted = key(path);
         self.names().into_iter().find(|name| key(name) == wanted)
     }
 
-    /// The path of the model that the package begins with.
+    /// Returns the path of the root model.
     fn root(&mut self) -> Result<String, ReadError> {
         if let Some(name) = self.find("_rels/.rels") {
             let text = self.text(&name)?;
@@ -219,35 +226,34 @@ impl<'a> Package<'a> {
         if let Some(name) = self.find("3D/3dmodel.model") {
             return Ok(name);
         }
-        // Those of the production extension lie deeper.
+        // Packages of the production extension also have models in deeper folders.
         let is_model = |n: &String| n.to_ascii_lowercase().ends_with(".model");
         let mut models: Vec<String> = self.names().into_iter().filter(is_model).collect();
         models.sort_by_key(|n| (n.matches('/').count(), n.clone()));
         models.into_iter().next().ok_or_else(|| {
             let reason = format!(
-                "it is not a 3MF file: none of the {} files in this archive is a model (3D/3dmodel.model)",
+                "not a 3MF file: none of the {} files in this archive is a model (3D/3dmodel.model)",
                 self.archive.len()
             );
             contents(self.source.path, "package", reason)
         })
     }
 
-    /// The text of a file of the package.
+    /// Unpacks a file of the package and returns its text.
     fn text(&mut self, path: &str) -> Result<String, ReadError> {
         let refused = |reason: String| contents(self.source.path, path, reason);
-        let name =
-            self.find(path).ok_or_else(|| refused("this file is not in the package".into()))?;
+        let name = self.find(path).ok_or_else(|| refused("the package has no such file".into()))?;
         let file =
-            self.archive.by_name(&name).map_err(|e| refused(format!("cannot be unpacked: {e}")))?;
+            self.archive.by_name(&name).map_err(|e| refused(format!("cannot unpack: {e}")))?;
         let mut bytes = Vec::new();
-        // What a header promises counts for nothing.
+        // The size in the header of the archive is not trusted.
         let limit = self.left;
         file.take(limit + 1)
             .read_to_end(&mut bytes)
-            .map_err(|e| refused(format!("cannot be unpacked: {e}")))?;
+            .map_err(|e| refused(format!("cannot unpack: {e}")))?;
         if bytes.len() as u64 > limit {
             return Err(refused(format!(
-                "the package unpacks to more than {LARGEST_RATIO} times its size, or {LARGEST} bytes"
+                "the package unpacks to more than the accepted {LARGEST_RATIO} times its size, or {LARGEST} bytes"
             )));
         }
         self.left -= bytes.len() as u64;
@@ -255,18 +261,18 @@ impl<'a> Package<'a> {
     }
 }
 
-/// What an object is for.
+/// The purpose of an object.
 #[derive(Default, Clone, Copy)]
 enum Kind {
-    /// A body, or a surface: a part of the model.
+    /// A body or a surface: a part of the model.
     #[default]
     Model,
-    /// It is never built, or not the model.
+    /// Not a part of the model. The text is the type of the object.
     Left(&'static str),
 }
 
 impl Kind {
-    /// The types of the core specification, 3.4.
+    /// Parses a type of the core specification, 3.4.
     fn of(kind: Option<&str>) -> Result<Self, String> {
         match kind {
             None | Some("model" | "surface") => Ok(Self::Model),
@@ -274,7 +280,7 @@ impl Kind {
             Some("solidsupport") => Ok(Self::Left("solidsupport")),
             Some("other") => Ok(Self::Left("other")),
             Some(kind) => Err(format!(
-                "the type {kind} is none of model, surface, support, solidsupport, other"
+                "unknown type {kind}; accepted: model, surface, support, solidsupport, other"
             )),
         }
     }
@@ -289,38 +295,39 @@ struct Object {
     has_mesh: bool,
 }
 
-/// An object at a place.
+/// A reference to an object, with its transform.
 #[derive(Clone)]
 struct Placed {
-    /// The model file, if it is another one.
+    /// The model file of the object, if it is another one.
     path: Option<String>,
     id: String,
     transform: DAffine3,
-    /// A slicer would not print it.
+    /// Whether the slicer marks the item as not printable.
     unprinted: bool,
 }
 
-/// One model file.
+/// A model file.
 struct Model {
     unit: String,
     objects: HashMap<String, Rc<Object>>,
     items: Vec<Placed>,
 }
 
-/// All model files that the first one leads to.
+/// All model files that the root model refers to, directly or indirectly.
 struct Models {
     root: Rc<Model>,
-    /// By their paths, in small letters.
+    /// The models by normalised path ([`key`]).
     by_path: HashMap<String, Rc<Model>>,
     told: Told,
 }
 
-/// A path in a package without what may differ: the first `/`, letters of either case, `%20`.
+/// Normalises a path in a package: without the first `/`, in lower case, with escapes decoded.
 fn key(path: &str) -> String {
     let path = unescaped(path).unwrap_or_else(|_| path.to_owned());
     path.trim_start_matches('/').to_ascii_lowercase()
 }
 
+/// Parses the root model and all models that it refers to, and the settings of slicers.
 fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, ReadError> {
     let mut by_path = HashMap::new();
     let mut open = VecDeque::from([root.to_owned()]);
@@ -340,11 +347,14 @@ fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, 
         by_path.insert(key(&path), Rc::new(model));
     }
     let Some(model) = by_path.get(&key(root)).cloned() else {
-        return Err(contents(source.path, root, "this file is not in the package"));
+        return Err(contents(source.path, root, "the package has no such file"));
     };
     for (path, other) in &by_path {
         if other.unit != model.unit {
-            let reason = format!("its unit is {}, that of the package {}", other.unit, model.unit);
+            let reason = format!(
+                "its unit is {}, but the unit of the root model is {}; all models must have the same unit",
+                other.unit, model.unit
+            );
             return Err(contents(source.path, path, reason));
         }
     }
@@ -357,31 +367,32 @@ fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, 
     Ok(Models { root: model, by_path, told })
 }
 
-/// What a slicer says of an object.
+/// The settings of a slicer for an object.
 #[derive(Clone, Copy, Default)]
 struct Said<'a> {
-    /// Of one that an item of the build places.
+    /// The settings of the object, if an item of the build places it.
     whole: Option<&'a Whole>,
-    /// What it is instead of a part of the model.
+    /// The role of the object if it is not a part of the model.
     instead: Option<&'static str>,
 }
 
-/// Told of an object, by its name, and where it is; says whether what is below it counts.
+/// A visitor of placed objects, with name, settings and transformation to the world. It returns whether the
+/// components of the object are visited.
 type Call<'a> = dyn FnMut(&str, &Object, Said, DAffine3) -> Result<bool, String> + 'a;
 
-/// What an object is placed in.
+/// The context in which an object is placed.
 #[derive(Default)]
 struct Above<'a> {
     world: DAffine3,
     depth: usize,
-    /// The name that it takes if it has none.
+    /// The name for objects without a name.
     name: Option<String>,
-    /// Of an object that an item of the build places: what a slicer says of it.
+    /// The settings of the object that an item of the build places.
     whole: Option<&'a Whole>,
 }
 
 impl Models {
-    /// Returns the names of objects with a mesh that no item of the build places.
+    /// Returns the names of the objects with a mesh that no item of the build places.
     fn unplaced(&self, root: &str) -> Vec<String> {
         let at = |from: &str, placed: &Placed| {
             (key(placed.path.as_deref().unwrap_or(from)), placed.id.clone())
@@ -409,7 +420,7 @@ impl Models {
         unplaced.into_values().collect()
     }
 
-    /// Calls with every object below one that the model `from` places.
+    /// Visits an object that the model `from` places, and all objects below it.
     fn collect(
         &self,
         from: &str,
@@ -418,21 +429,22 @@ impl Models {
         call: &mut Call,
     ) -> Result<(), String> {
         let path = placed.path.as_deref().unwrap_or(from);
-        let model = self.by_path.get(&key(path)).ok_or_else(|| format!("there is no {path}"))?;
+        let model =
+            self.by_path.get(&key(path)).ok_or_else(|| format!("the package has no {path}"))?;
         let id = &placed.id;
         let object = model.objects.get(id).ok_or_else(|| {
             let place = placed.path.as_ref().map_or(String::new(), |path| format!(" in {path}"));
-            format!("there is no object {id}{place}")
+            format!("unknown object id {id}{place}")
         })?;
         if above.depth > DEEPEST {
-            return Err("components are nested too deep, or in a ring".into());
+            return Err(format!("components are nested deeper than {DEEPEST}, or in a cycle"));
         }
         if !object.has_mesh && object.components.is_empty() {
             return Err(format!("object {id} has neither a mesh nor components"));
         }
         let whole = if above.depth == 0 { self.told.of(id) } else { None };
         let body = above.whole.and_then(|whole| whole.parts.get(id));
-        // As the slicer shows it, if there is one.
+        // The name that the slicer shows has priority.
         let name = whole.and_then(|whole| whole.name.as_ref());
         let name = name.or(body.and_then(|body| body.name.as_ref())).or(object.name.as_ref());
         let name = name.or(above.name.as_ref()).filter(|name| !name.trim().is_empty()).cloned();
@@ -450,7 +462,7 @@ impl Models {
     }
 }
 
-/// A model in the making.
+/// A model while it is parsed.
 struct Parser {
     unit: Option<String>,
     objects: HashMap<String, Rc<Object>>,
@@ -459,6 +471,7 @@ struct Parser {
 }
 
 impl Parser {
+    /// Parses a model file.
     fn model(text: &str) -> Result<Model, xml::Fault> {
         let mut reader = NsReader::from_str(text);
         let mut lines = Lines::new(text);
@@ -473,7 +486,9 @@ impl Parser {
                 Event::Start(tag) => {
                     depth += 1;
                     if depth > DEEPEST_ELEMENT {
-                        let reason = format!("elements are nested deeper than {DEEPEST_ELEMENT}");
+                        let reason = format!(
+                            "elements are nested deeper than the accepted {DEEPEST_ELEMENT}"
+                        );
                         return Err((place(), reason));
                     }
                     parser.open(&tag, reader.resolver()).map_err(|e| (place(), e))?;
@@ -487,21 +502,22 @@ impl Parser {
                     parser.close(tag.local_name().as_ref()).map_err(|e| (place(), e))?;
                 }
                 Event::Eof if depth > 0 => {
-                    return Err(("end of file".into(), "the last element is not ended".into()));
+                    return Err(("end of file".into(), "the last element is not closed".into()));
                 }
                 Event::Eof => break,
                 _ => (),
             }
         }
         let Some(unit) = parser.unit else {
-            return Err(("start of file".into(), "it holds no XML element".into()));
+            return Err(("start of file".into(), "the file has no XML element".into()));
         };
         Ok(Model { unit, objects: parser.objects, items: parser.items })
     }
 
+    /// Handles the start of an element.
     fn open(&mut self, tag: &BytesStart, resolver: &NamespaceResolver) -> Result<(), String> {
         let (space, name) = resolver.resolve_element(tag.name());
-        // Elements of extensions; careless writers name no namespace at all.
+        // Elements of extensions are skipped. Some writers use no namespace at all.
         if xml::namespace(&space).is_some_and(|space| space != CORE) {
             return if self.unit.is_none() { Err(not_a_model(tag)) } else { Ok(()) };
         }
@@ -514,7 +530,7 @@ impl Parser {
         }
         let attributes = Attributes::of(tag, resolver)?;
         match name {
-            "object" if self.current.is_some() => return Err("an object in an object".into()),
+            "object" if self.current.is_some() => return Err("nested object elements".into()),
             "object" => {
                 let id = attributes.need("id")?.to_owned();
                 let name = attributes.get("name").map(str::to_owned);
@@ -542,6 +558,7 @@ impl Parser {
         Ok(())
     }
 
+    /// Handles the end of an element.
     fn close(&mut self, name: &str) -> Result<(), String> {
         if name != "object" {
             return Ok(());
@@ -549,12 +566,12 @@ impl Parser {
         let Some((id, mut object, mesh)) = self.current.take() else { return Ok(()) };
         object.mesh = Arc::new(mesh);
         if self.objects.insert(id.clone(), Rc::new(object)).is_some() {
-            return Err(format!("a second object has the id {id}"));
+            return Err(format!("duplicate object id {id}; ids must be unique in a model"));
         }
         Ok(())
     }
 
-    /// The element that holds all others.
+    /// Handles the root element.
     fn begin(&mut self, tag: &BytesStart) -> Result<(), String> {
         let (mut unit, mut required) = ("millimeter".to_owned(), String::new());
         let mut spaces = HashMap::new();
@@ -572,14 +589,14 @@ impl Parser {
             }
         }
         if !UNITS.contains(&unit.as_str()) {
-            return Err(format!("the unit {unit} is none of {}", UNITS.join(", ")));
+            return Err(format!("unknown unit {unit}; accepted: {}", UNITS.join(", ")));
         }
         for prefix in required.split_whitespace() {
             let space = spaces.get(prefix).map_or(prefix, String::as_str);
             if space != CORE && space != PRODUCTION && !WITHOUT_SHAPES.contains(&space) {
                 return Err(format!(
-                    "whoever reads it must know the extension {prefix} ({space}), which is not known \
-                     here; save it without"
+                    "the required extension {prefix} ({space}) is not supported; save the model \
+                     without it"
                 ));
             }
         }
@@ -588,17 +605,19 @@ impl Parser {
     }
 }
 
+/// Builds the message for a wrong root element.
 fn not_a_model(tag: &BytesStart) -> String {
-    format!("it is not a model of a 3MF file: its first element is {}", tag.name().as_ref())
+    format!("not a 3MF model: the root element is {}, expected model", tag.name().as_ref())
 }
 
-/// The attributes of an element that are of the core, and the path of the production extension.
+/// The attributes of an element in the core namespace, and the path of the production extension.
 struct Attributes {
     core: HashMap<String, String>,
     path: Option<String>,
 }
 
 impl Attributes {
+    /// Parses the attributes of an element.
     fn of(tag: &BytesStart, resolver: &NamespaceResolver) -> Result<Self, String> {
         let mut found = Self { core: HashMap::new(), path: None };
         for attribute in tag.attributes() {
@@ -617,18 +636,22 @@ impl Attributes {
         Ok(found)
     }
 
+    /// Returns an attribute of the core namespace, or `None`.
     fn get(&self, key: &str) -> Option<&str> {
         self.core.get(key).map(String::as_str)
     }
 
+    /// Returns an attribute that must exist.
     fn need(&self, key: &str) -> Result<&str, String> {
-        self.get(key).ok_or_else(|| format!("attribute {key} is missing"))
+        self.get(key).ok_or_else(|| format!("missing attribute {key}"))
     }
 
+    /// Parses a number in an attribute that must exist.
     fn parsed<T: std::str::FromStr>(&self, key: &str) -> Result<T, String> {
         parsed(key, self.need(key)?)
     }
 
+    /// Parses the reference to an object in an `item` or `component`.
     fn placed(&self) -> Result<Placed, String> {
         let id = self.need("objectid")?.to_owned();
         let (path, transform) = (self.path.clone(), transform(self.get("transform"))?);
@@ -637,23 +660,25 @@ impl Attributes {
     }
 }
 
+/// Parses the number in an attribute.
 fn parsed<T: std::str::FromStr>(key: &str, text: &str) -> Result<T, String> {
-    text.trim().parse().map_err(|_| format!("{key}=\"{text}\" is not a number"))
+    text.trim().parse().map_err(|_| format!("{key}=\"{text}\" is not a valid number"))
 }
 
+/// Parses a transform; `None` is the identity.
 fn transform(text: Option<&str>) -> Result<DAffine3, String> {
     let Some(text) = text else { return Ok(DAffine3::IDENTITY) };
     let numbers: Result<Vec<f64>, String> =
         text.split_whitespace().map(|t| parsed("transform", t)).collect();
     let numbers = numbers?;
     if numbers.len() != 12 {
-        return Err(format!("transform has {} numbers, not 12", numbers.len()));
+        return Err(format!("transform has {} numbers, expected 12", numbers.len()));
     }
     let row = |k: usize| DVec3::from_slice(&numbers[3 * k..]);
-    // Rows that multiply a row vector are columns that multiply a column vector.
+    // The rows for a row vector are the columns for a column vector.
     let matrix = DMat3::from_cols(row(0), row(1), row(2));
     if matrix.determinant() == 0.0 || !matrix.is_finite() {
-        return Err("transform is singular".into());
+        return Err("transform is singular or not finite".into());
     }
     Ok(DAffine3::from_mat3_translation(matrix, row(3)))
 }

@@ -1,5 +1,5 @@
-//! Robots as URDF describes them: each link with a geometry is a part, in metres, placed by the chain
-//! of joints from the root in one configuration.
+//! Reads a URDF file as an assembly: each link with geometry is a part, in metres, placed by the chain of
+//! joints from the root in one configuration.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -14,6 +14,7 @@ use crate::error::ReadError;
 use colltrans_assembly::{Assembly, Piece};
 use colltrans_mesh::xml::Element;
 
+/// Reads the parts of a URDF file.
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (robot, bytes) = robot(&source)?;
     let joints = joints(&source, &robot)?;
@@ -27,38 +28,38 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: source.path.into(), missing });
     }
-    notes.extend(missing.iter().map(|file| format!("{file} cannot be found and is left out")));
+    notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
     let which = match source.options.geometry {
-        Geometry::Collision => "collides with",
-        Geometry::Visual => "shows",
+        Geometry::Collision => "collision",
+        Geometry::Visual => "visual",
     };
     let links = robot.all("link").count();
     let holds = match missing.len() {
-        0 => format!("none of its {links} links {which} anything"),
-        missing => format!("none of the {missing} meshes it names can be found"),
+        0 => format!("none of its {links} links has {which} geometry"),
+        missing => format!("none of its {missing} referenced meshes was found"),
     };
     let assembly = assembled(source, drafts, &holds)?.with_unit("m");
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
-/// The robot of a file, and how many bytes that has.
+/// Parses the robot of a file. Returns it with the number of bytes of the text.
 pub(super) fn robot(source: &Source) -> Result<(Element, usize), ReadError> {
     let text = source.text()?;
     let refused = |(place, reason)| contents(source.path, format!("URDF: {place}"), reason);
     let robot = Element::parse(&text).map_err(refused)?;
     if robot.name != "robot" {
-        let reason = format!("it is not a robot: its first element is {}, not robot", robot.name);
+        let reason = format!("the root element is {}, expected robot", robot.name);
         return Err(contents(source.path, format!("URDF: line {}", robot.line), reason));
     }
     let macros = |e: &&Element| e.name.starts_with("xacro:");
     if let Some(found) = robot.children.iter().find(macros) {
-        let reason = format!("{} is a macro; run xacro first", found.name);
+        let reason = format!("unexpanded macro {}; run xacro first", found.name);
         return Err(contents(source.path, format!("URDF: line {}", found.line), reason));
     }
     Ok((robot, text.len()))
 }
 
-/// Parts in the making.
+/// The parts while they are gathered.
 pub(super) struct Gathered<'a> {
     source: &'a Source<'a>,
     budget: Budget,
@@ -74,6 +75,7 @@ impl<'a> Gathered<'a> {
         Self { source, budget: Budget::of(bytes), drafts, missing, notes, round }
     }
 
+    /// Adds the part of a link, if it has geometry.
     fn link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
         let pieces = self.pieces(link, name, world)?;
         if !pieces.is_empty() {
@@ -86,7 +88,7 @@ impl<'a> Gathered<'a> {
         Ok(())
     }
 
-    /// The geometry of a link that stands somewhere.
+    /// Builds the geometry of a link whose frame is at `world`.
     pub(super) fn pieces(
         &mut self,
         link: &Element,
@@ -103,10 +105,13 @@ impl<'a> Gathered<'a> {
                 |reason: String| contents(self.source.path, format!("link {name}"), reason);
             let at = world * origin(shown).map_err(refused)?;
             let shape = shown.first("geometry").and_then(|g| g.children.first());
-            let shape = shape.ok_or_else(|| refused(format!("a {which} without a geometry")))?;
+            let shape =
+                shape.ok_or_else(|| refused(format!("a {which} element has no geometry")))?;
             match shape.name.as_str() {
                 "mesh" => pieces.extend(self.mesh(shape, name, at)?),
-                "capsule" => self.notes.push(format!("link {name}: a capsule is left out")),
+                "capsule" => self
+                    .notes
+                    .push(format!("link {name}: capsule left out: not a supported geometry")),
                 _ => {
                     let piece = solid(shape, self.round, at).map_err(refused)?;
                     self.budget.place().map_err(refused)?;
@@ -118,6 +123,7 @@ impl<'a> Gathered<'a> {
         Ok(pieces)
     }
 
+    /// Reads a mesh of a link. `None` if the file does not exist, which is recorded.
     fn mesh(
         &mut self,
         mesh: &Element,
@@ -134,14 +140,14 @@ impl<'a> Gathered<'a> {
         self.budget.read(&file, bytes.len());
         let found = self::mesh(&file, bytes)?;
         self.budget.facets(found.faces.len().max(found.vertices.len())).map_err(refused)?;
-        // All of URDF is in metres; which axis a file has upwards does not matter.
+        // URDF is in metres. The upward axis of a mesh file is ignored.
         let scale = DVec3::from_array(scale) * found.unit.unwrap_or(1.0);
         let world_from_piece = at * DAffine3::from_scale(scale);
         Ok(Some(Piece { mesh: found, world_from_piece }))
     }
 }
 
-/// A shape that is no mesh.
+/// Builds a box, cylinder or sphere.
 fn solid(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
     let number = |name: &str| -> Result<f64, String> {
         shape.need(name)?;
@@ -152,7 +158,7 @@ fn solid(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
         let what = &shape.name;
         sound
             .then_some(())
-            .ok_or_else(|| format!("a {what} of {sizes:?}: sizes must be finite and positive"))
+            .ok_or_else(|| format!("a {what} has sizes {sizes:?}; accepted: finite and positive"))
     };
     match shape.name.as_str() {
         "box" => {
@@ -168,16 +174,17 @@ fn solid(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
             let radius = number("radius")?;
             sound(&[radius]).map(|()| shapes::sphere(radius, round, at))
         }
-        other => Err(format!("the geometry {other} is not known")),
+        other => Err(format!("unknown geometry {other}; accepted: mesh, box, cylinder, sphere")),
     }
 }
 
+/// Returns the name of an element, which must have one.
 pub(super) fn named<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
     let refused = |e| contents(source.path, format!("URDF: line {}", element.line), e);
     element.need("name").map_err(refused)
 }
 
-/// The pose of an element that may have an origin.
+/// Returns the pose of an element, the identity if it has no `origin`.
 pub(super) fn origin(element: &Element) -> Result<DAffine3, String> {
     let Some(origin) = element.first("origin") else { return Ok(DAffine3::IDENTITY) };
     let xyz = origin.numbers::<3>("xyz")?.unwrap_or_default();
@@ -190,7 +197,7 @@ pub(super) fn origin(element: &Element) -> Result<DAffine3, String> {
     if pose.is_finite() {
         Ok(pose)
     } else {
-        Err(format!("its origin {xyz:?}, {rpy:?} is not finite"))
+        Err(format!("its origin has xyz {xyz:?}, rpy {rpy:?}; accepted: finite numbers"))
     }
 }
 
@@ -202,37 +209,41 @@ pub(super) struct Joint<'a> {
     pub(super) origin: DAffine3,
 }
 
-/// Joints by their names.
+/// Joints by name.
 pub(super) type Joints<'a> = HashMap<&'a str, Joint<'a>>;
 
+/// Returns the joints of a robot, and checks the joint positions of the options.
 pub(super) fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
     let mut joints = HashMap::new();
     for element in robot.all("joint") {
         let name = named(source, element)?;
         let refused = |reason: String| contents(source.path, format!("joint {name}"), reason);
         let link = |what: &'static str| {
-            let of = element.first(what).ok_or_else(|| refused(format!("it has no {what}")))?;
+            let of =
+                element.first(what).ok_or_else(|| refused(format!("missing element {what}")))?;
             of.need("link").map_err(refused)
         };
         let origin = origin(element).map_err(refused)?;
         let joint = Joint { element, parent: link("parent")?, child: link("child")?, origin };
         if joints.insert(name, joint).is_some() {
-            return Err(refused("a second joint has this name".into()));
+            return Err(refused("duplicate joint name; names must be unique".into()));
         }
     }
     for (name, value) in &source.options.joints {
         let refused = |reason: String| contents(source.path, "joints", reason);
         if !value.is_finite() {
-            return Err(refused(format!("the position {value} of joint {name} is not finite")));
+            return Err(refused(format!(
+                "invalid position {value} of joint {name}; accepted: a finite number"
+            )));
         }
         if !joints.contains_key(name.as_str()) {
-            return Err(refused(format!("there is no joint {name}")));
+            return Err(refused(format!("unknown joint {name}")));
         }
     }
     Ok(joints)
 }
 
-/// Where each link is: root links at the world's origin.
+/// Returns the pose of each link in the world. Root links are at the origin.
 pub(super) fn places<'a>(
     source: &Source,
     robot: &'a Element,
@@ -245,7 +256,7 @@ pub(super) fn places<'a>(
             return Err(contents(
                 source.path,
                 format!("link {name}"),
-                "a second link has this name",
+                "duplicate link name; names must be unique",
             ));
         }
     }
@@ -254,16 +265,16 @@ pub(super) fn places<'a>(
         let Joint { parent, child, .. } = joints[joint];
         for link in [parent, child] {
             if !links.contains_key(link) {
-                return Err(refused(format!("there is no link {link}")));
+                return Err(refused(format!("unknown link {link}")));
             }
         }
         if links.insert(child, Some((joint, &joints[joint]))).flatten().is_some() {
-            return Err(refused(format!("link {child} is the child of a second joint")));
+            return Err(refused(format!("link {child} already is the child of another joint")));
         }
     }
     let mut places: HashMap<&str, DAffine3> = HashMap::new();
     for link in robot.all("link").filter_map(|link| link.get("name")) {
-        // Up to a link that is placed or is a root, and down again.
+        // Collects the joints up to a placed link or a root, then places the links downwards.
         let (mut above, mut name) = (Vec::new(), link);
         let mut at = loop {
             if let Some(place) = places.get(name) {
@@ -277,7 +288,7 @@ pub(super) fn places<'a>(
                 return Err(contents(
                     source.path,
                     format!("link {link}"),
-                    "its joints form a ring",
+                    "its joints form a cycle",
                 ));
             }
             above.push((joint, found));
@@ -292,6 +303,7 @@ pub(super) fn places<'a>(
     Ok(places)
 }
 
+/// Returns the motion of a joint at its position.
 fn motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result<DAffine3, String> {
     let kind = joint.element.need("type")?;
     let position = position(source, joints, name, 8)?;
@@ -308,11 +320,11 @@ fn motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result
         "revolute" | "continuous" | "fixed" | "floating" | "planar" | "spherical" => {
             Ok(DAffine3::IDENTITY)
         }
-        other => Err(format!("the type {other} is not known")),
+        other => Err(format!("unknown type {other}")),
     }
 }
 
-/// The position of a joint: as given, or that of the joint it mimics.
+/// Returns the position of a joint: the given one, or that computed from the joint that it mimics, or 0.
 fn position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Result<f64, String> {
     if let Some(given) = source.options.joints.get(name) {
         return Ok(*given);
@@ -326,10 +338,10 @@ fn position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Resul
     Ok(value * number("multiplier", 1.0)? + number("offset", 0.0)?)
 }
 
-/// A mesh by the name that the robot gives it.
+/// Opens a mesh by the reference in the robot.
 fn find(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
     if let Some(rest) = name.strip_prefix("package://") {
-        // Some files have an empty package, `package:///meshes/a.stl`.
+        // Some files have an empty package name, as in `package:///meshes/a.stl`.
         return in_packages(source, rest.trim_start_matches('/'));
     }
     let name = name.strip_prefix("file://").unwrap_or(name);
@@ -339,7 +351,7 @@ fn find(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadE
     }
 }
 
-/// In the given roots: with the package's name, without it, then with fewer leading folders.
+/// Searches the package roots for a path, then for the path without its leading folders, one by one.
 fn in_packages(source: &Source, rest: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
     let mut rest = Some(rest);
     while let Some(tail) = rest.filter(|tail| !tail.is_empty()) {

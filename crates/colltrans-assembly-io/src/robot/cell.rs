@@ -1,4 +1,5 @@
-//! A robot and what stands around it: all bodies by name, and which pairs of them are held against each other.
+//! A robot and the bodies of its surroundings: the names of all bodies, and the pairs that a path is checked
+//! for.
 
 use std::collections::BTreeMap;
 
@@ -8,33 +9,37 @@ use colltrans::{AnyBody, Pose};
 use super::table::twice;
 use super::{Robot, RobotError, RobotJoint};
 
-/// A robot among bodies that stand in the world.
+/// A robot together with scene bodies, which are fixed in the world.
 #[derive(Debug, Clone)]
 pub struct Cell {
     robot: Robot,
     scene: Vec<AnyBody>,
-    /// For each body its name: of its link, or of what stands there.
+    /// For each body the name of its link or scene body.
     names: Vec<String>,
     pairs: Vec<[usize; 2]>,
-    /// Depths of the dents of bodies by their names.
+    /// Depths of the dents of bodies, by name ([`Self::dents`]).
     dents: BTreeMap<String, f64>,
     notes: Vec<String>,
 }
 
-/// Links and what stands around, and the bodies of each.
+/// The links, followed by the scene bodies, each with the bodies that belong to it. In this module a *thing* is
+/// a link or a scene body.
 struct Things {
     names: Vec<String>,
     links: usize,
-    /// For each body whose it is.
+    /// For each body the number of its thing.
     bodies: Vec<usize>,
 }
 
 impl Cell {
-    /// All links are held against the scene, but those that no joint moves, and against each other as
-    /// [`Robot::pairs`] says.
+    /// Builds a cell and selects the pairs of bodies to check.
+    ///
+    /// Each link that a joint moves is checked against every scene body. Links are checked against each other
+    /// according to [`Robot::pairs`].
     ///
     /// # Errors
-    /// A listed name that no link has; two things of one name.
+    /// [`RobotError::Unknown`] if `listed` names a link that does not exist, and [`RobotError::Twice`] if two
+    /// links or scene bodies have the same name.
     pub fn new(
         robot: Robot,
         scene: Vec<(String, AnyBody)>,
@@ -56,18 +61,18 @@ impl Cell {
         Ok(Self { robot, scene, names, pairs, dents, notes })
     }
 
-    /// Returns the same cell with the dents of scene meshes that are convex only to within the tolerance: the
-    /// name of each body and the depth of its mesh's surface below the hull.
+    /// Adds the dents of scene meshes that are convex only to within the tolerance: for each body its name and
+    /// the depth of its mesh's surface below the convex hull.
     #[must_use]
     pub fn with_dents(mut self, of_scene: impl IntoIterator<Item = (String, f64)>) -> Self {
         self.dents.extend(of_scene);
         self
     }
 
-    /// The same without pairs of names.
+    /// Removes pairs of bodies, given by the names of links or scene bodies, from the pairs to check.
     ///
     /// # Errors
-    /// A name that nothing has.
+    /// [`RobotError::Unknown`] if no link or scene body has one of the names.
     pub fn ignoring(mut self, pairs: &[[String; 2]]) -> Result<Self, RobotError> {
         for [a, b] in pairs {
             for name in [a, b] {
@@ -81,64 +86,67 @@ impl Cell {
             let is_named = |x: usize, y: usize| names[x] == *a && names[y] == *b;
             self.pairs.retain(|[x, y]| !is_named(*x, *y) && !is_named(*y, *x));
             if self.pairs.len() == before {
-                self.notes.push(format!("{a} and {b} are not held against each other anyway"));
+                self.notes
+                    .push(format!("ignoring {a} and {b} has no effect: this pair is not checked"));
             }
         }
         Ok(self)
     }
 
-    /// The names of all links and of what stands around.
+    /// Returns the names of all links and scene bodies.
     fn known(&self) -> Vec<&str> {
         let links = self.robot.links().iter().map(|link| link.name.as_str());
         let around = &self.names[self.names.len() - self.scene.len()..];
         links.chain(around.iter().map(String::as_str)).collect()
     }
 
-    /// The robot.
+    /// Returns the robot.
     pub const fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// The names of all bodies: of their links, then of the scene.
+    /// Returns the name of each body: those of the links first, then those of the scene.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The pairs of bodies that are held against each other.
+    /// Returns the pairs of bodies to check, as indices of [`Self::names`].
     pub fn pairs(&self) -> &[[usize; 2]] {
         &self.pairs
     }
 
-    /// Returns the names of the links for whose meshes their convex hulls stand.
+    /// Returns the names of the links whose meshes are replaced by their convex hulls.
     pub fn hulls(&self) -> Vec<String> {
         let links =
             self.robot.links().iter().filter(|link| link.is_hull && !link.bodies.is_empty());
         links.map(|link| link.name.clone()).collect()
     }
 
-    /// Returns the names of bodies whose meshes are convex only to within the tolerance, each with the depth of
-    /// its surface below the hull that stands for it: those of links and of [`Self::with_dents`].
+    /// Returns the names of the bodies whose meshes are convex only to within the tolerance, each with the
+    /// depth of its surface below the hull that replaces it. Contains the dents of links and those of
+    /// [`Self::with_dents`].
     pub const fn dents(&self) -> &BTreeMap<String, f64> {
         &self.dents
     }
 
-    /// What is not held against each other, as far as nobody asked for it.
+    /// Returns notes on pairs that are not checked although nobody excluded them by name, and on exclusions
+    /// without effect.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Returns the same cell if it has a pair of bodies to be held against each other.
+    /// Returns the cell if it has at least one pair of bodies to check.
     ///
     /// # Errors
-    /// [`RobotError::NoPair`]: every path would be free.
+    /// [`RobotError::NoPair`] if there is no such pair, because every path would then be free.
     pub fn with_a_pair(self) -> Result<Self, RobotError> {
         if self.pairs.is_empty() { Err(RobotError::NoPair) } else { Ok(self) }
     }
 
-    /// The question about a path.
+    /// Builds the query about a path: whether bodies of a pair come nearer than `keep`, a length, on the way.
     ///
     /// # Errors
-    /// As of [`PathCast::new`] and of the gap.
+    /// The errors of [`PathCast::new`], and [`PathError`] if the gap is invalid.
     pub fn along<'a>(&'a self, path: &'a JointPath, keep: f64) -> Result<PathCast<'a>, PathError> {
         let links = self.robot.links().iter();
         let carried = links.flat_map(|link| link.bodies.iter().map(|body| (link.frame, body)));
@@ -149,7 +157,7 @@ impl Cell {
         PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.keeping(keep)
     }
 
-    /// What is wrong, with the names of bodies.
+    /// Returns the message of an error with the names of bodies and joints instead of their numbers.
     pub fn words(&self, error: &PathError) -> String {
         match error {
             PathError::Query { pair, reason } => {
@@ -160,7 +168,7 @@ impl Cell {
                 let moves = |joint: &&RobotJoint| joint.frame == *frame;
                 let name = self.robot.joints().iter().find(moves).map_or("?", |joint| &joint.name);
                 format!(
-                    "row {row}: the value {value} of joint {name} is not finite, or too large (1e5 radians)"
+                    "row {row}: invalid value {value} of joint {name}; accepted: finite, at most 1e5 radians"
                 )
             }
             other => other.to_string(),
@@ -190,15 +198,14 @@ impl Things {
             let pairs = if skipped == 1 { "pair of links" } else { "pairs of links" };
             if skipped > 0 {
                 notes.push(format!(
-                    "{skipped} {pairs} with one joint between them are not held against each other; an SRDF \
-                     file says which are not"
+                    "{skipped} {pairs} with one joint between them are not checked; to check neighbours, give an \
+                     SRDF file that lists the pairs to skip"
                 ));
             }
         }
         if listed.is_some_and(<[_]>::is_empty) {
             notes.push(
-                "the SRDF file has no disable_collisions: all links are held against each other"
-                    .into(),
+                "the SRDF file has no disable_collisions: all pairs of links are checked".into(),
             );
         }
         let mut rests = false;
@@ -212,7 +219,7 @@ impl Things {
             }
         }
         if rests {
-            notes.push("links that no joint moves are not held against the scene".into());
+            notes.push("links that no joint moves are not checked against the scene".into());
         }
         let own = |thing: usize| {
             self.bodies.iter().enumerate().filter(move |(_, of)| **of == thing).map(|(k, _)| k)

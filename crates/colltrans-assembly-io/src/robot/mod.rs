@@ -1,8 +1,9 @@
-//! A robot that moves: links with bodies, joints with names, and which links are held against what.
+//! A robot: links with bodies, joints with names, and the pairs of links to check.
 //!
-//! A path has one value for each joint that moves and follows no other one, in radians or metres. Links between which
-//! no joint moves are never asked about; nor are those with one joint between them, unless somebody says which pairs
-//! are not (an SRDF file): neighbours touch, and are made to.
+//! A path has one value for each independent joint, in radians or metres. A joint is independent if it moves
+//! and mimics no other joint. Pairs of links between which no joint moves are never checked. Pairs with one
+//! such joint between them are checked only if an SRDF file lists the pairs to skip, because neighbours touch
+//! by design.
 
 mod cell;
 mod path;
@@ -19,7 +20,7 @@ use thiserror::Error;
 pub use cell::Cell;
 pub use table::{Table, TableError};
 
-/// A robot.
+/// A robot with its links, joints and kinematic tree.
 #[derive(Debug, Clone)]
 pub struct Robot {
     pub(crate) name: String,
@@ -30,16 +31,16 @@ pub struct Robot {
     pub(crate) files: Vec<PathBuf>,
 }
 
-/// A link.
+/// A link of a robot.
 #[derive(Debug, Clone)]
 pub struct Link {
-    /// Its name.
+    /// The name of the link.
     pub name: String,
-    /// The frame of the mechanism that carries it; none is the world.
+    /// The frame of the mechanism that carries the link; `None` is the world.
     pub frame: Option<usize>,
-    /// What it collides with, in that frame.
+    /// The collision bodies, in that frame.
     pub bodies: Vec<AnyBody>,
-    /// Whether convex hulls stand for its meshes.
+    /// Whether the meshes of the link are replaced by their convex hulls.
     pub is_hull: bool,
     /// The largest dent of its meshes that are convex only to within the tolerance, a length
     /// ([`Loaded::dent`]).
@@ -49,112 +50,112 @@ pub struct Link {
 /// A joint that moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotJoint {
-    /// Its name.
+    /// The name of the joint.
     pub name: String,
-    /// The frame that it moves.
+    /// The frame of the mechanism that the joint moves.
     pub frame: usize,
-    /// How.
+    /// The kind of motion.
     pub kind: Kind,
-    /// Its limits, in radians or metres.
+    /// The lower and the upper limit, in radians or metres.
     pub limits: Option<[f64; 2]>,
-    /// The joint it follows.
+    /// The joint that this one mimics, if it is not independent.
     pub mimic: Option<Mimic>,
 }
 
-/// How a joint moves.
+/// The kind of motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// It turns, within limits.
+    /// Rotates within limits.
     Revolute,
-    /// It turns as far as one likes.
+    /// Rotates without limits.
     Continuous,
-    /// It slides.
+    /// Translates along its axis.
     Prismatic,
 }
 
-/// The value of a joint that follows another one: `multiplier` times its value, and `offset`.
+/// The dependence of a joint on another one: its value is `multiplier` times the other value plus `offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mimic {
-    /// The number of the other joint.
+    /// The index of the other joint in [`Robot::joints`].
     pub joint: usize,
-    /// As it is.
+    /// The factor of the other joint's value.
     pub multiplier: f64,
-    /// As it is.
+    /// The constant part, in radians or metres.
     pub offset: f64,
 }
 
-/// Why a robot cannot be asked about.
+/// An error in a query about a robot.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RobotError {
-    /// A joint has no value.
+    /// An independent joint has no values.
     #[error(
-        "there are no values for joint {joint}: give a column of that name, or let it rest with \
+        "missing values for joint {joint}: add a column of that name, or fix the joint with \
          --joint {joint}=VALUE"
     )]
     NoValues {
-        /// Its name.
+        /// The name of the joint.
         joint: String,
     },
-    /// A column is of no joint.
-    #[error("column {column} is of no joint that moves by itself; those are {joints}")]
+    /// A column does not name an independent joint.
+    #[error("column {column} does not name an independent joint; independent joints: {joints}")]
     Column {
-        /// Its name.
+        /// The name of the column.
         column: String,
-        /// All that there are.
+        /// The names of the joints for which columns are accepted.
         joints: String,
     },
-    /// Rows have not one value for each joint.
+    /// The number of values in a row differs from the number of joints.
     #[error(
-        "rows have {values} values, and {count} joints have one each: {joints}; a first line of names \
-         says which are given"
+        "rows have {values} values, expected {count}, one for each joint: {joints}; to select joints, \
+         add a header line with their names"
     )]
     Values {
-        /// How many there are in a row.
+        /// The number of values in the first row.
         values: usize,
-        /// How many there should be.
+        /// The number of joints.
         count: usize,
-        /// The joints.
+        /// The names of the joints.
         joints: String,
     },
-    /// A joint that is named does not move, or follows another one.
-    #[error("joint {joint} is none that moves by itself; those are {joints}")]
+    /// A joint to fix does not exist or is not independent.
+    #[error("joint {joint} is not an independent joint; independent joints: {joints}")]
     Joint {
-        /// Its name.
+        /// The name of the joint.
         joint: String,
-        /// All that there are.
+        /// The names of the independent joints.
         joints: String,
     },
-    /// No pair of bodies is held against each other.
+    /// The cell has no pair of bodies to check.
     #[error(
-        "no pair of bodies is held against each other, so nothing can be checked: links need geometry to collide \
-         with, neighbours are held against each other by an SRDF file that does not list them, and meshes of the \
-         scene are held against links that move"
+        "there is no pair of bodies to check: give the links collision geometry, give an SRDF file that does not \
+         list the neighbours to be checked, or give meshes of the scene and joints that move the links against \
+         them"
     )]
     NoPair,
-    /// Two things have one name.
-    #[error("two links or bodies around are called {name}")]
+    /// Two links or scene bodies have the same name.
+    #[error("duplicate name {name} of a link or scene body; rename one of them")]
     Twice {
-        /// Which.
+        /// The name.
         name: String,
     },
-    /// Nothing has a name.
-    #[error("there is no {name} among {known}")]
+    /// No link or scene body has this name.
+    #[error("unknown name {name}; known names: {known}")]
     Unknown {
-        /// What was named.
+        /// The name that was given.
         name: String,
-        /// What there is.
+        /// The names that exist.
         known: String,
     },
-    /// The values are no path.
+    /// The values do not form a path.
     #[error(transparent)]
     Path(#[from] colltrans::motion::path::PathError),
 }
 
-/// Makes a body of a mesh: convex if the mesh is, otherwise a solid, which may be open.
+/// Builds a body from a mesh: a convex polyhedron if the mesh is convex, otherwise a solid, which may be open.
 ///
 /// # Errors
-/// What is wrong with its surface.
+/// [`Refused`] if neither can be built, with the defects of the surface.
 pub fn body_of(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<AnyBody>, Refused> {
     if let Ok(Loaded { body, precision, notes }) = body::convex(mesh, options) {
         return Ok(Loaded { body: body.into(), precision, notes });
@@ -164,37 +165,38 @@ pub fn body_of(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<AnyBody>, Re
 }
 
 impl Robot {
-    /// Its name.
+    /// Returns the name of the robot.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its links, in the order of the file.
+    /// Returns the links, in the order of the file.
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
-    /// The joints that move, in the order of the mechanism's values.
+    /// Returns the joints that move, in the order of the mechanism's values.
     pub fn joints(&self) -> &[RobotJoint] {
         &self.joints
     }
 
-    /// Frames and joints.
+    /// Returns the kinematic tree: frames and joints.
     pub const fn mechanism(&self) -> &Mechanism {
         &self.mechanism
     }
 
-    /// What was noted when it was read.
+    /// Returns the notes made while the robot was read.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// The files that it was read from.
+    /// Returns the files from which the robot was read.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// How many joints move between two links; of none, between a link and the world.
+    /// Returns the number of moving joints between two links, or between a link and the world if `other` is
+    /// `None`.
     pub fn moving_between(&self, link: usize, other: Option<usize>) -> usize {
         let above = |frame: Option<usize>| {
             let parent = |k: &usize| self.mechanism.frames()[*k].parent;
@@ -209,11 +211,12 @@ impl Robot {
         only(&a, &b) + only(&b, &a)
     }
 
-    /// The pairs of links that are held against each other: all that have bodies and move against each other, but
-    /// neighbours, or but those that are listed.
+    /// Returns the pairs of links to check. Both links have bodies, and at least one joint moves between them.
+    /// With `listed` the listed pairs are left out; without it the pairs with a single joint between them are
+    /// left out.
     ///
     /// # Errors
-    /// A listed name that no link has.
+    /// [`RobotError::Unknown`] if no link has a listed name.
     pub fn pairs(&self, listed: Option<&[[String; 2]]>) -> Result<Vec<[usize; 2]>, RobotError> {
         let mut ignored = Vec::new();
         for names in listed.unwrap_or_default() {
@@ -231,18 +234,15 @@ impl Robot {
             .collect())
     }
 
-    /// The number of the link of a name.
+    /// Returns the index of a link, found by name.
     ///
     /// # Errors
-    /// There is none.
+    /// [`RobotError::Unknown`] if no link has this name.
     pub fn link(&self, name: &str) -> Result<usize, RobotError> {
         let found = self.links.iter().position(|link| link.name == name);
         found.ok_or_else(|| {
             let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();
-            RobotError::Unknown {
-                name: name.into(),
-                known: format!("the links {}", names.join(", ")),
-            }
+            RobotError::Unknown { name: name.into(), known: format!("{}", names.join(", ")) }
         })
     }
 }

@@ -1,5 +1,5 @@
-//! From rows of a file to the values of a robot's joints: by name or by order, with those that rest and those that
-//! follow others.
+//! Maps the rows of a table to the values of a robot's joints: by column name or by order, with fixed joints
+//! and joints that mimic others.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use colltrans::motion::path::JointPath;
 
 use super::{Kind, Robot, RobotError, RobotJoint, Table};
 
-/// Where the values of a joint come from.
+/// The source of a joint's values.
 #[derive(Debug, Clone, Copy)]
 enum From {
     Column(usize),
@@ -16,11 +16,13 @@ enum From {
 }
 
 impl Robot {
-    /// The path of all joints, of a table and of joints that rest, by name; and what is to be said of it: values beyond
-    /// the limits, which are taken as they are, and velocities, which are not used.
+    /// Returns the path of all joints, from a table and from joints fixed by name (`rest`), with notes. The
+    /// notes report values beyond the limits, which are used unchanged, and fields of a trajectory that are not
+    /// used.
     ///
     /// # Errors
-    /// A joint without values, a column that is of none, rows of a wrong length, times that do not grow.
+    /// [`RobotError`] if a joint has no values, a column names no independent joint, rows have a wrong length,
+    /// or times do not increase.
     pub fn path(
         &self,
         table: &Table,
@@ -38,7 +40,7 @@ impl Robot {
         Ok((path, notes))
     }
 
-    /// Names of the joints that move by themselves, in their order.
+    /// Returns the names of the independent joints in their order, without those in `but`.
     fn own(&self, but: &BTreeMap<String, f64>) -> Vec<&str> {
         let own = self.joints.iter().filter(|joint| joint.mimic.is_none());
         own.map(|joint| joint.name.as_str()).filter(|name| !but.contains_key(*name)).collect()
@@ -87,7 +89,8 @@ impl Robot {
         (0..self.joints.len()).map(value).collect()
     }
 
-    /// Joints follow each other in no ring.
+    /// Returns the value of a joint in a row. The recursion ends because mimics form no cycle (checked by the
+    /// reader).
     fn value(&self, joint: usize, row: &[f64], sources: &[From]) -> f64 {
         match (sources[joint], self.joints[joint].mimic) {
             (From::Column(column), _) => row[column],
@@ -100,7 +103,7 @@ impl Robot {
     }
 }
 
-/// What is said of values beyond the limits of a joint.
+/// Returns a note on the values beyond the limits of a joint, or `None` if there are none.
 fn exceeded(joint: &RobotJoint, column: usize, path: &JointPath) -> Option<String> {
     let [lower, upper] = joint.limits?;
     let beyond = |row: &&Vec<f64>| !(lower..=upper).contains(&row[column]);
@@ -109,8 +112,8 @@ fn exceeded(joint: &RobotJoint, column: usize, path: &JointPath) -> Option<Strin
     let unit = if joint.kind == Kind::Prismatic { "m" } else { "rad" };
     let (value, of) = (path.rows()[first][column], path.rows().len());
     Some(format!(
-        "joint {} is beyond its limits, {lower} to {upper} {unit}, in {count} of {of} rows: first in row \
-         {first}, with {value}",
+        "joint {} exceeds its limits, {lower} to {upper} {unit}, in {count} of {of} rows; first: {value} in \
+         row {first}",
         joint.name
     ))
 }

@@ -1,70 +1,73 @@
-//! Rows of joint values, as files have them: CSV, or JSON.
+//! Reads rows of joint values from CSV or JSON.
 //!
-//! CSV: numbers with commas between them, a row a line; a first line that has none names the columns, of which one may
-//! be `time`. Empty lines and what follows a `#` count for nothing. JSON: a list of rows, or what ROS calls a
-//! trajectory, `{"joint_names": [..], "points": [{"positions": [..], "time_from_start": ..}]}`, or what `MoveIt` puts
-//! around it, `{"joint_trajectory": {..}}`. Velocities and accelerations of points are not used; [`Table::unused`] names
-//! those that a file has.
+//! - CSV: comma-separated numbers, one row a line. If the first line has no numbers, it names the columns, one
+//!   of which may be `time`. Empty lines, and text after `#`, are ignored.
+//! - JSON: a list of rows, a ROS trajectory `{"joint_names": [..], "points": [{"positions": [..],
+//!   "time_from_start": ..}]}`, or the `MoveIt` form `{"joint_trajectory": {..}}`.
+//!
+//! Velocities, accelerations and efforts of points are not used; [`Table::unused`] names those that a file has.
 
 use serde::Deserialize;
 use thiserror::Error;
 
-/// Rows of values.
+/// Rows of joint values.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// The names of the columns, if they have some.
+    /// The names of the columns; `None` if the file has no header line.
     pub names: Option<Vec<String>>,
-    /// The times of the rows, if they have some.
+    /// The times of the rows, in seconds; `None` if the file has no times.
     pub times: Option<Vec<f64>>,
     /// The rows.
     pub rows: Vec<Vec<f64>>,
-    /// What a trajectory has besides positions and times, and nothing uses: velocities, accelerations, efforts.
+    /// The fields of a trajectory that are not used: velocities, accelerations, efforts.
     pub unused: Vec<&'static str>,
 }
 
 impl Table {
-    /// What is reported of a path whose rows are joined by straight segments although the file has more than rows.
+    /// Returns a note that the rows are joined by straight segments, although the file has derivatives as well;
+    /// `None` if it has none.
     pub fn straight(&self) -> Option<String> {
         let (last, before) = self.unused.split_last()?;
         let names = match before {
             [] => (*last).to_owned(),
             before => format!("{} and {last}", before.join(", ")),
         };
-        Some(format!("along straight segments between the rows; the file's {names} were not used"))
+        Some(format!("rows are joined by straight segments; the {names} in the file were not used"))
     }
 }
 
-/// What is wrong with a file of rows.
+/// An error in a file of rows.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{place}: {reason}")]
 pub struct TableError {
-    /// Where.
+    /// The place in the file.
     pub place: String,
-    /// What.
+    /// The reason.
     pub reason: String,
 }
 
+/// Builds an error from a place and a reason.
 fn wrong(place: impl Into<String>, reason: impl Into<String>) -> TableError {
     TableError { place: place.into(), reason: reason.into() }
 }
 
-/// A name that stands there twice.
+/// Returns the first name that occurs a second time; `None` if all differ.
 pub(super) fn twice<T: PartialEq>(names: &[T]) -> Option<&T> {
     (1..names.len()).find(|&k| names[..k].contains(&names[k])).map(|k| &names[k])
 }
 
-/// The reason why a trajectory in YAML is refused.
-const YAML: &str = "it is YAML, and rows are read from CSV or JSON: write it as JSON, for example with python3 -c \
+/// The reason why a trajectory in YAML is rejected.
+const YAML: &str = "found YAML, accepted: CSV or JSON; convert the file to JSON, for example with python3 -c \
                     'import json, sys, yaml; json.dump(next(yaml.safe_load_all(sys.stdin)), sys.stdout)'";
 
-/// Names of a column of times.
+/// The accepted names of a column of times.
 const TIMES: [&str; 3] = ["time", "t", "time_from_start"];
 
 impl Table {
-    /// Of a text in either format, told by how it begins.
+    /// Parses a text in either format. Texts that begin with `[` or `{` are JSON.
     ///
     /// # Errors
-    /// What is wrong with it, and where.
+    /// [`TableError`] with the place and the reason.
     pub fn parse(text: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let table = match text.trim_start().chars().next() {
@@ -72,10 +75,13 @@ impl Table {
             _ => Self::csv(text)?,
         };
         if table.rows.is_empty() {
-            return Err(wrong("end of file", "there are no rows"));
+            return Err(wrong("end of file", "no rows; expected at least one"));
         }
         if let Some(name) = table.names.as_deref().and_then(twice) {
-            return Err(wrong("names of columns", format!("`{name}` is there twice")));
+            return Err(wrong(
+                "names of columns",
+                format!("duplicate name `{name}`; names must be unique"),
+            ));
         }
         Ok(table)
     }
@@ -101,19 +107,22 @@ impl Table {
             }
             let (_, columns) = *first.get_or_insert((k, fields.len()));
             if fields.len() != columns {
-                let reason = format!("it has {} values, where {columns} stand above", fields.len());
+                let reason =
+                    format!("{} values, expected {columns} as in the lines above", fields.len());
                 return Err(wrong(place, reason));
             }
             let row: Option<Vec<f64>> = numbers.into_iter().collect();
             let row = row.filter(|row| row.iter().all(|x| x.is_finite()));
-            let row = row.ok_or_else(|| wrong(place, format!("`{content}` are not numbers")))?;
+            let row = row.ok_or_else(|| {
+                wrong(place, format!("`{content}` has a value that is not a finite number"))
+            })?;
             table.rows.push(row);
         }
         table.take_times();
         Ok(table)
     }
 
-    /// The column of times becomes the times.
+    /// Moves the column of times, if there is one, to [`Self::times`].
     fn take_times(&mut self) {
         let Some(names) = &mut self.names else { return };
         let is_time = |name: &String| TIMES.contains(&name.to_ascii_lowercase().as_str());
@@ -123,7 +132,7 @@ impl Table {
     }
 
     fn json(text: &str) -> Result<Self, TableError> {
-        // What it is as a whole has no line.
+        // Errors about the document as a whole have no line.
         let place = |e: &serde_json::Error| match e.line() {
             0 => "JSON".into(),
             line => format!("line {line} column {}", e.column()),
@@ -136,8 +145,8 @@ impl Table {
             Json::Trajectory(trajectory) => trajectory,
             Json::Wrapped { joint_trajectory, multi_dof_joint_trajectory: several } => {
                 if several.is_some_and(|several| !several.points.is_empty()) {
-                    let reason = "joints of several degrees of freedom cannot be followed: only a trajectory \
-                                  without points here is accepted";
+                    let reason = "joints with several degrees of freedom are not supported; accepted: a trajectory \
+                                  without points here";
                     return Err(wrong("multi_dof_joint_trajectory", reason));
                 }
                 joint_trajectory
@@ -156,8 +165,7 @@ impl Table {
         let timed = points.iter().filter(|point| point.time_from_start.is_some()).count();
         let untimed = points.iter().position(|point| point.time_from_start.is_none());
         if let Some(k) = untimed.filter(|_| timed > 0) {
-            let reason =
-                "it has no time_from_start, which other points have: give it to all or to none";
+            let reason = "missing time_from_start, which other points have; give it for all points or for none";
             return Err(wrong(format!("points[{k}]"), reason));
         }
         let times: Vec<f64> =
@@ -165,25 +173,28 @@ impl Table {
         let rows: Vec<Vec<f64>> = points.into_iter().map(|point| point.positions).collect();
         if let Some(k) = rows.iter().position(|row| row.len() != names.len()) {
             let (found, wanted) = (rows[k].len(), names.len());
-            let reason = format!("it has {found} positions for {wanted} joint_names");
+            let reason =
+                format!("{found} positions, expected {wanted}, one for each of joint_names");
             return Err(wrong(format!("points[{k}]"), reason));
         }
         Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }.even()
     }
 
+    /// Returns the table if all rows have the same number of values, which is that of the names if there are
+    /// names.
     fn even(self) -> Result<Self, TableError> {
         let columns = self.names.as_ref().map(Vec::len).or(self.rows.first().map(Vec::len));
         match self.rows.iter().position(|row| Some(row.len()) != columns) {
             None => Ok(self),
             Some(k) => {
                 let (found, wanted) = (self.rows[k].len(), columns.unwrap_or(0));
-                Err(wrong(format!("row {k}"), format!("it has {found} values, not {wanted}")))
+                Err(wrong(format!("row {k}"), format!("{found} values, expected {wanted}")))
             }
         }
     }
 }
 
-/// Checks whether a text is a trajectory as ROS prints it, in YAML: its first line is a key of such a message.
+/// Checks whether a text is a ROS trajectory printed as YAML: its first line is a key of such a message.
 fn is_yaml(text: &str) -> bool {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
     let first = lines.into_iter().find(|line| !line.is_empty() && *line != "---");
@@ -191,7 +202,8 @@ fn is_yaml(text: &str) -> bool {
     key.is_some_and(|key| ["header", "joint_names", "points", "joint_trajectory"].contains(&key))
 }
 
-/// Finds the first point of a trajectory that is wrong; `None` in other texts.
+/// Finds the first invalid point of a trajectory; `None` if the text is not a trajectory or all points are
+/// valid.
 fn wrong_point(text: &str) -> Option<TableError> {
     let whole: serde_json::Value = serde_json::from_str(text).ok()?;
     let trajectory = whole.get("joint_trajectory").unwrap_or(&whole);
@@ -205,8 +217,8 @@ fn wrong_point(text: &str) -> Option<TableError> {
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "it is neither a list of rows nor {\"joint_names\": [..], \"points\": [..]}, nor that as \
-                 \"joint_trajectory\" of an object"
+    expecting = "neither a list of rows nor {\"joint_names\": [..], \"points\": [..]}, alone or as \
+                 \"joint_trajectory\""
 )]
 enum Json {
     Rows(Vec<Vec<f64>>),
@@ -235,7 +247,7 @@ struct Point {
     time_from_start: Option<Duration>,
 }
 
-/// Seconds, or as ROS has them.
+/// A time: a number of seconds, or seconds and nanoseconds as ROS writes them.
 #[derive(Deserialize, Clone, Copy)]
 #[serde(untagged)]
 enum Duration {
@@ -285,20 +297,20 @@ mod tests {
         let table = Table::parse(ros).unwrap();
         assert_eq!(table.rows, [[1.0], [2.0]]);
         assert_eq!(table.unused, ["velocities", "accelerations"]);
-        let said = "along straight segments between the rows; the file's velocities and accelerations were not used";
-        assert_eq!(table.straight().as_deref(), Some(said));
+        let note = "rows are joined by straight segments; the velocities and accelerations in the file were not used";
+        assert_eq!(table.straight().as_deref(), Some(note));
         assert_eq!(Table::parse("0,1\n").unwrap().straight(), None);
     }
 
     #[test]
     fn what_is_wrong_is_told_with_its_place() {
         let told = |text: &str| Table::parse(text).unwrap_err().to_string();
-        assert_eq!(told("a,b\n1,2\n1\n"), "line 3: it has 1 values, where 2 stand above");
-        assert_eq!(told("1,2\n1,x\n"), "line 2: `1,x` are not numbers");
-        assert_eq!(told("a,b\n"), "end of file: there are no rows");
-        assert_eq!(told("1,inf\n"), "line 1: `1,inf` are not numbers");
-        assert_eq!(told("[[1, 2], [1]]"), "row 1: it has 1 values, not 2");
-        assert!(told("{\"points\": []}").contains("it is neither a list of rows nor"));
+        assert_eq!(told("a,b\n1,2\n1\n"), "line 3: 1 values, expected 2 as in the lines above");
+        assert_eq!(told("1,2\n1,x\n"), "line 2: `1,x` has a value that is not a finite number");
+        assert_eq!(told("a,b\n"), "end of file: no rows; expected at least one");
+        assert_eq!(told("1,inf\n"), "line 1: `1,inf` has a value that is not a finite number");
+        assert_eq!(told("[[1, 2], [1]]"), "row 1: 1 values, expected 2");
+        assert!(told("{\"points\": []}").contains("neither a list of rows nor"));
         assert!(told("[[1, 2").contains("line 1"));
         let point = |point: &str| {
             told(&format!(r#"{{"joint_names": ["a"], "points": [{{"positions": [1]}}, {point}]}}"#))
@@ -310,15 +322,15 @@ mod tests {
         let floating = r#"{"joint_trajectory": {"joint_names": ["a"], "points": [{"positions": [1]}]},
             "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": [{"transforms": [{}]}]}}"#;
         assert!(
-            told(floating).starts_with("multi_dof_joint_trajectory: joints of several degrees")
+            told(floating).starts_with("multi_dof_joint_trajectory: joints with several degrees")
         );
         let mixed = r#"{"joint_names": ["a"], "points": [
             {"positions": [1], "time_from_start": 1}, {"positions": [2]}]}"#;
-        assert!(told(mixed).starts_with("points[1]: it has no time_from_start"), "{}", told(mixed));
+        assert!(told(mixed).starts_with("points[1]: missing time_from_start"), "{}", told(mixed));
         let short = point(r#"{"positions": [1, 2]}"#);
-        assert_eq!(short, "points[1]: it has 2 positions for 1 joint_names");
+        assert_eq!(short, "points[1]: 2 positions, expected 1, one for each of joint_names");
         for yaml in ["---\njoint_names:\n- a\n", "header:\n  stamp: 0\n", "# ROS\npoints: []\n"] {
-            assert!(told(yaml).starts_with("file: it is YAML"), "{}", told(yaml));
+            assert!(told(yaml).starts_with("file: found YAML"), "{}", told(yaml));
         }
     }
 }

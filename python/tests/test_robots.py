@@ -143,7 +143,7 @@ def test_srdf_says_which_links_are_not_held_against_each_other(tmp_path: Path) -
     found = arm.first_contact(ROWS)
     assert found.pairs == 3 and not any("SRDF" in note for note in found.notes)
     (tmp_path / "other.srdf").write_text('<robot><disable_collisions link1="a" link2="b"/></robot>')
-    with pytest.raises(InputError, match="srdf: there is no a among the links base"):
+    with pytest.raises(InputError, match="srdf: unknown name a; known names: base"):
         Robot.read(DATA / "arm.urdf", srdf=tmp_path / "other.srdf")
 
 
@@ -152,22 +152,22 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
         with pytest.raises(error, match=words):
             ARM.first_contact(*given, **more)
 
-    refused(InputError, "path: rows have 2 values, and 3 joints have one each", ROWS[:, :2])
+    refused(InputError, "path: rows have 2 values, expected 3, one for each joint", ROWS[:, :2])
     refused(InputError, r"path: an array of shape \(3,\), not \(N, joints\)", [0, 0, 0])
     refused(InputError, "path: no array of numbers", [["a", "b", "c"]])
     refused(InputError, "path: .*none.csv: cannot be read", tmp_path / "none.csv")
     refused(InputError, "columns: 2 names for rows of 3 values", ROWS, columns=["a", "b"])
-    refused(InputError, "path: column a is of no joint", ROWS, columns=["a", "elbow", "reach"])
+    refused(InputError, "path: column a does not name an independent joint", ROWS, columns=["a", "elbow", "reach"])
     refused(
         InputError, "path: the time 1 of row 2 is not finite, or not after", ROWS, times=[0, 2, 1]
     )
     refused(InputError, "path: a path needs a row, and a time for each", ROWS, times=[0, 1])
-    refused(InputError, "path: joint hand is none that moves", ROWS, joints={"hand": 1.0})
-    refused(InputError, "ignore: there is no hand among base", ROWS, ignore=[("tool", "hand")])
+    refused(InputError, "path: joint hand is not an independent joint", ROWS, joints={"hand": 1.0})
+    refused(InputError, "ignore: unknown name hand; known names: base", ROWS, ignore=[("tool", "hand")])
     refused(QueryError, "gap", ROWS, keep=-1.0)
     refused(
         QueryError,
-        "row 0: the value NaN of joint shoulder is not finite",
+        "row 0: invalid value NaN of joint shoulder",
         [[np.nan, 0, 0], [0, 0, 0]],
     )
     with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):
@@ -175,7 +175,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     with pytest.raises(AssemblyError, match="arm.csv"):
         Robot.read(DATA / "arm.csv")
     found = ARM.first_contact(np.array([[0, 0, 0.5], [0.1, 0, 0]]))
-    assert any("reach is beyond its limits" in note for note in found.notes)
+    assert any("reach exceeds its limits" in note for note in found.notes)
 
 
 def test_many_paths_are_one_by_one_with_the_same_bits() -> None:

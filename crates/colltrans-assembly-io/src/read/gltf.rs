@@ -124,7 +124,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "a glTF document, an object")]
+#[serde(rename_all = "camelCase", expecting = "an object (glTF document)")]
 struct Document {
     asset: Asset,
     scene: Option<usize>,
@@ -210,14 +210,14 @@ impl Extras {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "a scene, an object")]
+#[serde(expecting = "an object (scene)")]
 struct Scene {
     #[serde(default)]
     nodes: Vec<usize>,
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "a node, an object")]
+#[serde(expecting = "an object (node)")]
 struct Node {
     name: Option<String>,
     mesh: Option<usize>,
@@ -235,14 +235,14 @@ struct Node {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "a mesh, an object")]
+#[serde(expecting = "an object (mesh)")]
 struct Shape {
     name: Option<String>,
     primitives: Vec<Primitive>,
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "a primitive, an object")]
+#[serde(expecting = "an object (primitive)")]
 struct Primitive {
     attributes: Attributes,
     indices: Option<usize>,
@@ -254,14 +254,14 @@ struct Primitive {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "attributes, an object")]
+#[serde(expecting = "an object (attributes)")]
 struct Attributes {
     #[serde(rename = "POSITION")]
     position: Option<usize>,
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "an accessor, an object")]
+#[serde(rename_all = "camelCase", expecting = "an object (accessor)")]
 struct Accessor {
     buffer_view: Option<usize>,
     #[serde(default)]
@@ -276,7 +276,7 @@ struct Accessor {
 }
 
 #[derive(Deserialize)]
-#[serde(expecting = "sparse data, an object")]
+#[serde(expecting = "an object (sparse data)")]
 struct Sparse {
     count: usize,
     indices: Few,
@@ -293,7 +293,7 @@ struct Few {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "a buffer view, an object")]
+#[serde(rename_all = "camelCase", expecting = "an object (buffer view)")]
 struct View {
     buffer: usize,
     #[serde(default)]
@@ -303,7 +303,7 @@ struct View {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase", expecting = "a buffer, an object")]
+#[serde(rename_all = "camelCase", expecting = "an object (buffer)")]
 struct Buffer {
     byte_length: usize,
     uri: Option<String>,

@@ -22,7 +22,7 @@ use colltrans_assembly::units;
 use colltrans_assembly::{Assembly, Ignored};
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a manifest, an object")]
+#[serde(deny_unknown_fields, expecting = "an object (manifest)")]
 struct Manifest {
     unit: Option<String>,
     #[serde(default, alias = "part")]
@@ -81,7 +81,7 @@ const fn within_degrees() -> f64 {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that describes a part")]
+#[serde(deny_unknown_fields, expecting = "an object (part)")]
 struct Entry {
     file: OneOrMany,
     name: Option<String>,

@@ -157,7 +157,7 @@ fn links_of_a_robot_are_placed_by_its_joints() {
     near(bounds(&read(&file, &options).unwrap(), "arm"), [-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
     options.joints.insert("elbow".into(), 1.0);
     let message = read(&file, &options).unwrap_err().to_string();
-    assert!(message.contains("there is no joint elbow"), "{message}");
+    assert!(message.contains("unknown joint elbow"), "{message}");
 }
 
 #[test]
@@ -187,12 +187,12 @@ fn what_is_said_of_parts_that_are_left_out_is_dropped_and_that_is_said() {
     let options = ReadOptions::default().with_skip_missing(true);
     let assembly = read(&path, &options).unwrap();
     let wanted = [
-        "ignore of a, gone is not asked, as parts of it are left out",
-        "before of a, gone is not asked, as parts of it are left out",
-        "pair of go*, b is not asked, as parts of it are left out",
-        "together of a, b, gone is asked of a, b only, as parts of it are left out",
-        "never of gone is not asked, as parts of it are left out",
-        "missing.off cannot be found and is left out",
+        "ignore of a, gone is dropped, because some of its parts are left out",
+        "before of a, gone is dropped, because some of its parts are left out",
+        "pair of go*, b is dropped, because some of its parts are left out",
+        "together of a, b, gone applies to a, b only, because some of its parts are left out",
+        "never of gone is dropped, because some of its parts are left out",
+        "missing.off not found; left out",
     ];
     assert_eq!(assembly.notes(), wanted);
     assert_eq!(assembly.constraints().units()[0].parts, [0, 1]);
@@ -258,13 +258,13 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
     near(bounds(&assembly, "cube_2"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
     std::fs::write(&file, package(&model.replace("objectid=\"2\"", "objectid=\"7\""))).unwrap();
     let message = open(&file).unwrap_err().to_string();
-    assert!(message.contains("build item 2: there is no object 7"), "{message}");
+    assert!(message.contains("build item 2: unknown object id 7"), "{message}");
     let refused = |model: &str, words: &str| {
         std::fs::write(&file, package(model)).unwrap();
         let message = open(&file).unwrap_err().to_string();
         assert!(message.contains(words), "{message}");
     };
-    refused(&model.replace("inch", "league"), "the unit league is none of micron");
+    refused(&model.replace("inch", "league"), "unknown unit league; accepted: micron");
     // Each holds the one before ten times: 10^12 cubes in a few lines.
     let ten = |k: usize| {
         let below = format!("<component objectid=\"{}\"/>", k - 1).repeat(10);
@@ -279,7 +279,7 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
     let none = r#"<model unit="foot"><resources/><build/></model>"#;
     std::fs::write(&file, package(none)).unwrap();
     let message = open(&file).unwrap_err().to_string();
-    assert!(message.contains("holds no parts: its build places no mesh"), "{message}");
+    assert!(message.contains("no parts found: its build places no mesh"), "{message}");
 }
 
 #[test]
@@ -318,7 +318,7 @@ fn gltf_files_whose_numbers_do_not_fit_are_refused() {
     };
     refused(1_000_000, 3, "positions lie beyond");
     refused(3, 1_000_000, "indices lie beyond");
-    refused(3, 8, "8 corners do not make triangles");
+    refused(3, 8, "8 indices are not a multiple of 3");
 }
 
 #[test]
@@ -384,7 +384,7 @@ fn meshes_that_the_build_or_the_scene_does_not_place_are_named_in_a_note() {
     let file = folder.path().join("a.3mf");
     std::fs::write(&file, package(&[("3D/3dmodel.model", &model)])).unwrap();
     let found = open(&file).unwrap();
-    assert_eq!(found.notes(), ["left out, as no item of the build places them: spare"]);
+    assert_eq!(found.notes(), ["left out because no item of the build places them: spare"]);
     let parts =
         [0.0, 2.0].map(|x| part(&format!("at{x}"), &[cuboid([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])]));
     let assembly = Assembly::new(parts.into()).unwrap().with_unit("m");
@@ -399,7 +399,7 @@ fn meshes_that_the_build_or_the_scene_does_not_place_are_named_in_a_note() {
     document["nodes"].as_array_mut().unwrap().push(spare);
     let file = folder.path().join("a.gltf");
     std::fs::write(&file, document.to_string()).unwrap();
-    assert_eq!(open(&file).unwrap().notes(), ["left out, as they are not in the scene: spare"]);
+    assert_eq!(open(&file).unwrap().notes(), ["left out because they are not in the scene: spare"]);
 }
 
 #[test]

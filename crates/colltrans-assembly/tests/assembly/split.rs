@@ -95,7 +95,7 @@ fn files_of_a_folder_stay_parts_and_it_is_said() {
     assert_eq!(parts(&kept), [("plate", 6), ("screws", 12)]);
     assert_eq!(
         kept.notes(),
-        ["several bodies are one part: screws (2); with `split bodies` each is a part"]
+        ["parts with several bodies: screws (2); use `split bodies` to read each body as a part"]
     );
     assert!(read(Split::Never).notes().is_empty());
     let apart = read(Split::Bodies);
@@ -119,7 +119,7 @@ fn a_manifest_says_it_of_each_part() {
     let all = open("m.toml", &files, Split::Bodies).unwrap();
     assert_eq!(parts(&all), [("a/x", 6), ("a/y", 6), ("b/x", 6), ("b/y", 6)]);
     let error = open("n.toml", &files, Split::Auto).unwrap_err().to_string();
-    assert_eq!(error, "n.toml: part 1 (a): split: no is none of auto, never, names, bodies");
+    assert_eq!(error, "n.toml: part 1 (a): split: unknown split no; accepted: auto, never, names, bodies");
     // One that is listed is one part, as the manifest says.
     files.insert("one.toml".into(), b"[[part]]\nfile = 'a.obj'\n".to_vec());
     assert_eq!(parts(&open("one.toml", &files, Split::Auto).unwrap()), [("a", 12)]);

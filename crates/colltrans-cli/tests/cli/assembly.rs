@@ -228,7 +228,7 @@ fn sources_that_are_wrong_are_named() {
     let write = |name: &str, text: &str| std::fs::write(place.join(name), text).unwrap();
     refused(place, &["nowhere"], 3, &["nowhere: cannot be read"]);
     write("notes.txt", "no parts");
-    refused(place, &["notes.txt"], 3, &["notes.txt: neither a folder of meshes", ".urdf"]);
+    refused(place, &["notes.txt"], 3, &["notes.txt: unknown kind of source; accepted: a folder of meshes", ".urdf"]);
     refused(place, &["."], 3, &["broken.off"]);
     refused(place, &["broken.off"], 3, &["broken.off", "line"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nscale = 'big'\n");
@@ -266,15 +266,15 @@ fn sources_that_are_wrong_are_named() {
         place,
         &["empty"],
         3,
-        &["no STL, OBJ, PLY, OFF or DAE file is in this folder; it is empty"],
+        &["the folder has no STL, OBJ, PLY, OFF or DAE file; the folder is empty"],
     );
     std::fs::create_dir(place.join("steps")).unwrap();
     write("steps/a.step", "ISO-10303-21;");
     write("steps/b.STP", "ISO-10303-21;");
-    let words = ["but 1 .step file, 1 .stp file;", "give a STEP file itself"];
+    let words = ["but 1 .step file, 1 .stp file;", "give the path of the STEP file"];
     refused(place, &["steps"], 3, &words);
     std::fs::create_dir_all(place.join("outer/inner")).unwrap();
-    refused(place, &["outer"], 3, &["but 1 folder; give the folder that holds the meshes"]);
+    refused(place, &["outer"], 3, &["but 1 folder; give the folder that contains the meshes"]);
 }
 
 #[test]
@@ -290,10 +290,10 @@ fn meshes_that_a_urdf_file_misses_are_named_or_skipped() {
     refused(place, &["lost.urdf"], 3, &["3 of the meshes", "package://kit/cube.off"]);
     let output = run(place, &[&["lost.urdf", "--skip-missing", "--json"], &root[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("package://kit/gone.stl cannot be found and is left out"));
+    assert!(stderr(&output).contains("package://kit/gone.stl not found; left out"));
     assert_eq!(json(&stdout(&output))["parts"].as_array().unwrap().len(), 2);
     let joint = [&["two.urdf", "--joint", "elbow=1"], &root[..]].concat();
-    refused(place, &joint, 3, &["there is no joint elbow"]);
+    refused(place, &joint, 3, &["unknown joint elbow"]);
 }
 
 #[test]

@@ -443,7 +443,7 @@ fn motions_are_asked_in_lines() {
             asked(r#""moving_motion":{"slide":{"by":[1,0,0]},"still":{},"spin":7}"#),
             "moving_motion: a motion is of one kind; there is `still` besides",
         ),
-        (asked(r#""moving_motion":{}"#), "no field that says of which kind it is"),
+        (asked(r#""moving_motion":{}"#), "the field that gives the kind is missing"),
         (asked(r#""moving_motion":{"still":null}"#), "found null, expected an object"),
         (asked(r#""moving_motion":{"slide":[1,0,0]}"#), "found a list, expected an object"),
         (asked(&moved.replace("\"axis\":[0,0,1],", "")), "missing field `axis`"),

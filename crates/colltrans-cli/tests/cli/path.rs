@@ -48,9 +48,9 @@ fn a_wire_in_the_way_is_met() {
 fn what_is_not_asked_is_said() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     let said = stderr(&run(folder.path(), &["path", &arm, &rows, &wire]));
-    assert!(said.contains("3 pairs of links with one joint between them are not held"), "{said}");
-    assert!(said.contains("links that no joint moves are not held against the scene"), "{said}");
-    assert!(said.contains("a cylinder of radius 0.002 is taken as a polyhedron"), "{said}");
+    assert!(said.contains("3 pairs of links with one joint between them are not checked"), "{said}");
+    assert!(said.contains("links that no joint moves are not checked against the scene"), "{said}");
+    assert!(said.contains("a cylinder of radius 0.002 is replaced by a circumscribed polyhedron"), "{said}");
     let srdf = folder.path().join("arm.srdf");
     let pair = |a: &str, b: &str| format!("<disable_collisions link1=\"{a}\" link2=\"{b}\"/>");
     let pairs = [("base", "upper"), ("upper", "fore"), ("fore", "tool")].map(|(a, b)| pair(a, b));
@@ -62,7 +62,7 @@ fn what_is_not_asked_is_said() {
     fs::write(folder.path().join("far.csv"), "shoulder,elbow,reach\n0,0,0\n3.5,0,0\n").unwrap();
     let said = stderr(&run(folder.path(), &["path", &arm, "far.csv"]));
     assert!(
-        said.contains("joint shoulder is beyond its limits, -3 to 3 rad, in 1 of 2 rows"),
+        said.contains("joint shoulder exceeds its limits, -3 to 3 rad, in 1 of 2 rows"),
         "{said}"
     );
 }
@@ -77,24 +77,24 @@ fn what_is_wrong_is_told() {
         (
             vec!["path", &arm, "short.csv"],
             3,
-            "short.csv: rows have 2 values, and 3 joints have one each",
+            "short.csv: rows have 2 values, expected 3, one for each joint",
         ),
-        (vec!["path", &arm, "text.csv"], 3, "text.csv: line 1: `0,0,x` are not numbers"),
+        (vec!["path", &arm, "text.csv"], 3, "text.csv: line 1: `0,0,x` has a value that is not a finite number"),
         (vec!["path", &arm, "none.csv"], 3, "none.csv: cannot be read"),
         (vec!["path", &wire, &rows], 3, "URDF"),
-        (vec!["path", &arm, "foo.json"], 3, "foo.json: JSON: it is neither a list of rows nor"),
+        (vec!["path", &arm, "foo.json"], 3, "foo.json: JSON: neither a list of rows nor"),
         (vec!["path", &arm, &rows, "--ignore", "tool"], 2, "--ignore tool: not A,B"),
         (vec!["path", &arm, &rows, "--joint", "reach=1mm"], 2, "NAME=VALUE, in radians or metres"),
         (
             vec!["path", &arm, &rows, "--ignore", "tool,hand"],
             2,
-            "--ignore: there is no hand among base, upper",
+            "--ignore: unknown name hand; known names: base, upper",
         ),
         (vec!["path", &arm, &rows, "--joint", "reach"], 2, "--joint reach: not NAME=VALUE"),
         (
             vec!["path", &arm, &rows, "--joint", "reach=0"],
             3,
-            "column reach is of no joint that moves",
+            "column reach does not name an independent joint",
         ),
         (vec!["path", &arm, &rows, &rows], 3, "arm.csv"),
     ] {
@@ -147,7 +147,7 @@ fn what_is_given_twice_is_refused() {
     let (folder, [arm, rows, _]) = (folder(), files());
     fs::write(folder.path().join("twice.csv"), "shoulder,elbow,elbow\n0,0,0\n").unwrap();
     let said = stderr(&run(folder.path(), &["path", &arm, "twice.csv"]));
-    assert!(said.contains("twice.csv: names of columns: `elbow` is there twice"), "{said}");
+    assert!(said.contains("twice.csv: names of columns: duplicate name `elbow`"), "{said}");
     let joints = ["path", &arm, &rows, "--joint", "reach=0.1", "--joint", "reach=0.2"];
     let said = stderr(&run(folder.path(), &joints));
     assert!(said.contains("--joint reach=0.2: this joint is there twice"), "{said}");
@@ -170,7 +170,7 @@ fn bodies_of_one_name_are_told_apart() {
     let ignored = ["path", &arm, &rows, "tool.obj", "--ignore", "tool,tool.obj", "--json"];
     assert_eq!(read(&answered(folder.path(), &ignored))["outcome"], "free");
     let same = stderr(&run(folder.path(), &["path", &arm, &rows, "tool.obj", "tool.obj"]));
-    assert!(same.contains("two links or bodies around are called tool.obj"), "{same}");
+    assert!(same.contains("duplicate name tool.obj of a link or scene body"), "{same}");
 }
 
 /// A robot of boxes on joints, whose rows are in `rows.csv`.
@@ -228,7 +228,7 @@ fn velocities_that_are_not_used_are_said_and_fail_where_that_is_strict() {
         {"positions": [0.3], "velocities": [-3], "time_from_start": {"sec": 1, "nanosec": 0}}]}}"#;
     fs::write(folder.path().join("rows.json"), rows).unwrap();
     let asked = ["path", "boxes.urdf", "rows.json", "--srdf", "none.srdf"];
-    let said = "along straight segments between the rows; the file's velocities were not used";
+    let said = "rows are joined by straight segments; the velocities in the file were not used";
     let text = answered(folder.path(), &asked);
     assert!(text.starts_with("free: ") && text.contains(said), "{text}");
     let told = read(&answered(folder.path(), &[&asked[..], &["--json"]].concat()));
@@ -248,7 +248,7 @@ fn a_path_without_any_pair_is_refused() {
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     let asked = ["path", "boxes.urdf", "rows.csv"];
-    refused(folder.path(), &asked, 3, &["no pair of bodies", "nothing can be checked", "SRDF"]);
+    refused(folder.path(), &asked, 3, &["no pair of bodies", "to check", "SRDF"]);
 }
 
 #[test]

@@ -4,11 +4,11 @@
 pub fn plain(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
-    plain_words(message.strip_suffix(&place).unwrap_or(&message))
+    reword_parser_message(message.strip_suffix(&place).unwrap_or(&message))
 }
 
 /// Replaces the Rust types in a parser's message by terms of the file.
-pub(crate) fn plain_words(message: &str) -> String {
+pub(crate) fn reword_parser_message(message: &str) -> String {
     const WORDS: [(&str, &str); 20] = [
         ("expected ident", "it is not JSON"),
         ("expected value", "it is not JSON"),

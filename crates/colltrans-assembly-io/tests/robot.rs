@@ -12,16 +12,16 @@ use colltrans_assembly_io::robot::{Kind, Robot, RobotError, Table, body_of};
 use colltrans_mesh::body::{BodyOptions, load};
 use glam::{DAffine3, DVec3};
 
-fn data(name: &str) -> PathBuf {
+fn data_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name)
 }
 
-fn arm() -> Robot {
-    robot(data("arm.urdf"), &ReadOptions::default()).expect("a robot")
+fn read_arm() -> Robot {
+    robot(data_path("arm.urdf"), &ReadOptions::default()).expect("a robot")
 }
 
 /// Reads a robot from the elements in a text.
-fn of(text: &str) -> Result<Robot, ReadError> {
+fn read_text(text: &str) -> Result<Robot, ReadError> {
     let folder = TemporaryFolder::new();
     let file = folder.path().join("robot.urdf");
     std::fs::write(&file, format!("<robot name=\"r\">{text}</robot>")).unwrap();
@@ -29,13 +29,13 @@ fn of(text: &str) -> Result<Robot, ReadError> {
 }
 
 /// Returns a link with a cube.
-fn link(name: &str) -> String {
+fn cube_link(name: &str) -> String {
     format!(
         "<link name=\"{name}\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
     )
 }
 
-fn joint(name: &str, kind: &str, [parent, child]: [&str; 2], rest: &str) -> String {
+fn joint_element(name: &str, kind: &str, [parent, child]: [&str; 2], rest: &str) -> String {
     format!(
         "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
          {rest}</joint>"
@@ -43,8 +43,8 @@ fn joint(name: &str, kind: &str, [parent, child]: [&str; 2], rest: &str) -> Stri
 }
 
 #[test]
-fn links_and_joints_are_those_of_the_file() {
-    let arm = arm();
+fn links_and_joints_match_the_file() {
+    let arm = read_arm();
     assert_eq!(arm.name(), "arm");
     let links: Vec<_> = arm.links().iter().map(|link| (&*link.name, link.frame)).collect();
     assert_eq!(links, [("base", None), ("upper", Some(0)), ("fore", Some(1)), ("tool", Some(2))]);
@@ -65,13 +65,13 @@ fn links_and_joints_are_those_of_the_file() {
 }
 
 #[test]
-fn frames_stand_where_the_assembly_reader_has_the_links() {
+fn frames_match_link_poses_of_the_assembly_reader() {
     // The same file in one configuration, read as parts placed in the world.
-    let arm = arm();
+    let arm = read_arm();
     let values = [("shoulder", 0.7), ("elbow", -0.4), ("reach", 0.05)];
     let joints: BTreeMap<String, f64> = values.map(|(name, x)| (name.to_owned(), x)).into();
     let options = ReadOptions::default().with_joints(joints);
-    let parts = colltrans_assembly_io::read::read(data("arm.urdf"), &options).expect("parts");
+    let parts = colltrans_assembly_io::read::read(data_path("arm.urdf"), &options).expect("parts");
     let path = JointPath::evenly(vec![values.map(|(_, x)| x).to_vec()]).expect("a path");
     let bodies = arm.links().iter().flat_map(|link| {
         let body =
@@ -96,8 +96,8 @@ fn frames_stand_where_the_assembly_reader_has_the_links() {
 }
 
 #[test]
-fn rows_are_by_name_or_by_order() {
-    let arm = arm();
+fn rows_are_assigned_by_name_or_by_order() {
+    let arm = read_arm();
     let none = BTreeMap::new();
     let path = |text: &str, rest: &BTreeMap<String, f64>| {
         arm.path(&Table::parse(text).expect("a table"), rest)
@@ -116,42 +116,42 @@ fn rows_are_by_name_or_by_order() {
     assert!(notes[1].contains(
         "joint reach exceeds its limits, 0 to 0.1 m, in 2 of 3 rows; first: 0.2 in row 1"
     ));
-    let told = |text: &str, rest: &BTreeMap<String, f64>| path(text, rest).unwrap_err().to_string();
-    assert!(told("elbow,reach\n0,0\n", &none).contains("missing values for joint shoulder"));
+    let error_text = |text: &str, rest: &BTreeMap<String, f64>| path(text, rest).unwrap_err().to_string();
+    assert!(error_text("elbow,reach\n0,0\n", &none).contains("missing values for joint shoulder"));
     assert!(
-        told("wrist,elbow\n0,0\n", &none)
+        error_text("wrist,elbow\n0,0\n", &none)
             .contains("column wrist does not name an independent joint")
     );
-    assert!(told("0,0\n", &none).contains("rows have 2 values, expected 3, one for each joint"));
-    assert!(told("0,0,0\n", &rest).contains("rows have 3 values, expected 2"));
+    assert!(error_text("0,0\n", &none).contains("rows have 2 values, expected 3, one for each joint"));
+    assert!(error_text("0,0,0\n", &rest).contains("rows have 3 values, expected 2"));
     let wrong = BTreeMap::from([("wrist".to_owned(), 0.0)]);
-    assert!(told("0,0,0\n", &wrong).contains("joint wrist is not an independent joint"));
+    assert!(error_text("0,0,0\n", &wrong).contains("joint wrist is not an independent joint"));
     assert!(
-        told("time,shoulder,elbow,reach\n1,0,0,0\n1,0,0,0\n", &none)
+        error_text("time,shoulder,elbow,reach\n1,0,0,0\n1,0,0,0\n", &none)
             .contains("not after the one before")
     );
 }
 
 #[test]
-fn joints_follow_others() {
+fn mimic_joints_follow_and_cycles_are_rejected() {
     let follows = "<axis xyz=\"0 1 0\"/><mimic joint=\"b\" multiplier=\"-2\" offset=\"0.5\"/>";
-    let of_b = joint("b", "prismatic", ["base", "left"], "<axis xyz=\"0 1 0\"/>");
-    let text = link("base") + &link("left") + &link("right");
-    let hand = of(&(text.clone() + &of_b + &joint("a", "prismatic", ["base", "right"], follows)));
+    let of_b = joint_element("b", "prismatic", ["base", "left"], "<axis xyz=\"0 1 0\"/>");
+    let text = cube_link("base") + &cube_link("left") + &cube_link("right");
+    let hand = read_text(&(text.clone() + &of_b + &joint_element("a", "prismatic", ["base", "right"], follows)));
     let hand = hand.expect("a hand");
     let table = Table::parse("0.25\n0.5\n").expect("rows");
     let (path, _) = hand.path(&table, &BTreeMap::new()).expect("a path");
     assert_eq!(path.rows(), [[0.25, 0.0], [0.5, -0.5]]);
     let ring = |of: &str| format!("<mimic joint=\"{of}\"/>");
-    let ring = of(&(text
-        + &joint("b", "prismatic", ["base", "left"], &ring("a"))
-        + &joint("a", "prismatic", ["base", "right"], &ring("b"))));
+    let ring = read_text(&(text
+        + &joint_element("b", "prismatic", ["base", "left"], &ring("a"))
+        + &joint_element("a", "prismatic", ["base", "right"], &ring("b"))));
     assert!(ring.unwrap_err().to_string().contains("form a cycle"));
 }
 
 #[test]
-fn pairs_leave_out_neighbours_or_what_srdf_says() {
-    let arm = arm();
+fn pairs_exclude_neighbours_or_srdf_pairs() {
+    let arm = read_arm();
     // base, upper, fore, tool: a chain with one joint between neighbours.
     assert_eq!(arm.pairs(None).expect("pairs"), [[0, 2], [0, 3], [1, 3]]);
     let folder = TemporaryFolder::new();
@@ -164,42 +164,42 @@ fn pairs_leave_out_neighbours_or_what_srdf_says() {
     let unknown = [["hand".to_owned(), "base".to_owned()]];
     assert!(matches!(arm.pairs(Some(&unknown)), Err(RobotError::Unknown { .. })));
     std::fs::write(&file, "<robot><disable_collisions link1=\"a\"/></robot>").unwrap();
-    let told = disabled(&file).unwrap_err().to_string();
-    assert!(told.contains("<disable_collisions> has no attribute link2"), "{told}");
+    let error_text = disabled(&file).unwrap_err().to_string();
+    assert!(error_text.contains("<disable_collisions> has no attribute link2"), "{error_text}");
     // Links that a fixed joint connects never move relative to each other.
     let held =
-        of(&(link("a") + &link("b") + &joint("j", "fixed", ["a", "b"], ""))).expect("a robot");
+        read_text(&(cube_link("a") + &cube_link("b") + &joint_element("j", "fixed", ["a", "b"], ""))).expect("a robot");
     assert_eq!(held.pairs(Some(&[])).expect("pairs"), Vec::<[usize; 2]>::new());
     assert_eq!(held.moving_between(1, None), 0);
 }
 
 #[test]
-fn what_cannot_move_is_told() {
-    let two = link("a") + &link("b");
-    let told = |text: String| of(&text).unwrap_err().to_string();
-    let floating = told(two.clone() + &joint("j", "floating", ["a", "b"], ""));
+fn unsupported_robots_are_rejected_with_reason() {
+    let two = cube_link("a") + &cube_link("b");
+    let error_text = |text: String| read_text(&text).unwrap_err().to_string();
+    let floating = error_text(two.clone() + &joint_element("j", "floating", ["a", "b"], ""));
     assert!(floating.contains("joint j: unsupported type floating"), "{floating}");
-    let axis = told(two.clone() + &joint("j", "revolute", ["a", "b"], "<axis xyz=\"0 0 0\"/>"));
+    let axis = error_text(two.clone() + &joint_element("j", "revolute", ["a", "b"], "<axis xyz=\"0 0 0\"/>"));
     assert!(axis.contains("joint j: invalid axis [0.0, 0.0, 0.0]"), "{axis}");
-    let mimic = joint("j", "revolute", ["a", "b"], "<mimic joint=\"k\"/>");
-    assert!(told(two.clone() + &mimic).contains("it mimics k, which is not a moving joint"));
+    let mimic = joint_element("j", "revolute", ["a", "b"], "<mimic joint=\"k\"/>");
+    assert!(error_text(two.clone() + &mimic).contains("it mimics k, which is not a moving joint"));
     let none = "<link name=\"a\"/>".to_owned();
-    assert!(told(none).contains("none of its 1 links has collision geometry"));
+    assert!(error_text(none).contains("none of its 1 links has collision geometry"));
     let capsule = "<link name=\"a\"><collision><geometry><capsule radius=\"1\" length=\"1\"/></geometry>\
                    </collision></link>";
-    assert!(told(two + capsule).contains("duplicate link name"));
-    assert!(told(capsule.to_owned()).contains("replace the capsule by a cylinder and two spheres"));
+    assert!(error_text(two + capsule).contains("duplicate link name"));
+    assert!(error_text(capsule.to_owned()).contains("replace the capsule by a cylinder and two spheres"));
 }
 
 #[test]
-fn a_wire_that_all_samples_miss_is_found() {
-    let arm = arm();
-    let table = Table::parse(&std::fs::read_to_string(data("arm.csv")).unwrap()).expect("rows");
+fn path_cast_finds_wire_that_all_samples_miss() {
+    let arm = read_arm();
+    let table = Table::parse(&std::fs::read_to_string(data_path("arm.csv")).unwrap()).expect("rows");
     let (path, _) = arm.path(&table, &BTreeMap::new()).expect("a path");
     let options = BodyOptions::default();
-    let wire = load(data("wire.obj"), &options, |mesh, options| body_of(&mesh, options));
+    let wire = load(data_path("wire.obj"), &options, |mesh, options| body_of(&mesh, options));
     let wire = wire.expect("a wire").body;
-    let asked = |path: &JointPath| {
+    let first_contact_along = |path: &JointPath| {
         let bodies = arm.links().iter().flat_map(|link| {
             let body = move |body| PathBody {
                 frame: link.frame,
@@ -216,11 +216,11 @@ fn a_wire_that_all_samples_miss_is_found() {
         for k in 0..=100 {
             let share = f64::from(k) / 100.0;
             let row = pair[0].iter().zip(&pair[1]).map(|(a, b)| a + (b - a) * share).collect();
-            let sample = asked(&JointPath::evenly(vec![row]).expect("a row"));
+            let sample = first_contact_along(&JointPath::evenly(vec![row]).expect("a row"));
             assert!(matches!(sample, PathOutcome::Free(_)), "{sample:?}");
         }
     }
-    let PathOutcome::Contact(contact) = asked(&path) else { panic!("the tool passes the wire") };
+    let PathOutcome::Contact(contact) = first_contact_along(&path) else { panic!("the tool passes the wire") };
     assert_eq!(contact.pair, [3, 4]);
     assert!(
         0.603 < contact.lower && contact.upper < 0.604 && contact.upper - contact.lower < 1e-12

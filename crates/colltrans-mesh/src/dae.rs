@@ -1,12 +1,12 @@
-//! COLLADA (`.dae`), as robot packages have it: the nodes of the scene, each with what it shows.
+//! Reads COLLADA (`.dae`) as used in robot packages: the geometry of the nodes in the scene.
 //!
-//! Vertices are placed by the transforms of their node and of those above, in the file's own unit and axes, which are said
-//! ([`Mesh::unit`], [`Mesh::up`]). Each node that shows something is a group, named as the node. Triangles, strips,
-//! fans, `polylist` and `polygons` are read; lines are skipped, and so are materials, cameras, lights and animations. Skins
-//! are taken as they are at rest.
-//!
-//! A few lines can show a shape as often as they like, so what is placed is counted: no more than one face for each byte
-//! of the file, and [`MOST_REPEATED`].
+//! - Vertices are transformed by their node and its ancestors. Unit and axes are those of the file
+//!   ([`Mesh::unit`], [`Mesh::up`]).
+//! - Each node with geometry is a group with the name of the node.
+//! - Triangles, strips, fans, `polylist` and `polygons` are read. Lines, materials, cameras, lights and
+//!   animations are skipped. Skins have their rest shape.
+//! - A few lines can place a shape arbitrarily often. Therefore the placed faces are limited to one per byte of
+//!   the file and [`MOST_REPEATED`] more.
 
 use std::collections::HashMap;
 
@@ -18,13 +18,14 @@ use crate::mesh::Mesh;
 use crate::text::{quoted, without_mark};
 use crate::xml::Element;
 
-/// Faces that are placed beyond one for each byte.
+/// Maximum number of placed faces beyond one per byte.
 const MOST_REPEATED: usize = 1 << 23;
-/// Nodes that are placed, one in another.
+/// Maximum number of placed nodes.
 const MOST_PLACED: usize = 1 << 16;
-/// Nodes nested deeper than this are a ring.
+/// Maximum depth of nested nodes. Deeper ones are rejected as a possible cycle.
 const DEEPEST: usize = 64;
 
+/// Parses a COLLADA file.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let text = String::from_utf8_lossy(without_mark(bytes)?);
     let root = Element::parse(&text).map_err(|(place, what)| {
@@ -32,7 +33,10 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         Fault::new(line.map_or(Place::End, Place::Line), what)
     })?;
     if root.name != "COLLADA" {
-        return Err(at(&root, format!("its first element is {}, not COLLADA", quoted(&root.name))));
+        return Err(at(
+            &root,
+            format!("the root element is {}, expected COLLADA", quoted(&root.name)),
+        ));
     }
     let mut reader = Reader {
         ids: HashMap::new(),
@@ -49,7 +53,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     } else {
         let library = root.first("library_visual_scenes");
         let first = library.and_then(|library| library.first("visual_scene"));
-        first.ok_or_else(|| at(&root, "it has no scene"))?
+        first.ok_or_else(|| at(&root, "the file has no scene"))?
     };
     for node in scene.all("node") {
         reader.node(node, DAffine3::IDENTITY, 0, &mut mesh)?;
@@ -58,11 +62,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     Ok(mesh)
 }
 
+/// Builds an error at the line of an element.
 fn at(element: &Element, what: impl Into<String>) -> Fault {
     Fault::new(Place::Line(element.line), what)
 }
 
-/// The unit in metres, and what is upwards.
+/// Returns the unit in metres and the upward axis. Both are `None` without the element `asset`.
 fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
     let Some(asset) = root.first("asset") else { return Ok((None, None)) };
     let unit = match asset.first("unit") {
@@ -71,7 +76,7 @@ fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
             let metres =
                 unit.numbers::<1>("meter").map_err(|e| at(unit, e))?.map(|[metres]| metres);
             if metres.is_some_and(|metres| !(metres.is_finite() && metres > 0.0)) {
-                return Err(at(unit, "its unit is no length"));
+                return Err(at(unit, "invalid unit; accepted: a finite positive number of metres"));
             }
             metres
         }
@@ -80,30 +85,37 @@ fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
         None | Some((_, "Y_UP")) => DVec3::Y,
         Some((_, "Z_UP")) => DVec3::Z,
         Some((_, "X_UP")) => DVec3::X,
-        Some((up, other)) => return Err(at(up, format!("{} is no axis", quoted(other)))),
+        Some((up, other)) => {
+            return Err(at(
+                up,
+                format!("unknown axis {}; accepted: X_UP, Y_UP, Z_UP", quoted(other)),
+            ));
+        }
     };
-    // What is not said is metres, and y.
+    // The defaults are metres and y.
     Ok((unit.or(Some(1.0)), Some(up)))
 }
 
-/// Vertices and faces of a geometry.
+/// The vertices and faces of a geometry.
 struct Shape {
     vertices: Vec<DVec3>,
     faces: Vec<Vec<u32>>,
-    /// How its coordinates are written, which transforms hide, and how precise that is.
+    /// The number format of its coordinates before they are transformed, and the precision that follows.
     format: NumberFormat,
     precision: f64,
 }
 
+/// The state of reading a scene.
 struct Reader<'a> {
     ids: HashMap<&'a str, &'a Element>,
     shapes: HashMap<*const Element, Shape>,
     placed: usize,
-    /// Faces that may still be placed.
+    /// Number of faces that may still be placed.
     left: usize,
 }
 
 impl<'a> Reader<'a> {
+    /// Records the ids of an element and its descendants.
     fn index(&mut self, element: &'a Element) {
         if let Some(id) = element.get("id") {
             self.ids.entry(id).or_insert(element);
@@ -111,20 +123,25 @@ impl<'a> Reader<'a> {
         element.children.iter().for_each(|child| self.index(child));
     }
 
-    /// What an element names by its `url` or `source`.
+    /// Returns the element to which the attribute `url` or `source` refers.
     fn named(&self, element: &Element) -> Result<&'a Element, Fault> {
         let name = element.get("url").or_else(|| element.get("source"));
-        let name = name.ok_or_else(|| at(element, format!("<{}> names nothing", element.name)))?;
+        let name = name
+            .ok_or_else(|| at(element, format!("<{}> has neither url nor source", element.name)))?;
         let Some(id) = name.strip_prefix('#') else {
             return Err(at(
                 element,
-                format!("{} is in another file, which is not read", quoted(name)),
+                format!(
+                    "{} refers to another file, which is not supported; embed the geometry",
+                    quoted(name)
+                ),
             ));
         };
         let found = self.ids.get(id).copied();
-        found.ok_or_else(|| at(element, format!("there is no {}", quoted(name))))
+        found.ok_or_else(|| at(element, format!("unknown id {}", quoted(name))))
     }
 
+    /// Adds the faces of a node and its descendants.
     fn node(
         &mut self,
         node: &'a Element,
@@ -134,7 +151,12 @@ impl<'a> Reader<'a> {
     ) -> Result<(), Fault> {
         self.placed += 1;
         if depth > DEEPEST || self.placed > MOST_PLACED {
-            return Err(at(node, "nodes are nested too deep, in a ring, or are too many"));
+            return Err(at(
+                node,
+                format!(
+                    "nodes are nested deeper than {DEEPEST}, form a cycle, or are more than {MOST_PLACED}"
+                ),
+            ));
         }
         let world = above * transform(node)?;
         for child in &node.children {
@@ -149,13 +171,15 @@ impl<'a> Reader<'a> {
                         .children
                         .iter()
                         .find(|c| ["skin", "morph"].contains(&c.name.as_str()));
-                    let inner = inner.ok_or_else(|| at(controller, "it controls no geometry"))?;
+                    let inner = inner.ok_or_else(|| {
+                        at(controller, "the controller has neither skin nor morph")
+                    })?;
                     self.place(self.named(inner)?, child, world, mesh)?;
                 }
                 _ => {}
             }
         }
-        // What the node shows itself is its group, before others begin.
+        // The node's own geometry forms its group, before the groups of its children begin.
         let name = node.get("name").or_else(|| node.get("id")).unwrap_or_default();
         mesh.groups.end(name, mesh.faces.len());
         for child in &node.children {
@@ -168,7 +192,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The faces of a geometry at a place.
+    /// Adds the faces of a geometry, transformed by `world`. The element `asked` is the place for errors.
     fn place(
         &mut self,
         geometry: &'a Element,
@@ -181,12 +205,15 @@ impl<'a> Reader<'a> {
             let shape = match geometry.first("mesh") {
                 Some(of) => self.shape(of)?,
                 None if geometry.name == "geometry" => {
-                    return Err(at(geometry, "a geometry that is no mesh of polygons is not read"));
+                    return Err(at(
+                        geometry,
+                        "unsupported geometry: not a polygon mesh; export it as polygons",
+                    ));
                 }
                 None => {
                     return Err(at(
                         asked,
-                        format!("it shows a {}, no geometry", quoted(&geometry.name)),
+                        format!("it refers to {}, expected a geometry", quoted(&geometry.name)),
                     ));
                 }
             };
@@ -194,8 +221,14 @@ impl<'a> Reader<'a> {
         }
         let Shape { vertices, faces, format, precision } = &self.shapes[&key];
         let count = faces.len().max(vertices.len());
-        let too_many =
-            || at(asked, format!("more than {MOST_REPEATED} faces or vertices are repeated"));
+        let too_many = || {
+            at(
+                asked,
+                format!(
+                    "too many placed faces or vertices; accepted: one per byte and {MOST_REPEATED} more"
+                ),
+            )
+        };
         self.left = self.left.checked_sub(count).ok_or_else(too_many)?;
         let base = u32::try_from(mesh.vertices.len())
             .ok()
@@ -218,6 +251,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// Reads the polygons of a mesh.
     fn shape(&self, mesh: &'a Element) -> Result<Shape, Fault> {
         let mut shape = Mesh::default();
         let mut bases: HashMap<*const Element, u32> = HashMap::new();
@@ -228,7 +262,7 @@ impl<'a> Reader<'a> {
             }
             let inputs = Inputs::of(of)?;
             let Some(vertex) = inputs.vertex else {
-                return Err(at(of, format!("<{kind}> has no input VERTEX")));
+                return Err(at(of, format!("<{kind}> has no input VERTEX, which is required")));
             };
             let source = self.positions(vertex)?;
             let key: *const Element = source;
@@ -245,7 +279,12 @@ impl<'a> Reader<'a> {
             let total = shape.vertices.len() as u32 - base;
             for corners in inputs.faces(of)? {
                 if let Some(beyond) = corners.iter().find(|&&v| v >= total) {
-                    return Err(at(of, format!("a face names vertex {beyond} of {total}")));
+                    return Err(at(
+                        of,
+                        format!(
+                            "vertex index {beyond} is out of range; there are {total} vertices"
+                        ),
+                    ));
                 }
                 shape.faces.push(corners.iter().map(|v| v + base).collect());
             }
@@ -255,20 +294,23 @@ impl<'a> Reader<'a> {
         Ok(Shape { vertices: shape.vertices, faces: shape.faces, format, precision })
     }
 
-    /// The source of the positions of an input of vertices.
+    /// Returns the source of the positions for an input of vertices.
     fn positions(&self, vertex: &Element) -> Result<&'a Element, Fault> {
         let vertices = self.named(vertex)?;
         let position = vertices.all("input").find(|i| i.get("semantic") == Some("POSITION"));
-        self.named(position.ok_or_else(|| at(vertices, "its vertices have no positions"))?)
+        self.named(position.ok_or_else(|| at(vertices, "the vertices have no input POSITION"))?)
     }
 
-    /// Returns the vectors of a source, and how they are printed.
+    /// Returns the vectors of a source, and their printed forms.
     fn vectors(&self, source: &Element) -> Result<(Vec<DVec3>, Vec<[Printed; 3]>), Fault> {
         let accessor = source.first("technique_common").and_then(|t| t.first("accessor"));
-        let accessor = accessor.ok_or_else(|| at(source, "a source without an accessor"))?;
+        let accessor = accessor.ok_or_else(|| at(source, "the source has no accessor"))?;
         let array = self.named(accessor)?;
         if array.name != "float_array" {
-            return Err(at(array, format!("positions are {}, not numbers", quoted(&array.name))));
+            return Err(at(
+                array,
+                format!("positions refer to {}, expected a float_array", quoted(&array.name)),
+            ));
         }
         let numbers: Vec<f64> = words(array)?;
         let printed: Vec<Printed> = array.text.split_whitespace().map(Printed::of).collect();
@@ -280,9 +322,9 @@ impl<'a> Reader<'a> {
         let places: Vec<usize> =
             accessor.all("param").enumerate().filter_map(named).take(3).collect();
         let [x, y, z] = places[..] else {
-            return Err(at(accessor, "positions do not have three coordinates"));
+            return Err(at(accessor, "positions need three named coordinates"));
         };
-        // A place that overflows lies beyond any array.
+        // An index that overflows is beyond any array.
         let last =
             |count: usize| (count - 1).checked_mul(stride)?.checked_add(offset)?.checked_add(z);
         let fits = count == 0 || last(count).is_some_and(|last| last < numbers.len());
@@ -290,7 +332,7 @@ impl<'a> Reader<'a> {
             return Err(at(
                 accessor,
                 format!(
-                    "{count} positions lie beyond the {} numbers of their array",
+                    "{count} positions extend beyond the {} numbers of their array",
                     numbers.len()
                 ),
             ));
@@ -304,22 +346,26 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// What the indices of faces stand for.
+/// The layout of the indices of faces.
 struct Inputs<'a> {
-    /// Indices for each corner.
+    /// Number of indices for each corner.
     stride: usize,
-    /// Which of them is that of the vertex.
+    /// The position of the vertex index among them.
     offset: usize,
     vertex: Option<&'a Element>,
 }
 
 impl<'a> Inputs<'a> {
+    /// Reads the layout from the elements `input`.
     fn of(faces: &'a Element) -> Result<Self, Fault> {
         let mut inputs = Self { stride: 1, offset: 0, vertex: None };
         for input in faces.all("input") {
             let offset = whole(input, "offset")?.unwrap_or(0);
             if offset > 255 {
-                return Err(at(input, format!("an offset of {offset}")));
+                return Err(at(
+                    input,
+                    format!("offset {offset} is out of range; accepted: 0 to 255"),
+                ));
             }
             inputs.stride = inputs.stride.max(offset + 1);
             if input.get("semantic") == Some("VERTEX") {
@@ -329,12 +375,16 @@ impl<'a> Inputs<'a> {
         Ok(inputs)
     }
 
-    /// The vertices of each list of corners.
+    /// Returns the vertex indices of each list of corners.
     fn lists(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
         let list = |p: &Element| {
             let indices: Vec<u32> = words(p)?;
             if !indices.len().is_multiple_of(self.stride) {
-                let what = format!("{} indices, of {} for each corner", indices.len(), self.stride);
+                let what = format!(
+                    "{} indices are not a multiple of {}, the number for each corner",
+                    indices.len(),
+                    self.stride
+                );
                 return Err(at(p, what));
             }
             Ok(indices.into_iter().skip(self.offset).step_by(self.stride).collect())
@@ -342,6 +392,7 @@ impl<'a> Inputs<'a> {
         of.all("p").map(list).collect()
     }
 
+    /// Returns the faces of an element, without those of fewer than three corners.
     fn faces(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
         let lists = self.lists(of)?;
         let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -351,7 +402,7 @@ impl<'a> Inputs<'a> {
                     if !list.len().is_multiple_of(3) {
                         return Err(at(
                             of,
-                            format!("{} corners do not make triangles", list.len()),
+                            format!("{} corners are not a multiple of 3", list.len()),
                         ));
                     }
                     faces.extend(list.chunks_exact(3).map(<[u32]>::to_vec));
@@ -371,25 +422,29 @@ impl<'a> Inputs<'a> {
                 }
             }
             "polylist" => {
-                let counts =
-                    of.first("vcount").ok_or_else(|| at(of, "<polylist> has no vcount"))?;
+                let counts = of
+                    .first("vcount")
+                    .ok_or_else(|| at(of, "<polylist> has no vcount, which is required"))?;
                 let corners: Vec<u32> = lists.into_iter().flatten().collect();
                 let mut rest = &corners[..];
                 for count in words::<usize>(counts)? {
-                    let beyond = || at(counts, "it counts more corners than there are");
+                    let beyond = || at(counts, "vcount has more corners than the lists");
                     let (face, others) = rest.split_at_checked(count).ok_or_else(beyond)?;
                     faces.push(face.to_vec());
                     rest = others;
                 }
                 if !rest.is_empty() {
-                    return Err(at(counts, format!("{} corners are in no face", rest.len())));
+                    return Err(at(
+                        counts,
+                        format!("{} corners are not used by vcount", rest.len()),
+                    ));
                 }
             }
             _ => {
                 if let Some(holed) = of.first("ph") {
                     return Err(at(
                         holed,
-                        "polygons with holes are not read; save them as triangles",
+                        "polygons with holes are not supported; export triangles",
                     ));
                 }
                 faces.extend(lists);
@@ -398,34 +453,33 @@ impl<'a> Inputs<'a> {
         let promised = whole(of, "count")?;
         let is_list = !matches!(of.name.as_str(), "trifans" | "tristrips");
         if let Some(count) = promised.filter(|count| is_list && *count != faces.len()) {
-            return Err(at(
-                of,
-                format!("{count} faces are promised, and {} are there", faces.len()),
-            ));
+            return Err(at(of, format!("count is {count}, but there are {} faces", faces.len())));
         }
         faces.retain(|face| face.len() > 2);
         Ok(faces)
     }
 }
 
-/// The numbers that an element holds.
+/// Parses the numbers in an element.
 fn words<T: std::str::FromStr>(element: &Element) -> Result<Vec<T>, Fault> {
     let number = |word: &str| {
         let refused =
-            || at(element, format!("{} in <{}> is no number for it", quoted(word), element.name));
+            || at(element, format!("invalid number {} in <{}>", quoted(word), element.name));
         word.parse().map_err(|_| refused())
     };
     element.text.split_whitespace().map(number).collect()
 }
 
-/// A whole number of an attribute.
+/// Parses an integer in an attribute; `None` if the attribute is missing.
 fn whole(element: &Element, key: &str) -> Result<Option<usize>, Fault> {
     let parsed = element.get(key).map(|text| text.trim().parse::<usize>());
-    let refused = |_| at(element, format!("{key} of <{}> is no whole number", element.name));
+    let refused = |_| {
+        at(element, format!("invalid {key} of <{}>; expected a non-negative integer", element.name))
+    };
     parsed.transpose().map_err(refused)
 }
 
-/// The transforms of a node, one after another.
+/// Returns the product of the transforms of a node.
 fn transform(node: &Element) -> Result<DAffine3, Fault> {
     let mut all = DAffine3::IDENTITY;
     for child in &node.children {
@@ -440,31 +494,32 @@ fn transform(node: &Element) -> Result<DAffine3, Fault> {
             "rotate" => {
                 let [x, y, z, degrees] = numbers(child)?;
                 let axis = DVec3::new(x, y, z).try_normalize();
-                let axis = axis.ok_or_else(|| at(child, "a turn about nothing"))?;
+                let axis = axis.ok_or_else(|| at(child, "the axis of a rotation is zero"))?;
                 DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
             }
             "lookat" | "skew" => {
                 return Err(at(
                     child,
-                    format!("<{}> is not read; save it as a matrix", child.name),
+                    format!("<{}> is not supported; export a matrix", child.name),
                 ));
             }
             _ => continue,
         };
         all *= own;
     }
-    if all.is_finite() { Ok(all) } else { Err(at(node, "its transform is not finite")) }
+    if all.is_finite() { Ok(all) } else { Err(at(node, "the transform is not finite")) }
 }
 
+/// Returns the rows of a matrix.
 fn rows(numbers: &[f64; 16]) -> [glam::DVec4; 4] {
     [0, 1, 2, 3].map(|k| glam::DVec4::from_slice(&numbers[4 * k..]))
 }
 
-/// So many numbers, which an element holds.
+/// Parses exactly `N` numbers in an element.
 fn numbers<const N: usize>(element: &Element) -> Result<[f64; N], Fault> {
     let found: Vec<f64> = words(element)?;
     let count = found.len();
     found
         .try_into()
-        .map_err(|_| at(element, format!("<{}> has {count} numbers, not {N}", element.name)))
+        .map_err(|_| at(element, format!("<{}> has {count} numbers, expected {N}", element.name)))
 }

@@ -63,16 +63,16 @@ const EXACT: u32 = 4;
 const ALL: u32 = 15;
 /// Minimum number of different coordinates that show how a writer rounds.
 const MANY: usize = 4;
-/// Maximum common divisor that numbers have by chance, in units of their last decimal.
+/// Maximum common divisor that occurs by chance, in units of the last decimal.
 const GRID: u64 = 8;
-/// One number in this many may be printed in another way than the others.
+/// One number out of this many may be printed differently from the others.
 const OUTLIERS: usize = 16;
 /// Minimum evidence that numbers are in single precision, in bits: the negative binary logarithm of the probability
 /// that chance explains them.
 const SURE: f64 = 20.0;
 /// Maximum evidence of one number, in bits: [`MANY`] of these are sure.
 const MOST_BITS: f64 = SURE / MANY as f64;
-/// Maximum number of coordinates that are looked at; of more, some at even distances.
+/// Maximum number of coordinates that are examined. If there are more, a sample at equal distances is used.
 const LOOKED_AT: usize = 1 << 16;
 
 /// The printed form of a number, as far as its value does not show it.
@@ -132,7 +132,7 @@ fn fixed_places<'a>(numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedP
     })
 }
 
-/// Checks whether the things counted are all of them, except for one in [`OUTLIERS`].
+/// Checks whether a count is the total, except for one in [`OUTLIERS`].
 const fn is_nearly_all(count: usize, total: usize) -> bool {
     total - count <= total / OUTLIERS
 }
@@ -206,9 +206,10 @@ impl NumberFormat {
         }
     }
 
-    /// How far apart two vertices may be written that were meant to be one, where the largest coordinate has this
-    /// magnitude: two units in its last place, because a distance is at most `sqrt(3)` times the difference of a
-    /// coordinate; of doubles more, as they are computed in a few dozen roundings.
+    /// Returns the distance up to which two vertices in the file may denote the same point, for the largest
+    /// coordinate in magnitude. For text and single precision these are two units in the last place, because a
+    /// distance is at most `sqrt(3)` times the largest difference of a coordinate. For doubles it is larger,
+    /// because they may have the errors of a few dozen roundings.
     pub(crate) fn precision(self, largest: f64) -> f64 {
         let of_doubles = largest / (1_u64 << 48) as f64;
         match self {
@@ -291,6 +292,7 @@ fn is_grid(numbers: &[Decimal]) -> bool {
     divisor.is_some_and(|divisor| divisor > GRID)
 }
 
+/// Returns the greatest common divisor.
 const fn common_divisor(mut a: u64, mut b: u64) -> u64 {
     while b > 0 {
         (a, b) = (b, a % b);
@@ -298,12 +300,12 @@ const fn common_divisor(mut a: u64, mut b: u64) -> u64 {
     a
 }
 
-/// `10^exponent`, correctly rounded.
+/// Returns `10^exponent`, correctly rounded.
 fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(0.0)
 }
 
-/// The largest magnitude of a coordinate that is finite; 0 if none is.
+/// Returns the largest magnitude of the finite coordinates; 0 if there are none.
 pub(crate) fn largest_magnitude(vertices: impl Iterator<Item = DVec3>) -> f64 {
     let magnitudes = vertices.flat_map(|v| v.to_array()).map(f64::abs);
     magnitudes.filter(|m| m.is_finite()).fold(0.0, f64::max)
@@ -313,9 +315,9 @@ pub(crate) fn largest_magnitude(vertices: impl Iterator<Item = DVec3>) -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Decimal {
     mantissa: u64,
-    /// Significant digits.
+    /// Number of significant digits.
     digits: i32,
-    /// Places after the point; negative for whole numbers that end in zeros.
+    /// Number of places after the point; negative for integers that end in zeros.
     decimals: i32,
     /// Whether a number in single precision has the same shortest text.
     is_single: bool,
@@ -349,7 +351,8 @@ impl Number {
 }
 
 impl Decimal {
-    /// The shortest one of a positive number, if this is finite; `text` is room to write.
+    /// Returns the shortest decimal of a finite positive number; `None` for other numbers. The buffer `text` is
+    /// overwritten.
     fn of(x: f64, single: bool, text: &mut String) -> Option<Self> {
         if !(x.is_finite() && x > 0.0) {
             return None;
@@ -381,7 +384,7 @@ impl Decimal {
         if self.decimals > 0 { !self.is_binary_fraction() } else { printed.has_exponent }
     }
 
-    /// Whether it is a whole number over a power of 2, which binary numbers hold exactly.
+    /// Checks whether the number is an integer divided by a power of 2, which binary numbers represent exactly.
     fn is_binary_fraction(&self) -> bool {
         let five = u32::try_from(self.decimals).map_or(Some(1), |places| 5_u64.checked_pow(places));
         five.is_some_and(|power| self.mantissa.is_multiple_of(power))
@@ -394,7 +397,7 @@ mod tests {
     use crate::text::number;
     use colltrans_testkit::random::Random;
 
-    /// The format of numbers, each as a writer prints it.
+    /// Returns the format of numbers that are printed by `print`.
     fn format_of(
         numbers: impl Iterator<Item = f64>,
         print: impl Fn(f64) -> String,
@@ -412,7 +415,7 @@ mod tests {
         NumberFormat::of_text(&mesh, false)
     }
 
-    /// As `%.{digits}g` prints.
+    /// Prints a number like `%.{digits}g`.
     fn general(x: f64, digits: usize) -> String {
         let scientific = format!("{x:.*e}", digits - 1);
         let (mantissa, exponent) = scientific.split_once('e').unwrap();
@@ -425,7 +428,7 @@ mod tests {
         format!("{mantissa}e{sign}{:02}", exponent.abs())
     }
 
-    /// As `%.{digits}g` prints.
+    /// Prints a number like `%.{digits}e`, with one digit fewer after the point.
     fn significant(x: f64, digits: usize) -> String {
         format!("{x:.*e}", digits - 1)
     }
@@ -451,7 +454,7 @@ mod tests {
         assert_eq!(single, NumberFormat::Single);
     }
 
-    /// Numbers in single precision, as programs print them: of nine digits, eight decimals, and as doubles.
+    /// Numbers in single precision as programs print them: with nine digits, eight decimals, or as doubles.
     #[test]
     fn numbers_in_single_precision_are_recognised_in_longer_text() {
         let prints: [fn(f64) -> String; 4] = [
@@ -488,10 +491,10 @@ mod tests {
             let found = format_of(random(-size, size), |x| x.to_string());
             assert_eq!(found, NumberFormat::Double, "{size}");
         }
-        // Places of the UTM grid: whole numbers, halves and quarters use all bits of single precision.
+        // Coordinates of the UTM grid: integers, halves and quarters use all bits of single precision.
         let utm = random(0.0, 64.0).map(|x| 4_649_776.0 + x.round() / 4.0);
         assert_eq!(format_of(utm, |x| x.to_string()), NumberFormat::Double);
-        // Sixteenths beside long whole numbers.
+        // Multiples of 1/16 with long integer parts.
         let inches = random(0.0, 1e3).map(|x| (16.0 * x).round() / 16.0);
         assert_eq!(format_of(inches, |x| x.to_string()), NumberFormat::Double);
     }
@@ -521,7 +524,7 @@ mod tests {
         assert_eq!(printed, NumberFormat::Digits(7));
         assert_eq!(NumberFormat::Digits(7).precision(5e6), 2.0);
         assert_eq!(NumberFormat::Digits(6).precision(1.54245e7), 200.0);
-        // Whole numbers without an exponent, and drawings with one.
+        // Integers without an exponent, and drawings with one.
         let whole = format_of(random(-5e6, 5e6), |x| format!("{x:.0}"));
         assert_eq!(whole, NumberFormat::Double);
         let drawing = [12.5, 1000.0, 7.25, 104.775, 0.5, 25.4, 3.175, 12.7, 0.0];
@@ -533,13 +536,13 @@ mod tests {
         for (places, size) in [(2, 9.0), (2, 90.0), (3, 1.0), (3, 9.0), (4, 0.9)] {
             let printed = format_of(random(-size, size), |x| format!("{x:.places$}"));
             assert_eq!(printed, NumberFormat::Decimals(places as u32), "{places}");
-            // The same numbers without these zeros, as drawings have them.
+            // The same numbers without these zeros, as in drawings.
             let short = |x: f64| format!("{x:.places$}").parse::<f64>().unwrap().to_string();
             assert_eq!(format_of(random(-size, size), short), NumberFormat::Double, "{places}");
         }
         let printed = format_of(random(-5.0, 5.0), |x| significant(x, 4));
         assert_eq!(printed, NumberFormat::Digits(4));
-        // A drawing that is filled up to more places than it has, and numbers like `1.0`.
+        // A drawing padded to more places than it has, and numbers like `1.0`.
         let drawing = [0.5, 1.2, 3.4, 0.1, 2.6, 7.7, 0.0, 1.0, 9.3];
         let padded = |places: usize| format_of(drawing.into_iter(), |x| format!("{x:.places$}"));
         assert_eq!([1, 2, 3, 6].map(padded), [NumberFormat::Double; 4]);
@@ -564,7 +567,7 @@ mod tests {
 
     #[test]
     fn short_numbers_are_exact() {
-        // Drawings, inches, binary fractions with any number of digits.
+        // Drawings, inches, and binary fractions with any number of digits.
         let cases: [&[f64]; 4] = [
             &[0.0, 1.0, 0.5, 250.0, -1e6, 1000.0],
             &[0.1, 12.3, 4.55, 0.001, 101.3, 7.0],

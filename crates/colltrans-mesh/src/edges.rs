@@ -1,13 +1,13 @@
-//! Which faces meet at which edges.
+//! Finds the faces that meet at each edge.
 //!
-//! An edge is a pair of vertices, told by one number, the lower vertex above the higher one; each face has a *side* for
-//! each edge that it runs along, one way or the other.
+//! An edge is a pair of vertices, encoded as one number with the lower vertex in the upper half. A face has one
+//! *side* for each edge of its boundary, in one of two directions.
 
 use glam::DVec3;
 
-/// The sides of all faces, those of one edge beside each other: the edge, its lower vertex above the
-/// higher one, and the corner at which the side begins, counted through all faces, times two, plus one
-/// where the side runs from the higher vertex to the lower.
+/// Returns the sides of all faces, sorted by edge. The first number of a side is its edge. The second one is
+/// twice the index of the corner at which the side begins, counted over all faces, plus 1 if the side runs from
+/// the higher vertex to the lower one.
 pub fn sides<F: AsRef<[u32]>>(faces: &[F]) -> Vec<(u64, u64)> {
     let mut sides = Vec::with_capacity(faces.iter().map(|face| face.as_ref().len()).sum());
     let mut corner = 0;
@@ -25,23 +25,23 @@ pub fn sides<F: AsRef<[u32]>>(faces: &[F]) -> Vec<(u64, u64)> {
     sides
 }
 
-/// A facet at an edge.
+/// The side of a facet at an edge.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Use {
     pub(crate) edge: u64,
     pub(crate) face: usize,
-    /// From the edge's higher vertex to the lower one.
+    /// Whether the side runs from the higher vertex of the edge to the lower one.
     pub(crate) backward: bool,
 }
 
 impl Use {
-    /// The ends of the edge, the lower vertex first.
+    /// Returns the vertices of the edge, the lower one first.
     pub(crate) fn ends(&self) -> [u32; 2] {
         [(self.edge >> 32) as u32, self.edge as u32]
     }
 }
 
-/// The facets that count, by edges; each edge's are beside each other ([`by_edge`]).
+/// Returns the sides of the facets that `counts` selects, sorted by edge ([`by_edge`]).
 pub(crate) fn uses(faces: &[Vec<u32>], counts: impl Fn(usize) -> bool) -> Vec<Use> {
     let counted: Vec<usize> = (0..faces.len()).filter(|&k| counts(k)).collect();
     let listed: Vec<&[u32]> = counted.iter().map(|&k| faces[k].as_slice()).collect();
@@ -54,17 +54,17 @@ pub(crate) fn uses(faces: &[Vec<u32>], counts: impl Fn(usize) -> bool) -> Vec<Us
     sides(&listed).into_iter().map(of).collect()
 }
 
-/// The facets at each edge.
+/// Groups sides by their edges.
 pub(crate) fn by_edge(uses: &[Use]) -> impl Iterator<Item = &[Use]> {
     uses.chunk_by(|a, b| a.edge == b.edge)
 }
 
-/// Fewer than three different corners, so that no edge has a facet on either side.
+/// Checks whether a face has fewer than three different corners, so that it has no area.
 pub(crate) fn is_flat(face: &[u32]) -> bool {
     face.iter().all(|v| *v == face[0] || Some(v) == face.iter().find(|w| **w != face[0]))
 }
 
-/// Twice the area of a facet along its normal.
+/// Returns the normal of a facet, with twice its area as length.
 pub(crate) fn normal(vertices: &[DVec3], face: &[u32]) -> DVec3 {
     let at = |v: u32| vertices[v as usize];
     let [first, rest @ ..] = face else { return DVec3::ZERO };

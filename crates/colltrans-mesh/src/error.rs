@@ -7,11 +7,11 @@ use thiserror::Error;
 
 use crate::Format;
 
-/// Why no mesh could be read or written. Every message names the file.
+/// An error in reading or writing a mesh. Every message names the file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The extension names no supported format.
+    /// The extension is not that of a supported format.
     #[error(
         "{}: unknown mesh format; the extension must be one of {}",
         path.display(),
@@ -21,22 +21,22 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
-    /// The contents are of another kind than the extension says.
-    #[error("{}: holds {found}, not {format} as its name says", path.display())]
+    /// The contents have another format than the extension.
+    #[error("{}: contains {found}, but its extension stands for {format}; rename or convert the file", path.display())]
     OtherContent {
         /// The file.
         path: PathBuf,
-        /// The format that the extension names.
+        /// The format of the extension.
         format: Format,
-        /// What the file holds, in words.
+        /// The kind of the contents, with its article.
         found: &'static str,
     },
-    /// Vertices cannot be merged within a distance like this.
-    #[error("{}: the merge tolerance {tolerance} is negative or not finite", path.display())]
+    /// The merge tolerance is invalid.
+    #[error("{}: invalid merge tolerance {tolerance}; accepted: finite and not negative", path.display())]
     MergeTolerance {
         /// The file that was to be read.
         path: PathBuf,
-        /// The tolerance as given.
+        /// The tolerance that was given.
         tolerance: f64,
     },
     /// The file cannot be read.
@@ -44,7 +44,7 @@ pub enum Error {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The file cannot be written.
@@ -52,31 +52,31 @@ pub enum Error {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// The contents are not what the format prescribes.
+    /// The contents violate the format.
     #[error("{}: {place}: {what}", path.display())]
     Syntax {
         /// The file.
         path: PathBuf,
-        /// Where in the file.
+        /// The place in the file.
         place: Place,
-        /// What is wrong there.
+        /// The reason.
         what: String,
     },
-    /// A mesh of this kind cannot be stored in this format.
+    /// The format cannot represent the mesh.
     #[error("{}: {what}", path.display())]
     NotStorable {
         /// The file that was to be written.
         path: PathBuf,
-        /// What the format lacks.
+        /// The reason.
         what: String,
     },
 }
 
 impl Error {
-    /// Checks whether the file does not exist.
+    /// Checks whether the error means that the file does not exist.
     pub fn is_missing_file(&self) -> bool {
         matches!(self, Self::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
     }
@@ -94,7 +94,7 @@ pub enum Place {
     Header,
     /// The binary part.
     Data,
-    /// Past the last byte: something is missing.
+    /// After the last byte: something is missing.
     End,
 }
 
@@ -110,7 +110,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// An error of a reader, which does not know the name of its file.
+/// An error of a reader, without the name of the file.
 #[derive(Debug)]
 pub(crate) struct Fault {
     place: Place,
@@ -118,10 +118,12 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
+    /// Builds an error from a place and a reason.
     pub(crate) fn new(place: Place, what: impl Into<String>) -> Self {
         Self { place, what: what.into() }
     }
 
+    /// Adds the name of the file.
     pub(crate) fn in_file(self, path: &Path) -> Error {
         Error::Syntax { path: path.to_owned(), place: self.place, what: self.what }
     }

@@ -1,53 +1,54 @@
-//! Ordinary files, and nothing else: a device has no end, and a pipe without a writer waits for ever.
+//! Reads regular files only, because a device has no end, and a pipe without a writer blocks.
 
 use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
-/// The bytes of an ordinary file.
+/// Returns the contents of a regular file.
 ///
 /// # Errors
-/// What the operating system says; and that a folder, a device, a pipe or a socket is no file, which
-/// is not opened.
+/// The error of the operating system. A folder, a device, a pipe or a socket is rejected without opening it.
 pub fn bytes(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let path = path.as_ref();
-    // Opening a pipe waits for a writer: asked before, and again of what was opened.
+    // Opening a pipe would block until it has a writer. Therefore the kind is checked before and after opening.
     ordinary(&path.metadata()?)?;
     let mut file = File::open(path)?;
     let metadata = file.metadata()?;
     ordinary(&metadata)?;
     let mut bytes = Vec::new();
-    // A file may say that it is larger than any memory.
+    // The size that a file reports may exceed the memory.
     bytes.try_reserve_exact(usize::try_from(metadata.len()).unwrap_or(usize::MAX))?;
     file.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// The text of an ordinary file, without a byte-order mark.
+/// Returns the text of a regular file, without a byte-order mark.
 ///
 /// # Errors
-/// As [`bytes`], and text that is not UTF-8.
+/// The errors of [`bytes`], and an error if the text is not UTF-8.
 pub fn text(path: impl AsRef<Path>) -> Result<String> {
     decoded(bytes(path)?)
 }
 
-/// The text that bytes are in UTF-8, without a byte-order mark.
+/// Decodes UTF-8, and removes a byte-order mark.
 ///
 /// # Errors
-/// They are not UTF-8; where a mark says that they are UTF-16, so does the error.
+/// An error if the bytes are not UTF-8. It names UTF-16 if their mark indicates that.
 pub fn decoded(bytes: Vec<u8>) -> Result<String> {
     let refused = |what| Error::new(ErrorKind::InvalidData, what);
     if crate::text::is_wide(&bytes) {
         return Err(refused("text in UTF-16; save the file as UTF-8"));
     }
-    let text = String::from_utf8(bytes).map_err(|_| refused("not text in UTF-8"))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| refused("not text in UTF-8; save the file as UTF-8"))?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
+/// Rejects anything except a regular file.
 fn ordinary(metadata: &Metadata) -> Result<()> {
     if metadata.is_file() {
         return Ok(());
     }
     let what = if metadata.is_dir() { "a folder" } else { "a device or a pipe" };
-    Err(Error::new(ErrorKind::InvalidInput, format!("{what}, not an ordinary file")))
+    Err(Error::new(ErrorKind::InvalidInput, format!("{what}, not a regular file")))
 }

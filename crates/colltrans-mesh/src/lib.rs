@@ -1,14 +1,15 @@
-//! Mesh files in double precision: STL, OBJ, PLY, OFF and COLLADA, and the bodies made of them.
+//! Reads mesh files in double precision (STL, OBJ, PLY, OFF and COLLADA) and builds bodies from them.
 //!
-//! Data flow: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`, `dae`) ->
-//! [`Mesh`] -> twins along open edges merged (`merge`) -> a body of the library ([`body`]). A reader either
-//! returns every vertex and face of the file, in the file's order, or an [`Error`] that says what is wrong and where; it
-//! never allocates more than a small multiple of the file's size, whatever the file's header
-//! promises. What the extension says is held against what the file holds (`sniff`).
+//! The bytes of a file go through one reader per format (`stl`, `obj`, `ply`, `off`, `dae`) into a [`Mesh`].
+//! `merge` merges duplicate vertices along open edges, and [`body`] builds a body of the library.
 //!
-//! Every index in [`Mesh::faces`] is smaller than the number of vertices, every face has at least
-//! three corners, none of them followed by itself, and nothing else is promised: coordinates may
-//! be NaN, a face may pass twice through a vertex, the surface may be open ([`Mesh::open_edges`]).
+//! - A reader returns every vertex and face in the order of the file, or an [`Error`] with place and reason.
+//! - A reader allocates at most a small multiple of the file's size, regardless of the counts in its header.
+//! - `sniff` compares the contents with the extension.
+//! - Every index in [`Mesh::faces`] is less than the number of vertices. A face has at least three corners, and
+//!   consecutive corners differ.
+//! - Nothing else is guaranteed: coordinates may be NaN, a face may contain a vertex twice, and the surface may
+//!   be open ([`Mesh::open_edges`]).
 
 pub mod body;
 #[cfg(feature = "dae")]
@@ -46,19 +47,19 @@ pub use error::{Error, Place};
 pub use mesh::{Groups, Merged, Mesh};
 pub use write::{to_obj, to_off, to_stl, write};
 
-/// The examples of `docs/guide/rust.md`, compiled and run as tests.
+/// Compiles and runs the examples of `docs/guide/rust.md` as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/guide/rust.md")]
 pub struct GettingStarted;
 
-/// A format of mesh files, told by the file's extension.
+/// A format of mesh files, identified by the extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Format {
     /// Stereolithography: triangles in single precision, binary or text.
     Stl,
     /// Wavefront: polygons, text.
     Obj,
-    /// Stanford polygons, binary or text.
+    /// Stanford polygon format, binary or text.
     Ply,
     /// Geomview's object file format: polygons, text.
     Off,
@@ -67,10 +68,9 @@ pub enum Format {
     Dae,
 }
 
-/// The one list of formats: what has to be said of another one is said here, and its reader named in
-/// [`parse_with`].
+/// The only list of formats. A new format is added here, and its reader in [`parse_with`].
 impl Format {
-    /// All of them, in the order in which texts name them.
+    /// All formats, in the order in which messages list them.
     pub const ALL: &[Self] = &[
         Self::Stl,
         Self::Obj,
@@ -80,7 +80,7 @@ impl Format {
         Self::Dae,
     ];
 
-    /// The extension of its files, in lower case.
+    /// Returns the extension, in lower case.
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Stl => "stl",
@@ -92,7 +92,7 @@ impl Format {
         }
     }
 
-    /// A file of the format, in words.
+    /// Returns the name of a file of this format for messages, with its article.
     const fn file(self) -> &'static str {
         match self {
             Self::Stl => "an STL file",
@@ -104,17 +104,17 @@ impl Format {
         }
     }
 
-    /// The names of all formats: `STL, OBJ, PLY, OFF or DAE`, for the word `or`.
+    /// Lists the names of all formats with the conjunction `word`, for example `STL, OBJ, PLY, OFF or DAE`.
     pub fn names(word: &str) -> String {
         let names: Vec<String> = Self::ALL.iter().map(Self::to_string).collect();
         let (last, others) = names.split_last().map_or(("", &[][..]), |(last, all)| (last, all));
         format!("{} {word} {last}", others.join(", "))
     }
 
-    /// The format that a path's extension names, in upper or lower case.
+    /// Returns the format with the extension of the path, regardless of case.
     ///
     /// # Errors
-    /// [`Error::UnknownFormat`] for any other extension, or none.
+    /// [`Error::UnknownFormat`] if the path has another extension, or none.
     pub fn of_path(path: &Path) -> Result<Self, Error> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         let named = |format: &Self| extension.eq_ignore_ascii_case(format.extension());
@@ -132,43 +132,43 @@ impl fmt::Display for Format {
     }
 }
 
-/// What a reader may choose.
+/// Options of the readers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Up to which distance vertices on open edges are merged, in the file's unit.
+    /// The distance up to which vertices on open edges are merged, in the unit of the file.
     ///
-    /// 0 merges equal ones only. `None` is a few units in the last place of the largest
-    /// coordinate ([`NumberFormat`]): `2^-22` times its magnitude where coordinates are in single precision
-    /// (binary STL, PLY with `float`, text of such numbers), two units in the last place that a text prints, else `2^-48` times.
+    /// The value 0 merges equal vertices only. `None` selects a few units in the last place of the largest coordinate,
+    /// which depends on the [`NumberFormat`]. For single precision (binary STL, PLY with `float`, text of such
+    /// numbers) that is `2^-22` times its magnitude. For other text it is two units in the last place that is printed.
+    /// Otherwise it is `2^-48` times the magnitude.
     pub merge_tolerance: Option<f64>,
 }
 
 impl ReadOptions {
-    /// These options with another [`Self::merge_tolerance`].
+    /// Sets [`Self::merge_tolerance`].
     #[must_use]
     pub const fn with_merge_tolerance(self, tolerance: Option<f64>) -> Self {
         Self { merge_tolerance: tolerance }
     }
 }
 
-/// Reads a mesh file of the format that its extension names.
+/// Reads a mesh file. Its extension selects the format.
 ///
-/// The vertices of an STL file, which stores each triangle's corners anew, are welded
-/// ([`Mesh::weld`]); those of the other formats keep their place in the file. Where the surface
-/// is open, vertices that rounding has kept apart are merged ([`Mesh::merged`] says which way).
+/// The vertices of an STL file are welded ([`Mesh::weld`]), because it stores the corners of each triangle
+/// separately. In the other formats they keep their positions in the list. On open surfaces, vertices that
+/// differ only by rounding are merged ([`Mesh::merged`]).
 ///
 /// # Errors
-/// The extension is unknown, the file cannot be read, holds something else, or its contents are
-/// not what the format prescribes.
+/// [`Error`] if the extension is unknown, the file cannot be read, or its contents violate the format.
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
     read_with(path, ReadOptions::default())
 }
 
-/// [`read`] with options.
+/// Reads a mesh file like [`read`], with options.
 ///
 /// # Errors
-/// As [`read`], and a tolerance that is negative or not finite.
+/// The errors of [`read`], and [`Error::MergeTolerance`] if the tolerance is negative or not finite.
 pub fn read_with(path: impl AsRef<Path>, options: ReadOptions) -> Result<Mesh, Error> {
     let path = path.as_ref();
     let format = Format::of_path(path)?;
@@ -177,7 +177,7 @@ pub fn read_with(path: impl AsRef<Path>, options: ReadOptions) -> Result<Mesh, E
     parse_with(format, bytes, path, options)
 }
 
-/// Reads a mesh from the bytes of a file; `path` is only named in errors.
+/// Reads a mesh from the bytes of a file. The `path` is used for errors only.
 ///
 /// ```
 /// use std::path::Path;
@@ -193,20 +193,21 @@ pub fn read_with(path: impl AsRef<Path>, options: ReadOptions) -> Result<Mesh, E
 /// assert_eq!(error.to_string(), "square.off: end of file: vertex 3 of 4 is missing");
 ///
 /// let error = parse(Format::Ply, square.into(), Path::new("square.ply")).unwrap_err();
-/// assert_eq!(error.to_string(), "square.ply: holds an OFF file, not PLY as its name says");
+/// let reason = "contains an OFF file, but its extension stands for PLY; rename or convert the file";
+/// assert_eq!(error.to_string(), format!("square.ply: {reason}"));
 /// # Ok::<(), colltrans_mesh::Error>(())
 /// ```
 ///
 /// # Errors
-/// The contents are not what the format prescribes.
+/// [`Error`] if the contents violate the format.
 pub fn parse(format: Format, bytes: Vec<u8>, path: &Path) -> Result<Mesh, Error> {
     parse_with(format, bytes, path, ReadOptions::default())
 }
 
-/// [`parse`] with options.
+/// Reads a mesh from bytes like [`parse`], with options.
 ///
 /// # Errors
-/// As [`parse`], and a tolerance that is negative or not finite.
+/// The errors of [`parse`], and [`Error::MergeTolerance`] if the tolerance is negative or not finite.
 pub fn parse_with(
     format: Format,
     bytes: Vec<u8>,

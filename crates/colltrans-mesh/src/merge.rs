@@ -1,24 +1,19 @@
-//! Merging of vertices that were meant to be one.
+//! Merges duplicate vertices, which programs write for the same point with different rounding.
 //!
-//! A program that computes a corner once for each face that meets there writes it several times,
-//! and rounding may write it differently. Such twins leave the surface open along the edges
-//! between them, so only vertices on open edges are looked at: a closed surface is left as it is,
-//! however fine its details are.
+//! Such duplicates leave the surface open along the edges between them. Therefore only vertices on open edges
+//! are merged, and closed surfaces remain unchanged.
 //!
-//! Notation. `tol` is the tolerance, a Euclidean distance. A *representative* is a vertex that
-//! stands for all that are merged into it; it keeps its own coordinates.
-//!
-//! Invariant. Vertices are taken in their order; each is merged into the nearest representative
-//! within `tol`, or becomes one itself. So no vertex moves by more than `tol`, no two
-//! representatives are within `tol` of each other, and a chain of vertices, each near the next,
-//! is cut into pieces instead of shrinking to a point. Vertices for which more than one
-//! representative was near enough are counted ([`Merged::ambiguous`]).
-//!
-//! Default tolerance. Twins written in single precision differ by at most one unit in the last
-//! place per coordinate, `2^-23 m` with `m` the largest coordinate in magnitude, so by `sqrt(3)`
-//! times that: `2^-22 m` covers it. What was computed in double precision carries the errors of
-//! a few dozen roundings of `2^-53 m`: `2^-48 m` covers it. Of a text that prints fewer digits ([`digits`](crate::digits))
-//! two units in the last printed place are what `2^-22 m` is of single precision.
+//! - `tol` is the tolerance, a Euclidean distance. A *representative* is a vertex that replaces all vertices
+//!   merged into it. It keeps its coordinates.
+//! - Invariant: in their order, each vertex is merged into the nearest representative within `tol`, or becomes
+//!   a representative. Hence no vertex moves by more than `tol`, representatives are more than `tol` apart, and
+//!   a chain of near vertices is cut into pieces. Vertices with several representatives within `tol` are
+//!   counted ([`Merged::ambiguous`]).
+//! - Default tolerance, with the largest coordinate `m` in magnitude: duplicates in single precision differ by
+//!   at most one unit in the last place, `2^-23 m`, per coordinate, hence by `sqrt(3)` times that, at most
+//!   `2^-22 m`. Results in double precision have the errors of a few dozen roundings of `2^-53 m`, for which
+//!   `2^-48 m` suffices. For text with fewer digits ([`digits`](crate::digits)) two units in the last printed
+//!   place correspond to `2^-22 m`.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -29,25 +24,25 @@ use crate::digits::{NumberFormat, largest_magnitude};
 use crate::edges::sides;
 use crate::mesh::Mesh;
 
-/// The kind of the numbers in a file.
+/// The precision of the coordinates in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Precision {
-    /// Whether coordinates are in single precision: binary STL, and PLY with `float` coordinates.
+    /// Whether the coordinates are in single precision, as in binary STL and PLY with `float` coordinates.
     pub(crate) single: bool,
-    /// Whether they are written as text, of any number of digits.
+    /// Whether the coordinates are text.
     pub(crate) text: bool,
 }
 
 impl Precision {
     /// Single precision, binary.
     pub(crate) const SINGLE: Self = Self { single: true, text: false };
-    /// Double precision, binary or of a reader that has moved vertices.
+    /// Double precision: binary, or transformed by a reader.
     #[cfg(any(test, feature = "dae"))]
     pub(crate) const DOUBLE: Self = Self { single: false, text: false };
     /// Text that is read in double precision.
     pub(crate) const TEXT: Self = Self { single: false, text: true };
 
-    /// Returns how the coordinates of a mesh are written.
+    /// Returns the number format of the coordinates of a mesh.
     fn format_of(self, mesh: &Mesh) -> NumberFormat {
         match self {
             Self { text: true, single } => NumberFormat::of_text(mesh, single),
@@ -57,21 +52,21 @@ impl Precision {
     }
 }
 
-/// What becomes of the place of a vertex that was merged into another.
+/// The treatment of vertices that were merged into others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Places {
-    /// It stays, used by no face: indices are those of the file.
+    /// They remain in the list, unused, so that indices are those of the file.
     Kept,
-    /// It is closed, because the file does not number its vertices.
+    /// They are removed, because the file does not number its vertices.
     Closed,
 }
 
 impl Mesh {
     /// Merges vertices with equal coordinates (bit for bit, except that `-0` equals `0`).
     ///
-    /// Vertices keep the order of their first appearance. Steps that a face then makes to and
-    /// fro are taken out of it, and so are faces with fewer than three corners left: such a
-    /// face has no area, and the edges it joined become neighbours.
+    /// Vertices keep the order of their first occurrence. Then steps to a vertex and back are removed from
+    /// faces, and faces with fewer than three corners left are removed. Such a face has no area, and the edges
+    /// it connected become adjacent.
     #[must_use]
     pub fn weld(&self) -> Self {
         let (kept, faces) = self.first_of_equal();
@@ -82,13 +77,13 @@ impl Mesh {
         mesh
     }
 
-    /// The different vertices, and all faces over them.
+    /// Returns the different vertices, and all faces over them. No faces are removed.
     pub(crate) fn welded(&self) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let (kept, faces) = self.first_of_equal();
         (kept.into_iter().map(|v| self.vertices[v as usize]).collect(), faces)
     }
 
-    /// Returns the index of the first of equal vertices, for each that differs, and all faces over these.
+    /// Returns the index of the first vertex of each class of equal ones, and all faces over these classes.
     fn first_of_equal(&self) -> (Vec<u32>, Vec<Vec<u32>>) {
         let mut index_of = HashMap::with_capacity(self.vertices.len() / 4);
         let mut kept = Vec::new();
@@ -110,12 +105,12 @@ impl Mesh {
         (kept, faces)
     }
 
-    /// Merges twins along open edges. `None` is the default tolerance.
+    /// Merges duplicate vertices along open edges. `None` selects the default tolerance.
     pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
         let format = precision.format_of(self);
         let precision = format.precision(largest_magnitude(self.vertices_in_use()));
         self.printed = Vec::new();
-        // A reader that has moved vertices knows how they were written.
+        // A reader that has transformed the vertices has set a precision of its own.
         if self.precision <= precision {
             (self.format, self.precision) = (format, precision);
         }
@@ -135,11 +130,11 @@ impl Mesh {
         self.drop_flat_faces();
     }
 
-    /// Drops the vertices that others take the place of; `names` is brought up to date.
+    /// Removes the vertices that were replaced, and updates `names` to the new indices.
     fn drop_replaced(&mut self, names: &mut [u32]) {
         let mut kept = 0;
         for v in 0..names.len() {
-            // A representative comes before those it stands for.
+            // A representative precedes the vertices that it replaces.
             names[v] = if names[v] as usize == v {
                 self.vertices[kept] = self.vertices[v];
                 kept += 1;
@@ -151,8 +146,8 @@ impl Mesh {
         self.vertices.truncate(kept);
     }
 
-    /// Every edge that is not used equally often in both directions, once, from its first vertex
-    /// to its second along the face that uses it more often.
+    /// Returns each edge that is not used equally often in both directions, once, in the direction that is used
+    /// more often.
     ///
     /// A surface without open edges encloses a volume, if its faces are oriented outwards.
     pub fn open_edges(&self) -> Vec<[u32; 2]> {
@@ -169,7 +164,7 @@ impl Mesh {
         open
     }
 
-    /// For every vertex the one that takes its place, itself for most.
+    /// Returns for each vertex its representative, which for most is the vertex itself.
     fn representatives(&mut self, candidates: &[u32]) -> Vec<u32> {
         let mut places: Vec<u32> = (0..self.vertices.len() as u32).collect();
         let mut grid = Grid::new(self.merged.tolerance, &self.vertices);
@@ -189,10 +184,9 @@ impl Mesh {
         places
     }
 
-    /// Takes back steps that a face makes to and fro, and drops faces of which nothing is left.
+    /// Removes steps to a vertex and back from faces, and faces with fewer than three corners left.
     ///
-    /// What is taken out of a face are pairs of opposite uses of an edge, so the edges that
-    /// were closed stay closed.
+    /// Each removed step consists of opposite uses of one edge, so edges that were closed remain closed.
     pub(crate) fn drop_flat_faces(&mut self) {
         let before = self.faces.len();
         let (mut number, mut dropped) = (0, Vec::new());
@@ -218,13 +212,13 @@ impl Mesh {
     }
 }
 
-/// Equal exactly for equal coordinates.
+/// Returns a key that is equal exactly for equal coordinates.
 fn key(vertex: DVec3) -> [u64; 3] {
-    // Adding 0 turns -0 into 0 and changes nothing else.
+    // Adding 0 converts -0 to 0 and does not change other numbers.
     vertex.to_array().map(|c| (c + 0.0).to_bits())
 }
 
-/// A cycle of corners without repeated corners in a row (`a a`) and without spikes (`a b a`).
+/// Returns a cycle of corners without consecutive equal corners (`a a`) and without spikes (`a b a`).
 fn reduced(face: &[u32]) -> Vec<u32> {
     let mut kept: Vec<u32> = Vec::with_capacity(face.len());
     for &corner in face {
@@ -237,7 +231,7 @@ fn reduced(face: &[u32]) -> Vec<u32> {
             kept.push(corner);
         }
     }
-    // The same across the seam of the cycle.
+    // Applies the same rules across the seam of the cycle.
     let mut cycle = kept.as_slice();
     loop {
         let count = cycle.len();
@@ -250,25 +244,26 @@ fn reduced(face: &[u32]) -> Vec<u32> {
     }
 }
 
-/// Representatives by the cell of a grid they lie in.
+/// A grid of cells with representatives.
 ///
-/// Cells are some tolerances wide, so that what is near a position mostly lies in one cell, and
-/// representatives are more than a tolerance apart, so that a cell holds a bounded number of them.
+/// Cells are several tolerances wide, so that the vicinity of a position is mostly in one cell. Representatives
+/// are more than a tolerance apart, so that a cell has a bounded number of them.
 struct Grid {
     cell: f64,
     tolerance: f64,
-    /// The representative of each cell that came last.
+    /// For each cell the representative that was inserted last.
     last: HashMap<[u64; 3], u32>,
-    /// For every vertex, the representative before it in its cell.
+    /// For each vertex the representative that was inserted before it into its cell.
     before: Vec<u32>,
 }
 
-/// A key like that of coordinates ([`key`]): one kind of map is half the code of two.
+/// Returns a key of the same type as those of coordinates ([`key`]), because one instance of the map type
+/// halves the code.
 fn key_of(cell: [i64; 3]) -> [u64; 3] {
     cell.map(|c| c as u64)
 }
 
-/// The nearest representative, and how many were near enough.
+/// The nearest representative, and the number of representatives within the tolerance.
 #[derive(Clone, Copy)]
 struct Near {
     vertex: u32,
@@ -276,40 +271,45 @@ struct Near {
     choices: usize,
 }
 
+/// The marker for no vertex.
 const NONE: u32 = u32::MAX;
 
-/// Tolerances a cell is wide.
+/// Width of a cell in tolerances.
 const CELL: f64 = 4.0;
 
-/// The length of a vector, also where its square is too small for a number.
+/// Returns the length of a vector, also if its square underflows.
 fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest == 0.0 { 0.0 } else { largest * (v / largest).length() }
 }
 
 impl Grid {
+    /// Builds an empty grid.
     fn new(tolerance: f64, vertices: &[DVec3]) -> Self {
-        // The numbers of cells must fit in 64 bits.
+        // Cell indices must fit in 64 bits.
         let smallest =
             largest_magnitude(vertices.iter().copied()) * f64::from_bits((1023 - 60) << 52);
         let cell = (CELL * tolerance).max(smallest).max(f64::MIN_POSITIVE);
         Self { cell, tolerance, last: HashMap::new(), before: vec![NONE; vertices.len()] }
     }
 
+    /// Returns the indices of the cell of a position.
     fn cell_of(&self, position: DVec3) -> [i64; 3] {
         position.to_array().map(|c| (c / self.cell).floor() as i64)
     }
 
+    /// Inserts a representative.
     fn insert(&mut self, vertex: u32, position: DVec3) {
         let last = self.last.entry(key_of(self.cell_of(position))).or_insert(NONE);
         self.before[vertex as usize] = *last;
         *last = vertex;
     }
 
+    /// Returns the nearest representative within the tolerance of a position; `None` if there is none.
     fn near(&self, position: DVec3, vertices: &[DVec3]) -> Option<Near> {
         let low = self.cell_of(position - self.tolerance);
         let high = self.cell_of(position + self.tolerance);
-        // No more than two cells a side, even where the sum is out of range.
+        // At most two cells in each dimension, even if the sum overflows.
         let high: [i64; 3] = std::array::from_fn(|i| high[i].min(low[i].saturating_add(1)));
         let mut found: Option<Near> = None;
         for x in low[0]..=high[0] {
@@ -323,7 +323,8 @@ impl Grid {
         found
     }
 
-    /// The nearest of what was found and what a cell holds; of those as near, the first.
+    /// Returns the nearest of `found` and the representatives in a cell; if distances are equal, the one with
+    /// the smallest index.
     fn nearer(
         &self,
         mut found: Option<Near>,
@@ -385,7 +386,7 @@ mod tests {
         }
     }
 
-    /// Points on a line, `gap` apart, each the end of an open triangle of its own.
+    /// Points on a line with the spacing `gap`, each of which is a corner of an open triangle of its own.
     fn chain(count: u32, gap: f64) -> Mesh {
         let mut vertices: Vec<DVec3> = Vec::new();
         for i in 0..count {
@@ -433,7 +434,7 @@ mod tests {
         assert_eq!(open.merged.vertices, 0, "1 is on no open edge");
     }
 
-    /// A grid with tolerance, against all pairs.
+    /// Compares the grid with all pairs.
     #[test]
     fn the_grid_finds_what_all_pairs_find() {
         let mut random = Random::new(1);

@@ -1,46 +1,46 @@
-//! The mesh all formats are read into.
+//! The mesh into which all formats are read.
 
 use glam::DVec3;
 
 use crate::digits::{NumberFormat, Printed, largest_magnitude};
 
-/// Vertices and polygons over them, as a file lists them.
+/// Vertices and polygons, as a file lists them.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Mesh {
-    /// The vertices, in the file's unit. Some may be used by no face.
+    /// The vertices, in the unit of the file. Some may be unused.
     pub vertices: Vec<DVec3>,
     /// The faces, each a cycle of indices into `vertices`.
     pub faces: Vec<Vec<u32>>,
-    /// What the file tells apart among the faces; empty where it tells nothing apart.
+    /// The groups of faces that the file names; empty if there are fewer than two.
     pub groups: Groups,
-    /// How many metres a unit of its lengths is, if the file says it.
+    /// The unit of the file in metres, if the file has one.
     pub unit: Option<f64>,
-    /// The axis that points upwards, if the file says it.
+    /// The upward axis, if the file has one.
     pub up: Option<DVec3>,
-    /// What was merged when the file was read; nothing for a mesh that comes from elsewhere.
+    /// The statistics of merging; zero for a mesh that was not read from a file.
     pub merged: Merged,
-    /// How far apart vertices of the file may be written that were meant to be one: what is merged by
-    /// default ([`ReadOptions::merge_tolerance`](crate::ReadOptions::merge_tolerance)); 0 for a mesh that
-    /// comes from elsewhere.
+    /// The distance up to which vertices of the file may denote the same point because of its number format,
+    /// and the default of [`ReadOptions::merge_tolerance`](crate::ReadOptions::merge_tolerance). It is 0 for a
+    /// mesh that was not read from a file.
     pub precision: f64,
-    /// How the file writes its coordinates, which [`Self::precision`] follows from.
+    /// The number format of the coordinates, from which [`Self::precision`] follows.
     pub format: NumberFormat,
-    /// The printed forms of the coordinates of each vertex, while a text is read; else nothing.
+    /// The printed forms of the coordinates of each vertex while a text is read; otherwise empty.
     pub(crate) printed: Vec<[Printed; 3]>,
 }
 
-/// What a file tells apart: objects or groups of OBJ, solids of STL, nodes of DAE.
+/// The groups of a file: objects or groups of OBJ, solids of STL, nodes of COLLADA.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Groups {
-    /// Their names, as the file has them; several may have one name, and some none (an empty one).
+    /// The names in the file. They may be empty or equal.
     pub names: Vec<String>,
-    /// For each face the group that it is in, an index into `names`.
+    /// For each face the index of its group in `names`.
     pub of_face: Vec<u32>,
 }
 
 impl Groups {
-    /// A group for the faces up to the last of `total` that have none yet; nothing if there are none.
+    /// Adds a group with the faces up to `total` that have no group yet. Does nothing if there are none.
     pub(crate) fn end(&mut self, name: &str, total: usize) {
         if self.of_face.len() < total {
             self.of_face.resize(total, self.names.len() as u32);
@@ -48,36 +48,36 @@ impl Groups {
         }
     }
 
-    /// Nothing, unless there are several.
+    /// Returns the groups, or no groups if there are fewer than two.
     pub(crate) fn several(self) -> Self {
         if self.names.len() > 1 { self } else { Self::default() }
     }
 }
 
-/// What was merged when a file was read.
+/// Statistics of the vertices that were merged while a file was read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Merged {
-    /// The distance up to which vertices on open edges were merged, in the file's unit; 0 if only
-    /// equal ones were.
+    /// The distance up to which vertices on open edges were merged, in the unit of the file; 0 if only equal
+    /// vertices were merged.
     pub tolerance: f64,
-    /// How many vertices were replaced by another with different coordinates.
+    /// Number of vertices that were replaced by a vertex with different coordinates.
     pub vertices: usize,
-    /// The largest distance between a vertex and the one that took its place.
+    /// The largest distance between a vertex and its replacement.
     pub largest_distance: f64,
-    /// How many vertices had more than one other to choose from: where there are any, the
-    /// tolerance is as large as details of the surface.
+    /// Number of vertices with more than one candidate. If this is not 0, the tolerance is as large as details
+    /// of the surface.
     pub ambiguous: usize,
-    /// How many faces were left without area, as less than three different corners, and dropped.
+    /// Number of faces that were removed because fewer than three different corners remained.
     pub dropped_faces: usize,
 }
 
 impl Mesh {
-    /// A mesh of these vertices and faces.
+    /// Builds a mesh from vertices and faces.
     pub fn new(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Self {
         Self { vertices, faces, ..Self::default() }
     }
 
-    /// Returns the same mesh as of a file that writes its coordinates in a format, with the precision that follows.
+    /// Sets the number format of the coordinates, and the precision that follows from it.
     #[must_use]
     pub fn with_format(mut self, format: NumberFormat) -> Self {
         self.precision = format.precision(largest_magnitude(self.vertices_in_use()));
@@ -85,22 +85,23 @@ impl Mesh {
         self
     }
 
-    /// The smallest and the largest coordinates of the [vertices in use](Self::vertices_in_use); `None`
-    /// without vertices.
+    /// Returns the smallest and the largest coordinates of the [vertices in use](Self::vertices_in_use); `None`
+    /// if there are no vertices.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         let mut used = self.vertices_in_use();
         let first = used.next()?;
         Some(used.fold([first, first], |[low, high], v| [low.min(v), high.max(v)]))
     }
 
-    /// The largest side of the box that the [vertices in use](Self::vertices_in_use) span; 0 without vertices.
+    /// Returns the longest edge of the bounding box of the [vertices in use](Self::vertices_in_use); 0 if there
+    /// are no vertices.
     pub fn extent(&self) -> f64 {
         self.bounds().map_or(0.0, |[low, high]| (high - low).max_element())
     }
 
-    /// Returns each vertex that a face uses, once; all vertices of a mesh without faces.
+    /// Returns each vertex that a face uses, once; all vertices if the mesh has no faces.
     ///
-    /// Default tolerances depend on these alone, because a vertex that no face uses is no part of the body.
+    /// Default tolerances depend only on these vertices, because an unused vertex is not part of the body.
     pub fn vertices_in_use(&self) -> impl Iterator<Item = DVec3> + '_ {
         self.indices_in_use().map(|v| self.vertices[v])
     }
@@ -112,19 +113,19 @@ impl Mesh {
         is_used.filter(move |(_, used)| all || *used).map(|(v, _)| v)
     }
 
-    /// How many vertices no face uses.
+    /// Returns the number of vertices that no face uses.
     pub fn unused_vertices(&self) -> usize {
         self.is_used().iter().filter(|used| !**used).count()
     }
 
-    /// Returns the number of vertices that no face uses, without those that were merged into others; 0 for a mesh
-    /// without faces.
+    /// Returns the number of vertices that no face uses, without those that were merged into others; 0 if the
+    /// mesh has no faces.
     pub fn stray_vertices(&self) -> usize {
         let unused = self.unused_vertices().saturating_sub(self.merged.vertices);
         if self.faces.is_empty() { 0 } else { unused }
     }
 
-    /// For each vertex, whether a face uses it.
+    /// Returns for each vertex whether a face uses it.
     fn is_used(&self) -> Vec<bool> {
         let mut is_used = vec![false; self.vertices.len()];
         for &v in self.faces.iter().flatten() {
@@ -133,10 +134,10 @@ impl Mesh {
         is_used
     }
 
-    /// The signed volume that a closed surface encloses: positive if the faces run
-    /// counter-clockwise as seen from outside. Meaningless for an open one.
+    /// Returns the signed volume of a closed surface. It is positive if the faces are counter-clockwise seen
+    /// from outside. The result is meaningless for an open surface.
     pub fn signed_volume(&self) -> f64 {
-        // One that is used: another one may be anywhere, or nowhere.
+        // The origin is a used vertex, because the coordinates of an unused one may be far away or NaN.
         let Some(&first) = self.faces.iter().flatten().next() else { return 0.0 };
         let origin = self.vertices[first as usize];
         let corner = |v: u32| self.vertices[v as usize] - origin;

@@ -1,12 +1,12 @@
-//! OBJ, text, through `tobj`.
+//! Reads OBJ, text, with `tobj`.
 //!
-//! `tobj` numbers the vertices of each group anew, in the order in which faces use them, and its
-//! errors name no line. Both are mended by what it is given to read ([`Lines`]): only positions
-//! and faces, no groups, and after each position a face of that one vertex, so that the
-//! order of first use is the order of the file. Objects and groups are counted on the way.
+//! `tobj` renumbers the vertices of each group in the order of their first use, and its errors have no line.
+//! [`Lines`] avoids both: it passes on only positions and faces, and after each position a face of that single
+//! vertex. Thus the order of first use is the order in the file. Objects and groups are recorded at the same
+//! time.
 //!
-//! Keywords that say nothing about polygons are skipped. Those of curved surfaces are refused, and
-//! so are unknown ones: a vertex that is not recognised as one would change the answer.
+//! Keywords without relevance for polygons are skipped. Keywords of curved surfaces and unknown keywords are
+//! rejected, because an unrecognised vertex would change the numbering.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
@@ -19,6 +19,7 @@ use crate::error::{Fault, Place};
 use crate::mesh::{Groups, Mesh};
 use crate::text::{self, quoted, without_mark};
 
+/// Parses an OBJ file.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let text = String::from_utf8_lossy(without_mark(bytes)?);
     let mut lines = Lines::new(&text);
@@ -33,7 +34,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         Err(error) => return Err(lines.fault(error)),
     };
     let mut mesh = Mesh::default();
-    // Without groups there is one model.
+    // Because no groups are passed on, there is one model.
     for model in models {
         let tobj::Mesh { positions, indices, face_arities, .. } = model.mesh;
         mesh.vertices.extend(positions.chunks_exact(3).map(DVec3::from_slice));
@@ -51,7 +52,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     Ok(mesh)
 }
 
-/// The objects and the groups of a file: each name, and how many faces stood before it.
+/// The objects and the groups of a file, each with the number of faces before it and its name.
 #[derive(Default)]
 struct Named {
     objects: Vec<(usize, String)>,
@@ -59,7 +60,8 @@ struct Named {
 }
 
 impl Named {
-    /// The objects, if there are several, or else the groups: those of one name are one.
+    /// Returns the objects if there are several, otherwise the groups. Objects or groups with the same name are
+    /// joined.
     fn groups(self, faces: usize) -> Groups {
         let all = [self.objects, self.groups].map(|begun| {
             let mut groups = Groups::default();
@@ -84,25 +86,25 @@ impl Named {
     }
 }
 
-/// The position and face lines of an OBJ file, cleaned, one at a time.
+/// A reader for `tobj` that passes on the position and face lines of an OBJ file, cleaned, one at a time.
 struct Lines<'a> {
     text: std::iter::Enumerate<text::Lines<'a>>,
-    /// Number of the line that was read last.
+    /// The number of the line that was read last.
     number: usize,
-    /// What is left of it, as it is passed on.
+    /// The text to pass on, of which `read` bytes have been consumed.
     pending: Vec<u8>,
     read: usize,
     original: String,
-    /// A keyword that cannot be skipped; nothing is read after it.
+    /// The error of a keyword that cannot be skipped. Reading ends there.
     refused: Option<Fault>,
     names: Named,
-    /// How each position that was passed on is printed.
+    /// The printed form of each position that was passed on.
     printed: Vec<[Printed; 3]>,
-    /// Faces that were passed on.
+    /// Number of faces that were passed on.
     faces: usize,
 }
 
-/// Keywords without a meaning for the polygons of a mesh.
+/// Keywords without relevance for the polygons of a mesh.
 const SKIPPED: [&str; 24] = [
     "vt",
     "vn",
@@ -130,7 +132,7 @@ const SKIPPED: [&str; 24] = [
     "call",
 ];
 
-/// Keywords of surfaces that are not polygons.
+/// Keywords of curved surfaces.
 const CURVED: [&str; 8] = ["surf", "curv", "curv2", "trim", "hole", "scrv", "sp", "con"];
 
 impl<'a> Lines<'a> {
@@ -148,7 +150,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Reads on to the next position or face; `false` at the end.
+    /// Reads up to the next position or face. Returns `false` at the end.
     fn advance(&mut self) -> bool {
         self.pending.clear();
         self.read = 0;
@@ -160,7 +162,7 @@ impl<'a> Lines<'a> {
                     self.pending.push(b'f');
                     self.faces += usize::from(words.clone().nth(1).is_some());
                     for corner in words {
-                        // Texture and normal indices would only be checked and dropped.
+                        // `tobj` would only check texture and normal indices and drop them.
                         let vertex = corner.split('/').next().unwrap_or_default();
                         self.pending.push(b' ');
                         self.pending.extend_from_slice(vertex.as_bytes());
@@ -178,7 +180,10 @@ impl<'a> Lines<'a> {
                 Some(keyword) if SKIPPED.contains(&keyword) => continue,
                 Some(keyword) => {
                     let what = if CURVED.contains(&keyword) {
-                        format!("curved surfaces ({}) are not supported", quoted(keyword))
+                        format!(
+                            "curved surfaces ({}) are not supported; export polygons",
+                            quoted(keyword)
+                        )
                     } else {
                         format!("unknown keyword {}", quoted(keyword))
                     };
@@ -192,7 +197,7 @@ impl<'a> Lines<'a> {
         false
     }
 
-    /// A position keeps its coordinates and weight, but not its colour.
+    /// Passes on a position with its weight, without its colour.
     fn pass_position(&mut self, words: &[&str]) {
         let kept = if words.len() == 4 { 4 } else { words.len().min(3) };
         let form = |k: usize| words.get(k).map(|word| Printed::of(word)).unwrap_or_default();
@@ -205,7 +210,8 @@ impl<'a> Lines<'a> {
         self.pending.extend_from_slice(b"\nf -1\n");
     }
 
-    /// A line without its comment, joined with those that a final backslash continues it on.
+    /// Returns the next line without its comment, joined with the lines that continue it after a final
+    /// backslash.
     fn next_logical_line(&mut self) -> Option<String> {
         let mut line = String::new();
         loop {
@@ -223,14 +229,13 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// Converts an error of `tobj`, with line and text.
     fn fault(&self, error: LoadError) -> Fault {
         let what = match error {
-            LoadError::PositionParseError => {
-                "a vertex needs 3 numbers, and none but a weight after them"
-            }
-            LoadError::FaceParseError => "a face needs vertex indices",
+            LoadError::PositionParseError => "a vertex needs 3 numbers, and may have a weight",
+            LoadError::FaceParseError => "a face needs valid vertex indices",
             LoadError::ScalingByZeroError => "a vertex has the weight 0",
-            _ => "not understood",
+            _ => "invalid line",
         };
         Fault::new(Place::Line(self.number), format!("{what}: {}", quoted(self.original.trim())))
     }
@@ -259,7 +264,7 @@ impl Read for Lines<'_> {
     }
 }
 
-/// The first face that names a vertex that is not there.
+/// Finds the first face with a vertex index that is out of range.
 fn unknown_vertex(text: &str) -> Fault {
     let mut lines = Lines::new(text);
     let mut total = 0;
@@ -279,7 +284,10 @@ fn unknown_vertex(text: &str) -> Fault {
                         .parse()
                         .is_ok_and(|i: i64| (1..=total).contains(&i) || (-so_far..0).contains(&i));
                     if !known {
-                        let what = format!("there is no vertex {} among {total}", quoted(index));
+                        let what = format!(
+                            "vertex index {} is out of range; there are {total} vertices",
+                            quoted(index)
+                        );
                         return Fault::new(Place::Line(lines.number), what);
                     }
                 }
@@ -287,5 +295,5 @@ fn unknown_vertex(text: &str) -> Fault {
             _ => {}
         }
     }
-    Fault::new(Place::End, "a face names a vertex that is not there")
+    Fault::new(Place::End, "a face has a vertex index that is out of range")
 }

@@ -1,10 +1,10 @@
-//! OFF (Geomview's object file format), text.
+//! Reads OFF (Geomview's object file format), text.
 //!
-//! The first word is `OFF`, with a prefix for what follows the coordinates of each vertex
-//! (`ST` texture, `C` colour, `N` normal); then the counts of vertices, faces and edges, then one
-//! line per vertex and one per face (`n i_1 ... i_n [colour]`). `#` begins a comment; blank lines
-//! mean nothing. The counts may follow `OFF` directly, even without a space. What follows the last
-//! face is refused: the counts would be wrong.
+//! The first word is `OFF`, with a prefix for the data that follow the coordinates of each vertex (`ST`
+//! texture, `C` colour, `N` normal). Then come the numbers of vertices, faces and edges, one line for each
+//! vertex, and one for each face (`n i_1 ... i_n [colour]`). `#` begins a comment, and blank lines are ignored.
+//! The counts may follow `OFF` without a space. Text after the last face is rejected, because it shows that the
+//! counts are wrong.
 
 use glam::DVec3;
 
@@ -13,6 +13,7 @@ use crate::error::{Fault, Place};
 use crate::mesh::Mesh;
 use crate::text::{lines, number, quoted, without_mark};
 
+/// Parses an OFF file.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let text = String::from_utf8_lossy(without_mark(bytes)?);
     let mut lines = lines(&text).enumerate().filter_map(|(number, line)| {
@@ -25,10 +26,14 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
 
     let header = next("the word `OFF`")?;
     let rest = after_magic(&header)?;
-    let counts = if rest.content.is_empty() { next("the line of counts")? } else { rest };
+    let counts = if rest.content.is_empty() {
+        next("the line with the numbers of vertices and faces")?
+    } else {
+        rest
+    };
     let (vertex_count, face_count) = parse_counts(&counts)?;
-    // A vertex takes three digits, two spaces and a line end, a face one digit and a line end;
-    // the last line may lack its end.
+    // A vertex needs three digits, two spaces and a line end, a face one digit and a line end. The last line
+    // may have no end.
     if vertex_count * 6 + face_count * 2 > bytes.len() + 1 {
         return Err(counts.fault(format!(
             "{vertex_count} vertices and {face_count} faces cannot fit in {} bytes",
@@ -49,45 +54,49 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     }
     match next("") {
         Ok(line) => Err(line.fault(format!(
-            "more follows the {vertex_count} vertices and {face_count} faces of the header"
+            "unexpected text after the {vertex_count} vertices and {face_count} faces of the header"
         ))),
         Err(_) => Ok(mesh),
     }
 }
 
+/// A line that is neither blank nor a comment, with its number from 1.
 struct Line<'a> {
     number: usize,
     content: &'a str,
 }
 
 impl Line<'_> {
+    /// Builds an error at this line.
     fn fault(&self, what: impl Into<String>) -> Fault {
         Fault::new(Place::Line(self.number), what)
     }
 }
 
-/// What follows the word `OFF` on its line.
+/// Returns the text after the word `OFF` on its line.
 fn after_magic<'a>(line: &Line<'a>) -> Result<Line<'a>, Fault> {
     let Some((prefix, rest)) = line.content.split_once("OFF") else {
         return Err(line.fault(format!("expected `OFF`, found {}", quoted(line.content))));
     };
     if !matches!(prefix, "" | "ST" | "C" | "N" | "CN" | "STC" | "STN" | "STCN") {
         return Err(line.fault(format!(
-            "the variant {} is not supported (only three-dimensional text files are)",
+            "the variant {} is not supported; accepted: OFF with the prefix ST, C or N, three-dimensional",
             quoted(&format!("{prefix}OFF"))
         )));
     }
     let rest = rest.trim();
     if rest.to_ascii_uppercase().starts_with("BINARY") {
-        return Err(line.fault("binary OFF files are not supported"));
+        return Err(line.fault("binary OFF files are not supported; save the file as text"));
     }
     Ok(Line { number: line.number, content: rest })
 }
 
+/// Parses the numbers of vertices and faces.
 fn parse_counts(line: &Line<'_>) -> Result<(usize, usize), Fault> {
     let mut words = line.content.split_whitespace();
     let mut count = |what: &str| {
-        let word = words.next().ok_or_else(|| line.fault(format!("no number of {what}")))?;
+        let word =
+            words.next().ok_or_else(|| line.fault(format!("the number of {what} is missing")))?;
         word.parse::<u32>()
             .map(|count| count as usize)
             .map_err(|_| line.fault(format!("{} is not a number of {what}", quoted(word))))
@@ -95,18 +104,21 @@ fn parse_counts(line: &Line<'_>) -> Result<(usize, usize), Fault> {
     Ok((count("vertices")?, count("faces")?))
 }
 
+/// Parses the coordinates of a vertex.
 fn parse_vertex(line: &Line<'_>) -> Result<(DVec3, [Printed; 3]), Fault> {
     let mut xyz = [0.0; 3];
     let mut printed = [Printed::default(); 3];
     let mut words = line.content.split_whitespace();
     for (c, form) in xyz.iter_mut().zip(&mut printed) {
-        let word = words.next().ok_or_else(|| line.fault("a vertex needs 3 coordinates"))?;
+        let word =
+            words.next().ok_or_else(|| line.fault("a vertex needs 3 coordinates; fewer found"))?;
         let refused = || line.fault(format!("{} is not a number", quoted(word)));
         (*c, *form) = number(word).ok_or_else(refused)?;
     }
     Ok((DVec3::from_array(xyz), printed))
 }
 
+/// Parses the vertex indices of a face.
 fn parse_face(line: &Line<'_>, vertex_count: usize) -> Result<Vec<u32>, Fault> {
     let mut words = line.content.split_whitespace();
     let word = words.next().unwrap_or_default();
@@ -118,7 +130,7 @@ fn parse_face(line: &Line<'_>, vertex_count: usize) -> Result<Vec<u32>, Fault> {
         .map(|word| match word.parse::<u32>() {
             Ok(index) if (index as usize) < vertex_count => Ok(index),
             Ok(index) => Err(line.fault(format!(
-                "there is no vertex {index}; the last of {vertex_count} is {}",
+                "vertex index {index} is out of range; accepted: 0 to {}",
                 vertex_count.saturating_sub(1)
             ))),
             Err(_) => Err(line.fault(format!("{} is not a vertex index", quoted(word)))),

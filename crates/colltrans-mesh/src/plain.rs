@@ -1,26 +1,26 @@
-//! Control characters in names that files hold: those that do something instead of being seen.
+//! Escapes control characters and invisible characters in names from files.
 //!
-//! A name may hold codes that move a terminal's cursor or end a line of a table, marks that turn the order
-//! of letters round, and characters without any width, so that two names look like one.
+//! Names may contain codes that move the cursor of a terminal or end a table row, marks that reverse the order
+//! of letters, and characters without width, by which different names look equal.
 
 use std::borrow::Cow;
 
-/// Whether a character does something, or nothing, instead of being seen.
+/// Checks whether a character is invisible or controls the output.
 pub fn steers(c: char) -> bool {
     c.is_control()
-        // The order of letters; ends of lines; what has no width.
+        // Direction marks, line separators, and characters of width zero.
         || matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
         || matches!(c, '\u{2060}'..='\u{2064}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
-        // Tags: a second text that nobody sees.
+        // Tag characters, which encode an invisible second text.
         || matches!(c, '\u{e0000}'..='\u{e007f}')
 }
 
-/// A text with all that [steers] written out: `\u{1b}`, `\n`.
+/// Escapes all characters that [steers] matches, for example as `\u{1b}` or `\n`.
 pub fn shown(text: &str) -> Cow<'_, str> {
     written_out(text, steers, |c| c.escape_default().to_string())
 }
 
-/// A text with what is wanted written as `escape` says.
+/// Replaces the characters that `wanted` matches by the results of `escape`.
 pub fn written_out(
     text: &str,
     wanted: impl Fn(char) -> bool,

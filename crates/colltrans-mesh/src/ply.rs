@@ -1,9 +1,9 @@
-//! PLY, text and binary, through `ply-rs-bw`.
+//! Reads PLY, text and binary, with `ply-rs-bw`.
 //!
-//! Read are `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or `vertex_index`)
-//! of the element `face`; all else is skipped, except triangle strips, which would be missed.
-//! Before anything is read, the header's counts are compared with the bytes that are there, and
-//! bytes that are left in the end are refused, unless they are blank.
+//! The reader uses `x`, `y`, `z` of the element `vertex`, and the list `vertex_indices` (or `vertex_index`) of
+//! the element `face`. Other elements are skipped, except triangle strips, which are rejected because their
+//! faces would be lost. Before reading, the counts of the header are compared with the available bytes.
+//! Remaining bytes other than whitespace and zeros are rejected.
 
 mod why;
 
@@ -22,7 +22,7 @@ use crate::merge::Precision;
 use crate::mesh::Mesh;
 use crate::text::{lines, number, quoted, without_mark};
 
-/// The mesh, and the precision of its coordinates.
+/// Parses a PLY file. Returns the mesh and the precision of its coordinates.
 pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let bytes = with_line_feeds(without_mark(bytes)?);
     let bytes = with_readable_comments(bytes);
@@ -62,13 +62,13 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     if rest.iter().all(|b| *b == 0 || b.is_ascii_whitespace()) {
         Ok((mesh, precision))
     } else {
-        let what = format!("{} bytes follow the elements that the header promises", rest.len());
+        let what = format!("{} unexpected bytes after the elements of the header", rest.len());
         Err(Fault::new(Place::End, what))
     }
 }
 
-/// Returns how the coordinates of each vertex are printed, of the rows of a text; `None` where the words of these
-/// rows are not the coordinates that the parser found, for example where a list precedes them.
+/// Returns the printed forms of the coordinates of each vertex of a text. `None` if the words of the rows are
+/// not the coordinates that the parser found, for example because a list precedes them.
 fn printed(rows: &[u8], header: &Header, vertices: &[DVec3]) -> Option<Vec<[Printed; 3]>> {
     let rows = std::str::from_utf8(rows).ok()?;
     let before = header.elements.iter().take_while(|(name, _)| name.as_str() != "vertex");
@@ -90,10 +90,10 @@ fn printed(rows: &[u8], header: &Header, vertices: &[DVec3]) -> Option<Vec<[Prin
     vertices.iter().map(form).collect()
 }
 
-/// Turns line ends of a lone CR into LF, in the header and, where it is text, in what follows.
+/// Replaces line ends of a lone CR by LF in the header, and in the data if they are text.
 ///
-/// How the first line ends tells how the header's last one does: in a binary file the byte after a
-/// lone CR may be a number that looks like LF.
+/// The first line end shows how the last line of the header ends. In a binary file the byte after a lone CR may
+/// be a number that equals LF.
 fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
     const END: &[u8] = b"\rend_header\r";
     if !bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply\r\n") {
@@ -110,8 +110,8 @@ fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(bytes)
 }
 
-/// Replaces the bytes beyond ASCII in comments of a header that is not UTF-8, which the parser refuses. Many
-/// programs write names of files and people there in the code page of their system.
+/// Replaces non-ASCII bytes in the comments of a header that is not UTF-8, because the parser would reject it.
+/// Many programs write the names of files and people in the code page of the system.
 fn with_readable_comments(bytes: Cow<'_, [u8]>) -> Cow<'_, [u8]> {
     const END: &[u8] = b"end_header";
     let end = bytes.windows(END.len()).position(|window| window == END);
@@ -130,7 +130,7 @@ fn with_readable_comments(bytes: Cow<'_, [u8]>) -> Cow<'_, [u8]> {
     Cow::Owned(bytes)
 }
 
-/// The parser's error, in one line. Where the file is binary, lines mean nothing.
+/// Converts an error of the parser to one line. For binary files, line numbers are omitted.
 fn fault(error: &ParseError, text: bool) -> Fault {
     let place = match error.line() {
         Some(line) if text => Place::Line(line),
@@ -144,7 +144,7 @@ fn fault(error: &ParseError, text: bool) -> Fault {
     };
     let first = message.lines().next().unwrap_or_default().trim();
     let reason = message.lines().last().unwrap_or_default().trim();
-    // What the parser's generator tells of its own state helps nobody.
+    // The parser generator's internal state is omitted.
     if first == reason || reason.starts_with("Error: ParseError") {
         Fault::new(place, first)
     } else {
@@ -152,20 +152,21 @@ fn fault(error: &ParseError, text: bool) -> Fault {
     }
 }
 
-/// The header must not promise more elements than the rest of the file has room for.
+/// Rejects a header that declares more elements than the remaining bytes can contain.
 fn check_counts(header: &Header, bytes_left: usize) -> Result<(), Fault> {
     let mut needed = 0_usize;
     for (name, element) in &header.elements {
         let smallest = match header.encoding {
-            // A line of text has its end and one digit per property.
+            // A line of text has its end and at least one digit for each property.
             Encoding::Ascii => 1 + element.properties.len(),
             _ => element.properties.iter().map(|(_, p)| smallest_size(&p.data_type)).sum(),
         };
         if smallest == 0 && element.count > 0 {
-            let what = format!("the element {} has no properties", quoted(name));
+            let what =
+                format!("the element {} has no properties, but a count above 0", quoted(name));
             return Err(Fault::new(Place::Header, what));
         }
-        // The last line may lack its end.
+        // The last line may have no end.
         needed = needed.saturating_add(smallest.saturating_mul(element.count));
         if needed > bytes_left.saturating_add(1) {
             return Err(Fault::new(
@@ -181,6 +182,7 @@ fn check_counts(header: &Header, bytes_left: usize) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Returns the smallest size of a property in bytes.
 fn smallest_size(property: &PropertyType) -> usize {
     let (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _)) = property;
     match scalar {
@@ -191,12 +193,12 @@ fn smallest_size(property: &PropertyType) -> usize {
     }
 }
 
-/// What is read must be there; returns the precision of the coordinates.
+/// Checks that the required properties exist. Returns the precision of the coordinates.
 fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
     let fault = |what: String| Fault::new(Place::Header, what);
     let element = |name: &str| header.elements.iter().find(|(n, _)| n.as_str() == name);
     let (_, vertex) =
-        element("vertex").ok_or_else(|| fault("there is no element `vertex`".into()))?;
+        element("vertex").ok_or_else(|| fault("the element `vertex` is missing".into()))?;
     let mut single = false;
     for coordinate in ["x", "y", "z"] {
         let property = vertex.properties.get(coordinate);
@@ -206,7 +208,9 @@ fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
             PropertyType::Scalar(ScalarType::Float) => single = true,
             PropertyType::Scalar(_) => {}
             PropertyType::List(..) => {
-                return Err(fault(format!("the property `{coordinate}` of `vertex` is a list")));
+                return Err(fault(format!(
+                    "the property `{coordinate}` of `vertex` is a list; expected a number"
+                )));
             }
         }
     }
@@ -217,42 +221,43 @@ fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
         }
         if !lists.all(|list| is_list_of_integers(&list.data_type)) {
             return Err(fault(
-                "the vertex indices of `face` are not a list of integers, counted by an integer"
+                "the vertex indices of `face` must be a list of integers, with an integer length"
                     .into(),
             ));
         }
     }
     if element("tristrips").is_some() {
-        return Err(fault("triangle strips are not supported".into()));
+        return Err(fault("triangle strips are not supported; export the mesh as faces".into()));
     }
     Ok(Precision { single, text })
 }
 
+/// Checks whether a property is a list of integers with an integer length.
 fn is_list_of_integers(property: &PropertyType) -> bool {
     let PropertyType::List(count, scalar) = property else { return false };
     [count, scalar].into_iter().all(|kind| !matches!(kind, ScalarType::Float | ScalarType::Double))
 }
 
-/// The names that the corners of a face go by.
+/// The names of the property with the vertex indices of a face.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// A row of any element: the parser, which is large, is compiled for one kind.
+/// A row of any element. One type for all elements, because the large parser is compiled once for each type.
 struct Row {
     point: DVec3,
-    /// `None` where an index is negative.
+    /// The vertex indices of a face; `None` if one is negative.
     corners: Option<Vec<u32>>,
 }
 
 impl Row {
-    /// The corners of the face of this number.
+    /// Returns the vertex indices of face `index`, or an error if one is out of range.
     fn checked(self, index: usize, vertex_count: usize) -> Result<Vec<u32>, Fault> {
         let Some(corners) = self.corners else {
-            return Err(Fault::new(Place::Face(index), "a vertex index is negative"));
+            return Err(Fault::new(Place::Face(index), "negative vertex index"));
         };
         match corners.iter().find(|&&v| v as usize >= vertex_count) {
             Some(vertex) => Err(Fault::new(
                 Place::Face(index),
-                format!("there is no vertex {vertex} among {vertex_count}"),
+                format!("vertex index {vertex} is out of range; there are {vertex_count} vertices"),
             )),
             None => Ok(corners),
         }
@@ -284,7 +289,7 @@ impl PropertyAccess for Row {
             Property::UInt(v) => f64::from(v),
             Property::Float(v) => f64::from(v),
             Property::Double(v) => v,
-            // Of another element: those of `vertex` are numbers.
+            // A list of another element. The coordinates of `vertex` are numbers.
             _ => return PropertyAccessResult::Ignored,
         };
         PropertyAccessResult::Set

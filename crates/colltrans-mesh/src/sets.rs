@@ -1,18 +1,20 @@
-//! Disjoint sets of numbers that grow together, each member one way round or the other.
+//! Union-find over numbers, with the relative orientation of the members of a set.
 
-/// Disjoint sets of `0..n`.
+/// A partition of `0..n` into sets. Two members of a set have equal or opposite orientation.
 pub(crate) struct Sets {
-    /// A member of the same set that is nearer to its first one, and whether they are one way round.
+    /// For each number its parent in the tree of its set, and whether their orientations are opposite. A root
+    /// is its own parent.
     above: Vec<(usize, bool)>,
 }
 
 impl Sets {
-    /// Each number alone.
+    /// Builds a partition in which each number is a set of its own.
     pub(crate) fn new(count: usize) -> Self {
         Self { above: (0..count).map(|k| (k, false)).collect() }
     }
 
-    /// What stands for the set of a number, and whether the number is the other way round than that.
+    /// Returns the root of a number's set, which is its smallest member, and whether their orientations are
+    /// opposite. Shortens the path to the root.
     pub(crate) fn find(&mut self, number: usize) -> (usize, bool) {
         let (mut first, mut other) = (number, false);
         while self.above[first].0 != first {
@@ -28,8 +30,8 @@ impl Sets {
         (first, other)
     }
 
-    /// Joins the sets of two, which are the other way round than each other if `against`; whether they are
-    /// that way, which they may not be if they were in one set before.
+    /// Joins the sets of two numbers, whose orientations are opposite if `against`. Returns whether the
+    /// orientations are consistent. They may be inconsistent only if both numbers were in one set before.
     pub(crate) fn join(&mut self, a: usize, b: usize, against: bool) -> bool {
         let ((a, x), (b, y)) = (self.find(a), self.find(b));
         let wanted = x ^ y ^ against;

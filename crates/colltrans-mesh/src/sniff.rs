@@ -1,24 +1,23 @@
-//! Tells what a file holds by its first bytes, whatever its name says.
+//! Identifies the contents of a file from its first bytes, regardless of its name.
 //!
-//! Only what is certain is told: signatures, and first words that no other format begins with.
-//! A reader that were given the wrong format might find nothing wrong: an OBJ file, for one, is a
-//! list of keywords of which most do not matter.
+//! Only certain results are returned, from signatures and first words that no other format has. A reader might
+//! accept a file of another format: for example, the OBJ reader ignores unknown keywords.
 
 use crate::Format;
 use crate::stl;
 use crate::text::{lines, without_mark};
 
-/// What is in a file.
+/// The contents of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
-    /// A format that can be read.
+    /// A supported mesh format.
     Mesh(Format),
-    /// Something else that is known by name.
+    /// Another known format, named with its article.
     Other(&'static str),
 }
 
 impl Content {
-    /// In words, for messages.
+    /// Returns the name for messages, with its article.
     pub(crate) fn name(self, bytes: &[u8]) -> &'static str {
         match self {
             Self::Mesh(Format::Stl) if stl::is_text(bytes) => "a text STL file",
@@ -29,9 +28,9 @@ impl Content {
     }
 }
 
-/// Signatures of files that people take for meshes, or that take the place of one.
+/// Signatures of files that are mistaken for meshes.
 const SIGNATURES: [(&[u8], &str); 18] = [
-    (b"PK\x03\x04", "a ZIP archive (3MF files and packed meshes are such)"),
+    (b"PK\x03\x04", "a ZIP archive (for example a 3MF file or packed meshes)"),
     (b"\x1f\x8b", "a gzip archive"),
     (b"7z\xbc\xaf\x27\x1c", "a 7z archive"),
     (b"glTF", "a binary glTF file"),
@@ -51,13 +50,13 @@ const SIGNATURES: [(&[u8], &str); 18] = [
     (b"{", "a JSON file"),
 ];
 
-/// First words that only OBJ files begin with.
+/// First words that occur only in OBJ files.
 const OBJ_WORDS: [&str; 11] = ["v", "vt", "vn", "vp", "f", "o", "g", "s", "mtllib", "usemtl", "mg"];
 
-/// So many bytes from the start are looked at, where that is not in the first ones.
+/// Number of bytes at the start that are searched.
 const LOOKED_AT: usize = 1 << 16;
 
-/// What the bytes are, where that is certain.
+/// Identifies the contents; `None` if they are not certain.
 pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
     if stl::is_exactly_binary(bytes) {
         return Some(Content::Mesh(Format::Stl));
@@ -76,7 +75,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
     if let Some((_, name)) = SIGNATURES.iter().find(|(signature, _)| is(signature)) {
         return Some(Content::Other(name));
     }
-    // `solid` alone is no word of the other formats, and neither are the rest.
+    // `solid` does not occur as a word of the other formats, nor do the others.
     let first = first_words(start)?;
     let mut words = first.split_whitespace();
     let (word, next) = (words.next()?, words.next());
@@ -90,14 +89,14 @@ pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
     Some(Content::Mesh(format))
 }
 
-/// `OFF` with a prefix of capitals, and perhaps a count right behind it.
+/// Checks for `OFF` with a prefix, optionally followed directly by digits of a count.
 fn is_off(word: &str) -> bool {
     let Some((prefix, rest)) = word.split_once("OFF") else { return false };
     matches!(prefix, "" | "ST" | "C" | "N" | "CN" | "STC" | "STN" | "STCN" | "4" | "n")
         && rest.bytes().all(|b| b.is_ascii_digit())
 }
 
-/// The first line that is neither blank nor a comment, among the first ones.
+/// Returns the first line of the searched bytes that is neither blank nor a comment.
 fn first_words(start: &[u8]) -> Option<String> {
     let text = String::from_utf8_lossy(&start[..start.len().min(LOOKED_AT)]);
     let mut contents = lines(&text).map(|line| line.split('#').next().unwrap_or_default().trim());

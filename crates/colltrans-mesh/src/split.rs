@@ -1,7 +1,7 @@
-//! The parts of a mesh: what its file names, and faces that are picked by number.
+//! Splits a mesh into the parts that its file names, or by the numbers of its faces.
 //!
-//! A group that a file names need not be a body: exporters make groups of materials and of the sides of one body. Groups
-//! whose surfaces go on in each other, each open along an edge of theirs, are one part, with the first one's name.
+//! A named group need not be a body, because exporters group faces by material or by side. Groups that share an
+//! open edge continue each other and form one part, with the name of the first one.
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,15 @@ use crate::edges::{by_edge, uses};
 use crate::mesh::{Groups, Mesh};
 use crate::sets::Sets;
 
-/// A vertex that is not in use.
+/// The marker of a vertex that is not in use.
 const NONE: u32 = u32::MAX;
 
 impl Mesh {
-    /// The parts that the file names ([`Groups`]), in its order, each with vertices of its own; empty where these are
-    /// fewer than two.
+    /// Returns the parts that the file names ([`Groups`]), in its order, each with its own vertices. Empty if
+    /// there are fewer than two parts.
     ///
-    /// Groups that go on in each other are one part: at some edge either has a side without one that runs the other
-    /// way.
+    /// Two groups belong to one part if at some edge both have sides without a matching side in the opposite
+    /// direction.
     pub fn named(&self) -> Vec<(String, Self)> {
         let Groups { names, of_face } = &self.groups;
         if of_face.len() != self.faces.len() || of_face.iter().any(|&g| g as usize >= names.len()) {
@@ -31,7 +31,7 @@ impl Mesh {
                 *balance.entry(of_face[side.face]).or_default() +=
                     if side.backward { -1 } else { 1 };
             }
-            // Also of faces that run against each other: what is left over of each is one side or more.
+            // The sum over the directions is also not 0 if faces have opposite orientations.
             let mut open =
                 balance.into_iter().filter(|(_, sides)| *sides != 0).map(|(g, _)| g as usize);
             if let Some(first) = open.next() {
@@ -40,7 +40,7 @@ impl Mesh {
                 });
             }
         }
-        // Sets stand in the order of their first groups, as those are the lowest of each.
+        // The sets are ordered by their first groups, because the root of a set is its smallest member.
         let mut places: BTreeMap<usize, u32> = BTreeMap::new();
         for &group in of_face {
             places.insert(sets.find(group as usize).0, 0);
@@ -56,8 +56,8 @@ impl Mesh {
         places.keys().map(|&group| names[group].clone()).zip(meshes).collect()
     }
 
-    /// Meshes of the faces with each number below `count`, in their order; each with the vertices in use alone, in the
-    /// order of this mesh. Corners of faces are vertices of the mesh.
+    /// Splits the faces by their numbers. Returns a mesh for each number below `count`, with the faces and the
+    /// used vertices in the order of this mesh. All corners must be valid vertex indices.
     pub fn picked(&self, number_of_face: &[u32], count: usize) -> Vec<Self> {
         let mut faces: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (k, &number) in number_of_face.iter().enumerate() {
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn groups_that_go_on_in_each_other_are_one() {
-        // The sides of one cube, as groups of a material; and two cubes that touch, which are two.
+        // The sides of one cube as groups of a material, and two cubes that touch, which are two parts.
         let cube = block(DVec3::ZERO, DVec3::ONE);
         let of = |range: std::ops::Range<usize>| {
             let faces = cube.faces[range].to_vec();

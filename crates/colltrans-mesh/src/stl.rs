@@ -1,12 +1,13 @@
-//! STL: binary (through `stl_io`) and text.
+//! Reads STL, binary (with `stl_io`) and text.
 //!
-//! A binary file is 80 bytes of header, a count `n` and `50 n` bytes of triangles; many begin with
-//! the word `solid` as text files do, so the first word does not decide. A file of exactly
-//! the size that its count implies is binary; of the others those are text that begin with `solid`, perhaps
-//! after comments (`;`, `#`, `//`), and that hold no control characters, as binary numbers do, or whose second
-//! line is one of text STL. Other text is refused. NUL and Ctrl-Z at the start and the end are padding. Text is read here, because it may hold
-//! several solids and more digits than single precision, and because its errors should name a
-//! line. Either way equal vertices are merged.
+//! - A binary file has a header of 80 bytes, a count `n`, and `50 n` bytes of triangles. A file with exactly
+//!   this size is binary, even if it begins with `solid`.
+//! - Another file is text if it begins with `solid`, possibly after comments (`;`, `#`, `//`), and either has
+//!   no control characters or has a second line of text STL. Other text is rejected.
+//! - NUL and Ctrl-Z at the start and at the end are padding.
+//!
+//! This module parses text itself, because a file may have several solids and more digits than single
+//! precision, and because errors should have a line. In both cases equal vertices are merged.
 
 use std::io::Cursor;
 
@@ -18,10 +19,12 @@ use crate::merge::Precision;
 use crate::mesh::Mesh;
 use crate::text::{lines, number, quoted, without_mark};
 
+/// Number of bytes of the header of a binary file, without the count.
 const HEADER: usize = 80;
+/// Number of bytes of a triangle in a binary file.
 const TRIANGLE: usize = 50;
 
-/// The mesh, and the precision of its coordinates.
+/// Parses an STL file. Returns the mesh and the precision of its coordinates.
 pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
     if bytes.is_empty() {
         return Err(Fault::new(Place::End, "the file is empty"));
@@ -33,19 +36,19 @@ pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
         return Ok((parse_text(&text)?.weld(), Precision::TEXT));
     }
     if !is_exactly_binary(&bytes) {
-        // A mark of UTF-16 is the likelier reason.
+        // UTF-16 text is checked first, because it explains the error better.
         check_is_no_text(without_mark(&bytes)?)?;
         check_size(&bytes)?;
     }
     Ok((parse_binary(bytes)?.weld(), Precision::SINGLE))
 }
 
-/// Whether the size is the one that the triangle count of a binary file implies.
+/// Checks whether the size equals that given by the triangle count of a binary file.
 pub(crate) fn is_exactly_binary(bytes: &[u8]) -> bool {
     promised_size(bytes).is_some_and(|promised| promised == bytes.len() as u64)
 }
 
-/// Whether the file begins as a text STL does and is text.
+/// Checks whether the file is text and begins like text STL.
 pub(crate) fn is_text(bytes: &[u8]) -> bool {
     let Ok(text) = without_mark(bytes).map(without_leading_padding) else { return false };
     let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
@@ -65,34 +68,34 @@ fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b";") || line.starts_with(b"#") || line.starts_with(b"//")
 }
 
-/// Checks whether a byte is one that some programs put before the start and behind the end of text: NUL or Ctrl-Z.
+/// Checks whether a byte is padding, which some programs write before and after text: NUL or Ctrl-Z.
 const fn is_padding(byte: u8) -> bool {
     matches!(byte, 0 | 0x1a)
 }
 
-/// Returns text without padding before its start.
+/// Removes padding at the start.
 fn without_leading_padding(text: &[u8]) -> &[u8] {
     let first = text.iter().position(|byte| !is_padding(*byte));
     &text[first.unwrap_or(0)..]
 }
 
-/// Returns text without padding.
+/// Removes padding and whitespace at the end, and padding at the start.
 fn without_padding(text: &[u8]) -> &[u8] {
     let text = without_leading_padding(text);
     let is_text = |byte: &u8| !is_padding(*byte) && !byte.is_ascii_whitespace();
     &text[..text.iter().rposition(is_text).map_or(0, |last| last + 1)]
 }
 
-/// Checks that nothing follows the character that ends a text on some systems.
+/// Checks that nothing follows Ctrl-Z, which ends a text on some systems.
 fn check_end(text: &[u8]) -> Result<(), Fault> {
     let Some(end) = text.iter().position(|byte| *byte == 0x1a) else { return Ok(()) };
     let (before, rest) = text.split_at(end);
     let line = lines(&String::from_utf8_lossy(before)).count();
-    let what = format!("Ctrl-Z ends the text, but {} bytes follow it; delete them", rest.len() - 1);
+    let what = format!("{} bytes follow Ctrl-Z, which ends the text; delete them", rest.len() - 1);
     Err(Fault::new(Place::Line(line), what))
 }
 
-/// Checks that the bytes, which do not begin as text STL, are no text at all.
+/// Checks that bytes without the beginning of text STL are not text.
 fn check_is_no_text(bytes: &[u8]) -> Result<(), Fault> {
     let bytes = bytes.strip_suffix(b"\x1a").unwrap_or(bytes);
     if has_control(bytes) {
@@ -101,30 +104,31 @@ fn check_is_no_text(bytes: &[u8]) -> Result<(), Fault> {
     let text = String::from_utf8_lossy(bytes);
     let is_blank = |line: &str| line.trim().is_empty() || is_comment(line.trim().as_bytes());
     let Some((number, line)) = lines(&text).enumerate().find(|(_, line)| !is_blank(line)) else {
-        return Err(Fault::new(Place::End, "a text without the line `solid`, where STL begins"));
+        return Err(Fault::new(Place::End, "text without the line `solid`, with which STL begins"));
     };
-    let what = format!("text STL begins with `solid`, not with {}", quoted(line.trim()));
+    let what = format!("text STL must begin with `solid`, found {}", quoted(line.trim()));
     Err(Fault::new(Place::Line(number + 1), what))
 }
 
-/// Characters that no text holds, but numbers in binary do.
+/// Checks for control characters, which occur in binary numbers but not in text.
 pub(crate) fn has_control(bytes: &[u8]) -> bool {
     bytes.iter().any(|b| *b < b' ' && !(0x09..=0x0d).contains(b))
 }
 
-/// The size that the triangle count of a binary file implies.
+/// Returns the size given by the triangle count of a binary file; `None` if the file is shorter than the
+/// header.
 fn promised_size(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(HEADER..HEADER + 4)?;
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
     Some(u64::from(count) * TRIANGLE as u64 + HEADER as u64 + 4)
 }
 
-/// A binary file must hold what its header promises, and no more than a little padding.
+/// Checks that a binary file has the triangles of its count, followed by zeros or less than one triangle.
 fn check_size(bytes: &[u8]) -> Result<(), Fault> {
     let fault = |what: String| Err(Fault::new(Place::End, what));
     let Some(promised) = promised_size(bytes) else {
         return fault(format!(
-            "neither text (no leading `solid`) nor binary ({} bytes; the header alone has {})",
+            "neither text (no `solid` at the start) nor binary ({} bytes; the header has {})",
             bytes.len(),
             HEADER + 4
         ));
@@ -132,23 +136,24 @@ fn check_size(bytes: &[u8]) -> Result<(), Fault> {
     let triangles = (promised - HEADER as u64 - 4) / TRIANGLE as u64;
     if (bytes.len() as u64) < promised {
         return fault(format!(
-            "the file is cut short: its header promises {triangles} triangles in {promised} bytes, \
-             it has {}",
+            "the file is truncated: {triangles} triangles in its header need {promised} bytes, \
+             found {}",
             bytes.len()
         ));
     }
     let rest = &bytes[promised as usize..];
     if rest.len() >= TRIANGLE && rest.iter().any(|&b| b != 0) {
         return fault(format!(
-            "{} bytes follow the {triangles} triangles that the header promises",
+            "{} unexpected bytes after the {triangles} triangles of the header",
             rest.len()
         ));
     }
     Ok(())
 }
 
+/// Parses a binary file.
 fn parse_binary(mut bytes: Vec<u8>) -> Result<Mesh, Fault> {
-    // A header that begins with `solid` would make the reader take the file for text.
+    // `stl_io` would take a file whose header begins with `solid` for text.
     bytes[..HEADER].fill(0);
     let fault = |e: std::io::Error| Fault::new(Place::End, e.to_string());
     let mut cursor = Cursor::new(bytes);
@@ -161,17 +166,21 @@ fn parse_binary(mut bytes: Vec<u8>) -> Result<Mesh, Fault> {
     Ok(mesh)
 }
 
+/// Adds a face with new vertices.
 fn push_face(mesh: &mut Mesh, corners: &[DVec3]) -> Result<(), Fault> {
     let first = u32::try_from(mesh.vertices.len()).ok().filter(|f| *f < u32::MAX - 1024);
     let Some(first) = first.filter(|_| corners.len() <= 1024) else {
-        return Err(Fault::new(Place::Face(mesh.faces.len()), "too many corners"));
+        return Err(Fault::new(
+            Place::Face(mesh.faces.len()),
+            "too many corners; accepted: 1024 in a face, less than 2^32 in total",
+        ));
     };
     mesh.vertices.extend_from_slice(corners);
     mesh.faces.push((first..first + corners.len() as u32).collect());
     Ok(())
 }
 
-/// What has been begun and not yet ended.
+/// The innermost element that is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Inside {
     Nothing,
@@ -181,6 +190,7 @@ enum Inside {
 }
 
 impl Inside {
+    /// Returns the name of the element for messages.
     const fn name(self) -> &'static str {
         match self {
             Self::Nothing => "file",
@@ -190,7 +200,7 @@ impl Inside {
         }
     }
 
-    /// What is inside what after a keyword; `None` where it has no place.
+    /// Returns the innermost open element after a keyword; `None` if the keyword is not allowed here.
     fn after(self, keyword: &str) -> Option<Self> {
         Some(match (self, keyword) {
             (Self::Nothing, "solid") | (Self::Facet, "endfacet") => Self::Solid,
@@ -202,9 +212,11 @@ impl Inside {
     }
 }
 
+/// The keywords of text STL.
 const KEYWORDS: [&str; 7] =
     ["solid", "facet", "outer", "vertex", "endloop", "endfacet", "endsolid"];
 
+/// Parses a text file, without merging vertices.
 fn parse_text(text: &str) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
     let mut inside = Inside::Nothing;
@@ -225,7 +237,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
         let Some(next) = inside.after(&keyword) else {
             let what = match inside {
                 Inside::Nothing => format!("`{keyword}` outside a solid"),
-                _ => format!("`{keyword}` inside a {} that was not ended", inside.name()),
+                _ => format!("`{keyword}` inside a {} that is not closed", inside.name()),
             };
             return Err(at(what));
         };
@@ -240,7 +252,10 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
                 printed.push(form);
             }
             "endloop" if corners.len() < 3 => {
-                return Err(at(format!("a loop of {} vertices; 3 are needed", corners.len())));
+                return Err(at(format!(
+                    "a loop has {} vertices; at least 3 are required",
+                    corners.len()
+                )));
             }
             "endloop" => {
                 push_face(&mut mesh, &corners)?;
@@ -253,13 +268,14 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
         inside = next;
     }
     if inside != Inside::Nothing {
-        let what = format!("the last {} is not ended; the file is cut short", inside.name());
+        let what = format!("the last {} is not closed; the file is truncated", inside.name());
         return Err(Fault::new(Place::End, what));
     }
     mesh.groups = std::mem::take(&mut mesh.groups).several();
     Ok(mesh)
 }
 
+/// Parses the coordinates of a vertex, with their printed forms.
 fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<(DVec3, [Printed; 3]), String> {
     let mut xyz = [0.0; 3];
     let mut printed = [Printed::default(); 3];
@@ -272,7 +288,7 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<(DVec3, [Printed; 
         found += 1;
     }
     if found != 3 {
-        return Err(format!("{found} coordinates, not 3"));
+        return Err(format!("{found} coordinates, expected 3"));
     }
     Ok((DVec3::from_array(xyz), printed))
 }

@@ -1,18 +1,17 @@
-//! Text as files hold it: byte-order marks, three kinds of line ends, words in messages.
+//! Text in files: byte-order marks, line ends, and words for messages.
 
 use crate::digits::Printed;
 use crate::error::{Fault, Place};
 
+/// The byte-order mark of UTF-8.
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Whether the bytes begin with a byte-order mark of UTF-16 or UTF-32.
+/// Checks whether the bytes begin with a byte-order mark of UTF-16 or UTF-32.
 pub(crate) fn is_wide(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")
 }
 
-/// The bytes after a byte-order mark, which says nothing in UTF-8.
-///
-/// A mark of UTF-16 or UTF-32 is refused: no mesh format is written in them.
+/// Removes a byte-order mark of UTF-8. Rejects UTF-16 and UTF-32, which no mesh format uses.
 pub(crate) fn without_mark(bytes: &[u8]) -> Result<&[u8], Fault> {
     if is_wide(bytes) {
         let what = "text in UTF-16; save the file as plain text or UTF-8";
@@ -21,12 +20,12 @@ pub(crate) fn without_mark(bytes: &[u8]) -> Result<&[u8], Fault> {
     Ok(bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes))
 }
 
-/// The lines of a text that end with LF, CR LF or a lone CR, without their ends.
+/// Splits a text into lines that end with LF, CR LF or a lone CR. The line ends are not included.
 pub(crate) fn lines(text: &str) -> Lines<'_> {
     Lines { rest: text }
 }
 
-/// See [`lines`].
+/// The iterator of [`lines`].
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
     rest: &'a str,
@@ -48,12 +47,12 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Returns the number that a word is, and how it is printed; `None` if it is not a number.
+/// Parses a number. Returns its value and its printed form; `None` if the word is not a number.
 pub(crate) fn number(word: &str) -> Option<(f64, Printed)> {
     Some((word.parse().ok()?, Printed::of(word)))
 }
 
-/// A word of the file, cut to a length that fits a message.
+/// Quotes a word of the file, truncated to 40 characters, for a message.
 pub(crate) fn quoted(word: &str) -> String {
     let mut shown: String = word.chars().take(40).flat_map(char::escape_debug).collect();
     if word.chars().nth(40).is_some() {

@@ -1,6 +1,6 @@
-//! Numbers for people: as many digits as are known, and no `-0`; and how many there are of something.
+//! Formats numbers with their significant digits and without `-0`, and lists of names.
 
-/// All digits, with an exponent where there would be many zeros.
+/// Formats a number with all digits, with an exponent if there were many zeros.
 pub fn number(value: f64) -> String {
     if value == 0.0 {
         "0".into()
@@ -11,8 +11,8 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A number that is known to within an error: rounded to the decimal place of the error's first
-/// digit, so that what is dropped is less than the error; without zeros at the end.
+/// Formats a number with a known error. It is rounded at the decimal place of the error's first digit, so that
+/// the rounding error is at most the error. Trailing zeros are omitted.
 pub fn known(value: f64, error: f64) -> String {
     if !value.is_finite() || !error.is_normal() || value == 0.0 {
         return number(value);
@@ -20,16 +20,16 @@ pub fn known(value: f64, error: f64) -> String {
     let place = decade(error);
     let leading = decade(value);
     if place > leading {
-        // Nothing of it is known.
+        // No digit is significant.
         return if value.abs() <= error.abs() { "0".into() } else { format!("{value:.0e}") };
     }
-    // Digits after the first one; an f64 has no more than 17.
+    // Number of digits after the first one. An `f64` has at most 17 digits.
     let digits = (leading - place).clamp(0, 16) as usize;
     let rounded: f64 = format!("{value:.digits$e}").parse().unwrap_or(value);
     number(rounded)
 }
 
-/// Returns the first of some names, and how many more there are than `most`.
+/// Lists at most `most` names, followed by the number of the others.
 pub fn first_named<T: AsRef<str>>(names: &[T], most: usize) -> String {
     let first: Vec<&str> = names.iter().take(most).map(AsRef::as_ref).collect();
     match names.len().saturating_sub(most) {
@@ -38,12 +38,12 @@ pub fn first_named<T: AsRef<str>>(names: &[T], most: usize) -> String {
     }
 }
 
-/// Six digits, for what is measured and not proven.
+/// Formats a measured value with six digits.
 pub fn six_digits(value: f64) -> String {
     known(value, value.abs() * 1e-5)
 }
 
-/// One significant digit, rounded up: for errors and tolerances.
+/// Formats an error or a tolerance with one digit, rounded up in magnitude.
 pub fn about(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return number(value);
@@ -53,19 +53,19 @@ pub fn about(value: f64) -> String {
     if shown.abs() >= value.abs() {
         return nearest;
     }
-    // Rounded down; half a unit of the digit more is rounded up.
+    // The value was rounded down. Adding half a unit of the digit makes the rounding go up.
     let half: f64 = format!("5e{}", decade(value) - 1).parse().unwrap_or(0.0);
     format!("{:.0e}", value + half.copysign(value))
 }
 
-/// The power of ten of the first digit of a number that is finite and not 0: exact, as no logarithm
-/// of the platform is.
+/// Returns the decimal exponent of a finite number other than 0. It is exact, unlike the logarithms of the
+/// platform.
 pub fn decade(value: f64) -> i32 {
     let written = format!("{value:e}");
     written.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0)
 }
 
-/// How many there are of something.
+/// Formats a count with the singular or plural of a noun.
 pub fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(known(9.999_999_999_999_999, 1e-14), "10");
         assert_eq!(known(1e-20, 1e-30), "1e-20");
         assert_eq!(known(f64::INFINITY, 1.0), "inf");
-        // What is dropped is less than the error.
+        // The rounding error is at most the error.
         let mut value = 0.1_f64;
         while value < 1e6 {
             for error in [1e-3, 3e-9, 9.9e-12] {

@@ -1,4 +1,4 @@
-//! Writing meshes: OBJ and OFF (every digit kept), binary STL (single precision).
+//! Writes meshes as OBJ and OFF with all digits, and as binary STL in single precision.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,16 +10,16 @@ use crate::Format;
 use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// Writes a mesh in the format that the path's extension names: STL (binary), OBJ or OFF.
+/// Writes a mesh as STL (binary), OBJ or OFF. The extension of the path selects the format.
 ///
 /// # Errors
-/// The extension names no format that can be written, a face is no triangle in an STL
-/// file, or the file cannot be written.
+/// [`Error`] if the format cannot be written, a face of an STL file is not a triangle, or the file cannot be
+/// written.
 #[cfg_attr(
     not(feature = "dae"),
     expect(
         clippy::match_wildcard_for_single_variants,
-        reason = "a new format is read before it is written"
+        reason = "without COLLADA the wildcard matches PLY alone, but formats that are only read may be added"
     )
 )]
 pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), Error> {
@@ -27,16 +27,16 @@ pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), Error> {
     let not_storable = |what: &str| Error::NotStorable { path: path.to_owned(), what: what.into() };
     let bytes = match Format::of_path(path)? {
         Format::Stl => to_stl(mesh).ok_or_else(|| {
-            not_storable("an STL file holds triangles only, and fewer than 2^32 of them")
+            not_storable("STL files have only triangles, fewer than 2^32; triangulate the faces, or write OBJ or OFF")
         })?,
         Format::Obj => to_obj(mesh).into_bytes(),
         Format::Off => to_off(mesh).into_bytes(),
-        format => return Err(not_storable(&format!("{format} files are read, not written"))),
+        format => return Err(not_storable(&format!("writing {format} files is not supported; write STL, OBJ or OFF"))),
     };
     std::fs::write(path, bytes).map_err(|source| Error::Write { path: path.to_owned(), source })
 }
 
-/// The bytes of a binary STL file; `None` if a face is no triangle or there are too many.
+/// Returns a binary STL file; `None` if a face is not a triangle or there are 2^32 faces or more.
 ///
 /// Coordinates are rounded to single precision.
 pub fn to_stl(mesh: &Mesh) -> Option<Vec<u8>> {
@@ -56,11 +56,12 @@ pub fn to_stl(mesh: &Mesh) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
+/// Rounds a vector to single precision.
 fn single(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }
 
-/// The text of an OBJ file, with as many digits as each coordinate needs.
+/// Returns an OBJ file, with as many digits as each coordinate needs.
 pub fn to_obj(mesh: &Mesh) -> String {
     let mut text = String::new();
     for DVec3 { x, y, z } in &mesh.vertices {
@@ -76,7 +77,7 @@ pub fn to_obj(mesh: &Mesh) -> String {
     text
 }
 
-/// The text of an OFF file, with as many digits as each coordinate needs.
+/// Returns an OFF file, with as many digits as each coordinate needs.
 pub fn to_off(mesh: &Mesh) -> String {
     let mut text = format!("OFF\n{} {} 0\n", mesh.vertices.len(), mesh.faces.len());
     for DVec3 { x, y, z } in &mesh.vertices {

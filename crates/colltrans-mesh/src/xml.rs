@@ -1,39 +1,39 @@
-//! XML as a tree: names, attributes, text, lines. For the readers of this crate and of others.
+//! Parses XML into a tree of elements with names, attributes, text and line numbers.
 
 use std::collections::HashMap;
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::ResolveResult;
 
-/// Elements nested deeper are refused.
+/// Maximum depth of nested elements.
 const DEEPEST: usize = 64;
 
-/// A fault, and the line where it is.
+/// A place, such as a line, and the reason of an error.
 pub type Fault = (String, String);
 
-/// An element.
+/// An element of an XML document.
 #[derive(Debug, Default)]
 pub struct Element {
-    /// Its name, as it is written.
+    /// The qualified name.
     pub name: String,
-    /// Where it ends to begin, from 1.
+    /// The line in which the start tag ends, from 1.
     pub line: usize,
     attributes: HashMap<String, String>,
-    /// The elements in it.
+    /// The child elements.
     pub children: Vec<Element>,
-    /// The text in it, all of it one after another, but for what stands for something else (`&amp;`).
+    /// The concatenated text of the element, without character references such as `&amp;`.
     pub text: String,
 }
 
 impl Element {
-    /// The element that holds all others.
+    /// Parses a document and returns its root element.
     ///
     /// # Errors
-    /// What is wrong, and in which line.
+    /// [`Fault`] with place and reason.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         let mut reader = quick_xml::Reader::from_str(text);
         let mut lines = Lines::new(text);
-        // The last one is open; the first stands for the file.
+        // The stack of open elements. The first entry represents the document.
         let mut open = vec![Self::default()];
         loop {
             let line = lines.at(reader.buffer_position());
@@ -54,13 +54,16 @@ impl Element {
                 }
                 Event::Eof if open.len() > 1 => {
                     let name = open.pop().unwrap_or_default().name;
-                    return Err(("end of file".into(), format!("the element {name} is not ended")));
+                    return Err((
+                        "end of file".into(),
+                        format!("the element {name} is not closed"),
+                    ));
                 }
                 Event::Eof => break,
                 _ => continue,
             };
             if open.len() > DEEPEST {
-                let reason = format!("elements are nested deeper than {DEEPEST}");
+                let reason = format!("elements are nested deeper than the accepted {DEEPEST}");
                 return Err((place(), reason));
             }
             let attributes = attributes(tag).map_err(|e| (place(), e))?;
@@ -71,41 +74,42 @@ impl Element {
             }
         }
         let mut all = open.pop().map(|file| file.children).unwrap_or_default().into_iter();
-        all.next().ok_or_else(|| ("start of file".into(), "it holds no XML element".into()))
+        all.next().ok_or_else(|| ("start of file".into(), "the file has no XML element".into()))
     }
 
-    /// The children of a name.
+    /// Returns the child elements with this name.
     pub fn all(&self, name: &'static str) -> impl Iterator<Item = &Self> {
         self.children.iter().filter(move |child| child.name == name)
     }
 
-    /// The first child of a name.
+    /// Returns the first child element with this name, or `None`.
     pub fn first(&self, name: &'static str) -> Option<&Self> {
         self.all(name).next()
     }
 
-    /// An attribute.
+    /// Returns the value of an attribute, or `None`.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.attributes.get(name).map(String::as_str)
     }
 
-    /// An attribute that must be there.
+    /// Returns the value of an attribute.
     ///
     /// # Errors
-    /// It is not.
+    /// A message if the attribute is missing.
     pub fn need(&self, name: &str) -> Result<&str, String> {
-        self.get(name).ok_or_else(|| format!("<{}> has no attribute {name}", self.name))
+        self.get(name)
+            .ok_or_else(|| format!("<{}> has no attribute {name}, which is required", self.name))
     }
 
-    /// So many numbers of an attribute.
+    /// Parses `N` numbers in an attribute; `None` if the attribute is missing.
     ///
     /// # Errors
-    /// They are fewer, more, or no numbers.
+    /// A message if the value is not exactly `N` numbers.
     pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, String> {
         let Some(text) = self.get(name) else { return Ok(None) };
         let refused = || {
             let wanted = if N == 1 { "a number".into() } else { format!("{N} numbers") };
-            format!("{name}=\"{text}\" of <{}> is not {wanted}", self.name)
+            format!("{name}=\"{text}\" of <{}> is invalid; expected {wanted}", self.name)
         };
         let mut numbers = [0.0; N];
         let mut words = text.split_whitespace();
@@ -116,14 +120,15 @@ impl Element {
     }
 }
 
+/// Closes the last open element.
 fn close(open: &mut Vec<Element>) {
-    // The reader refuses ends without a start.
+    // The parser rejects end tags without a start tag.
     if let (Some(done), Some(above)) = (open.pop(), open.last_mut()) {
         above.children.push(done);
     }
 }
 
-/// Attributes by their names as they are written.
+/// Returns the attributes by their qualified names.
 fn attributes(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
     let mut all = HashMap::new();
     for attribute in tag.attributes() {
@@ -133,23 +138,23 @@ fn attributes(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
     Ok(all)
 }
 
-/// What is wrong with a text that is not XML, without the parser's own heads.
+/// Returns the message of a parse error without the prefixes of the parser.
 pub fn told(error: &quick_xml::Error) -> String {
     let message = error.to_string();
     let message = message.strip_prefix("ill-formed document: ").unwrap_or(&message);
     message.strip_prefix("syntax error: ").unwrap_or(message).to_owned()
 }
 
-/// The value of an attribute.
+/// Returns the unescaped value of an attribute.
 ///
 /// # Errors
-/// What stands for something else in it (`&amp;`) is not known.
+/// A message if it contains an unknown entity.
 pub fn value(attribute: &quick_xml::events::attributes::Attribute) -> Result<String, String> {
     let value = quick_xml::escape::unescape(&attribute.value).map_err(|e| e.to_string())?;
     Ok(value.into_owned())
 }
 
-/// The namespace of a name, if it has one.
+/// Returns the namespace of a resolved name, or `None`.
 pub fn namespace<'a>(resolved: &'a ResolveResult) -> Option<&'a str> {
     match resolved {
         ResolveResult::Bound(namespace) => Some(namespace.0),
@@ -157,7 +162,7 @@ pub fn namespace<'a>(resolved: &'a ResolveResult) -> Option<&'a str> {
     }
 }
 
-/// Lines of a text by places that only grow.
+/// Converts increasing positions in a text to line numbers.
 pub struct Lines<'a> {
     text: &'a str,
     seen: usize,
@@ -165,12 +170,12 @@ pub struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// From its start.
+    /// Starts at the beginning of a text.
     pub fn new(text: &'a str) -> Self {
         Self { text, seen: 0, line: 1 }
     }
 
-    /// The line, from 1, of a place.
+    /// Returns the line of a byte position, from 1. Positions must not decrease.
     pub fn at(&mut self, place: u64) -> usize {
         let place = (place as usize).clamp(self.seen, self.text.len());
         self.line += self.text.get(self.seen..place).map_or(0, |text| text.matches('\n').count());

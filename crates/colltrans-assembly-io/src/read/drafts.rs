@@ -11,7 +11,7 @@ use colltrans_mesh::words::first_named;
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::{MOST_PLACED, Names, contents, in_file};
+use super::{MOST_PLACED, Names, contents_error, assembly_error};
 use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly::{Assembly, Part, Piece};
@@ -71,7 +71,7 @@ pub(super) struct Draft {
     /// The colour, as red, green and blue in sRGB.
     pub(super) colour: Option<[f64; 3]>,
     /// Whether the source declares this to be one part.
-    pub(super) is_told: bool,
+    pub(super) is_one_part: bool,
     /// The rule of the source for this part, which overrides the option.
     pub(super) split: Option<Split>,
     /// The file of the part, if it is not the source.
@@ -101,7 +101,7 @@ impl Draft {
             fixed: false,
             chord_error: None,
             colour: None,
-            is_told: false,
+            is_one_part: false,
             split: None,
             file: None,
             place: None,
@@ -109,22 +109,22 @@ impl Draft {
     }
 
     /// Marks the draft as one part by declaration of the source.
-    pub(super) fn told(self) -> Self {
-        Self { is_told: true, ..self }
+    pub(super) fn as_one_part(self) -> Self {
+        Self { is_one_part: true, ..self }
     }
 
     /// Adds the file and the place of the draft to an error.
-    fn refused(&self, source: &Source, error: AssemblyError) -> ReadError {
+    fn located_error(&self, source: &Source, error: AssemblyError) -> ReadError {
         let path = self.file.as_deref().unwrap_or(source.path);
         match &self.place {
-            Some(place) => contents(path, place, error),
-            None => in_file(path)(error),
+            Some(place) => contents_error(path, place, error),
+            None => assembly_error(path)(error),
         }
     }
 }
 
 /// Builds the assembly of a source. `holds` describes the source for the error if there are no drafts.
-pub(super) fn assembled(
+pub(super) fn assemble(
     source: Source,
     drafts: Vec<Draft>,
     holds: &str,
@@ -133,29 +133,29 @@ pub(super) fn assembled(
     if drafts.is_empty() {
         return Err(ReadError::NoParts { path: path.into(), holds: holds.into() });
     }
-    let drafts = scaled(&source, drafts)?;
+    let drafts = apply_scales(&source, drafts)?;
     let alone = drafts.len() == 1;
-    let mut made = Made::default();
-    made.names.take(drafts.iter().map(|draft| &draft.name));
+    let mut builder = PartBuilder::default();
+    builder.names.reserve(drafts.iter().map(|draft| &draft.name));
     for draft in drafts {
-        made.draft(&source, &draft, alone)?;
-        if made.parts.len() > MOST_PLACED {
+        builder.add_draft(&source, &draft, alone)?;
+        if builder.parts.len() > MOST_PLACED {
             let reason = format!(
                 "more than {MOST_PLACED} bodies are placed; split the source into smaller ones"
             );
-            return Err(contents(path, "bodies", reason));
+            return Err(contents_error(path, "bodies", reason));
         }
     }
-    let kept = made.kept();
-    let assembly = Assembly::new(made.parts).map_err(in_file(path))?;
-    let notes = made.notes.into_iter().chain(kept);
+    let kept_note = builder.several_bodies_note();
+    let assembly = Assembly::new(builder.parts).map_err(assembly_error(path))?;
+    let notes = builder.notes.into_iter().chain(kept_note);
     Ok(notes.fold(assembly, Assembly::with_note).with_files(source.into_files()))
 }
 
 /// Applies the scale factors of the options. Rejects invalid factors and names without a draft.
-fn scaled(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, ReadError> {
+fn apply_scales(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, ReadError> {
     for (name, &factor) in &source.options.scales {
-        let refused = |error| in_file(source.path)(error);
+        let refused = |error| assembly_error(source.path)(error);
         if !(factor.is_finite() && factor > 0.0) {
             return Err(refused(AssemblyError::Length { what: "scale", value: factor }));
         }
@@ -180,36 +180,36 @@ fn scaled(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, ReadErr
 
 /// The parts that were built.
 #[derive(Default)]
-struct Made {
+struct PartBuilder {
     parts: Vec<Part>,
     names: Names,
     notes: Vec<String>,
     /// The names of the parts that consist of several closed bodies, with the number of bodies.
-    kept: Vec<(String, usize)>,
+    several_bodies: Vec<(String, usize)>,
 }
 
-impl Made {
+impl PartBuilder {
     /// Builds the part of a draft, or several if it is split. `alone` means that the source has no other
     /// drafts.
-    fn draft(&mut self, source: &Source, draft: &Draft, alone: bool) -> Result<(), ReadError> {
+    fn add_draft(&mut self, source: &Source, draft: &Draft, alone: bool) -> Result<(), ReadError> {
         let split = draft.split.unwrap_or(source.options.split);
-        let is_single = alone && !draft.is_told && draft.pieces.len() == 1;
+        let is_single = alone && !draft.is_one_part && draft.pieces.len() == 1;
         let apart = match split {
             Split::Auto if is_single => {
-                let named = named(draft);
-                if named.is_empty() { self.bodies(source, draft, named)? } else { named }
+                let named = named_objects(draft);
+                if named.is_empty() { self.split_bodies(source, draft, named)? } else { named }
             }
             Split::Auto | Split::Never => Vec::new(),
-            Split::Names => named(draft),
-            Split::Bodies => self.bodies(source, draft, named(draft))?,
+            Split::Names => named_objects(draft),
+            Split::Bodies => self.split_bodies(source, draft, named_objects(draft))?,
         };
         if apart.is_empty() {
-            let part = made(source, draft, &draft.name, &draft.pieces)?;
+            let part = build_part(source, draft, &draft.name, &draft.pieces)?;
             let of_body = |kind, volume: f64| kind == ShellKind::Closed && volume > 0.0;
             let shells = &part.solid().report().shells;
             let bodies = shells.iter().filter(|s| of_body(s.kind, s.volume)).count();
-            if split == Split::Auto && !draft.is_told && bodies > 1 {
-                self.kept.push((draft.name.clone(), bodies));
+            if split == Split::Auto && !draft.is_one_part && bodies > 1 {
+                self.several_bodies.push((draft.name.clone(), bodies));
             }
             self.parts.push(part);
             return Ok(());
@@ -223,15 +223,15 @@ impl Made {
         }
         for (name, placed) in apart {
             let name = if alone { name } else { format!("{}/{name}", draft.name) };
-            let name = self.names.unique(&name);
-            self.parts.push(made(source, draft, &name, &[placed])?);
+            let name = self.names.unique_name(&name);
+            self.parts.push(build_part(source, draft, &name, &[placed])?);
         }
         Ok(())
     }
 
     /// Splits the named objects of a draft, or the draft itself, into bodies. Returns an empty list if there is
     /// only one.
-    fn bodies(
+    fn split_bodies(
         &mut self,
         source: &Source,
         draft: &Draft,
@@ -242,8 +242,8 @@ impl Made {
         let mut apart = Vec::new();
         for (name, placed) in all {
             let refused = |source| AssemblyError::Part { part: name.clone(), source };
-            let found = body::bodies(&placed.mesh, &source.options.body())
-                .map_err(|e| draft.refused(source, refused(e)))?;
+            let found = body::bodies(&placed.mesh, &source.options.body_options())
+                .map_err(|e| draft.located_error(source, refused(e)))?;
             let Some(Apart { meshes, notes }) = found else {
                 apart.push((name, placed));
                 continue;
@@ -261,9 +261,9 @@ impl Made {
     }
 
     /// Returns a note on the parts that consist of several bodies; `None` if there are none.
-    fn kept(&self) -> Option<String> {
+    fn several_bodies_note(&self) -> Option<String> {
         let told = |(name, bodies): &(String, usize)| format!("{name} ({bodies})");
-        let named: Vec<String> = self.kept.iter().map(told).collect();
+        let named: Vec<String> = self.several_bodies.iter().map(told).collect();
         (!named.is_empty()).then(|| {
             format!(
                 "parts with several bodies: {}; use `split bodies` to read each body as a part",
@@ -274,7 +274,7 @@ impl Made {
 }
 
 /// Returns the objects that the files of a draft name, or an empty list if no file names several.
-fn named(draft: &Draft) -> Vec<(String, Placed)> {
+fn named_objects(draft: &Draft) -> Vec<(String, Placed)> {
     let mut all = Vec::new();
     let mut several = false;
     for placed in &draft.pieces {
@@ -292,12 +292,12 @@ fn named(draft: &Draft) -> Vec<(String, Placed)> {
 }
 
 /// Builds a part from placed meshes.
-fn made(source: &Source, draft: &Draft, name: &str, placed: &[Placed]) -> Result<Part, ReadError> {
+fn build_part(source: &Source, draft: &Draft, name: &str, placed: &[Placed]) -> Result<Part, ReadError> {
     let piece =
         |placed: &Placed| Piece { mesh: Mesh::clone(&placed.mesh), world_from_piece: placed.world };
     let pieces: Vec<Piece> = placed.iter().map(piece).collect();
-    let part = Part::with_options(name, &pieces, &source.options.body());
-    let part = part.map_err(|e| draft.refused(source, e))?;
+    let part = Part::with_options(name, &pieces, &source.options.body_options());
+    let part = part.map_err(|e| draft.located_error(source, e))?;
     let part = part.with_fixed(draft.fixed).with_colour(draft.colour);
     Ok(part.with_chord_error(draft.chord_error))
 }

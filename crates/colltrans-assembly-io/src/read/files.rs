@@ -38,9 +38,9 @@ impl Files for BTreeMap<PathBuf, Vec<u8>> {
 }
 
 /// A provider without files.
-pub(super) struct Nothing;
+pub(super) struct NoFiles;
 
-impl Files for Nothing {
+impl Files for NoFiles {
     fn bytes(&self, _: &Path) -> Result<Option<Vec<u8>>, FileFault> {
         Ok(None)
     }
@@ -56,7 +56,7 @@ pub(super) struct Folders {
 #[cfg(feature = "files")]
 impl Folders {
     /// Permits the folder of the source (the source itself if it is a folder) and the folders of packages.
-    pub(super) fn of(source: &Path, options: &ReadOptions) -> Self {
+    pub(super) fn for_source(source: &Path, options: &ReadOptions) -> Self {
         let own = if source.is_dir() { source } else { folder_of(source) };
         let own = if own.as_os_str().is_empty() { Path::new(".") } else { own };
         let all = std::iter::once(own).chain(options.packages.iter().map(PathBuf::as_path));
@@ -84,13 +84,13 @@ impl Files for Folders {
 
 /// The source itself, which is read from any location, and the files that it refers to.
 #[cfg(feature = "files")]
-pub(super) struct Given<'a> {
+pub(super) struct SourceAndFiles<'a> {
     pub(super) path: &'a Path,
     pub(super) files: &'a dyn Files,
 }
 
 #[cfg(feature = "files")]
-impl Files for Given<'_> {
+impl Files for SourceAndFiles<'_> {
     fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
         if path == self.path {
             return colltrans_mesh::file::bytes(path).map(Some).map_err(FileFault::Io);
@@ -119,32 +119,32 @@ impl<'a> Source<'a> {
 
     /// Returns the contents of the source itself.
     #[cfg(feature = "files")]
-    pub(super) fn own(&self) -> Result<Vec<u8>, ReadError> {
-        self.at(self.path)
+    pub(super) fn own_bytes(&self) -> Result<Vec<u8>, ReadError> {
+        self.required_bytes(self.path)
     }
 
     /// Returns the contents of a file, or an error if it does not exist.
     #[cfg(feature = "files")]
-    pub(super) fn at(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
-        let none = || super::io(path)(std::io::Error::from(std::io::ErrorKind::NotFound));
-        self.open(path)?.ok_or_else(none)
+    pub(super) fn required_bytes(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
+        let none = || super::io_error(path)(std::io::Error::from(std::io::ErrorKind::NotFound));
+        self.open_file(path)?.ok_or_else(none)
     }
 
     /// Returns the text of the source itself.
     #[cfg(feature = "files")]
     pub(super) fn text(&self) -> Result<String, ReadError> {
-        colltrans_mesh::file::decoded(self.own()?).map_err(super::io(self.path))
+        colltrans_mesh::file::decoded(self.own_bytes()?).map_err(super::io_error(self.path))
     }
 
     /// Opens a file by a reference relative to the folder of the source. Returns its path and contents; `None`
     /// if it does not exist.
-    pub(super) fn named(&self, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
-        self.beside(folder_of(self.path), name)
+    pub(super) fn open_reference(&self, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+        self.open_relative(folder_of(self.path), name)
     }
 
     /// Opens a file by a reference relative to `folder`. Returns its path and contents; `None` if it does not
     /// exist.
-    pub(super) fn beside(
+    pub(super) fn open_relative(
         &self,
         folder: &Path,
         name: &str,
@@ -152,22 +152,22 @@ impl<'a> Source<'a> {
         if let Some((scheme, _)) = name.split_once("://") {
             let reason =
                 format!("{name} is a network address ({scheme}); accepted: paths of files");
-            return Err(super::contents(self.path, "file references", reason));
+            return Err(super::contents_error(self.path, "file references", reason));
         }
         let outside = || ReadError::Outside { path: self.path.into(), name: name.into() };
         if Path::new(name).has_root() && !self.options.allow_outside {
             return Err(outside());
         }
         let path = folder.join(name);
-        match self.open(&path)? {
+        match self.open_file(&path)? {
             Some(bytes) => Ok(Some((path, bytes))),
-            None if leaves(name) && !self.options.allow_outside => Err(outside()),
+            None if leads_outside(name) && !self.options.allow_outside => Err(outside()),
             None => Ok(None),
         }
     }
 
     /// Returns the contents of a file and records its path; `None` if it does not exist.
-    fn open(&self, path: &Path) -> Result<Option<Vec<u8>>, ReadError> {
+    fn open_file(&self, path: &Path) -> Result<Option<Vec<u8>>, ReadError> {
         let refused = |fault| match fault {
             FileFault::Outside => {
                 ReadError::Outside { path: self.path.into(), name: path.display().to_string() }
@@ -188,7 +188,7 @@ impl<'a> Source<'a> {
 }
 
 /// Checks whether a path, as written, leads out of the folder to which it is relative.
-fn leaves(name: &str) -> bool {
+fn leads_outside(name: &str) -> bool {
     let mut depth = 0_usize;
     for part in Path::new(name).components() {
         match part {
@@ -202,13 +202,13 @@ fn leaves(name: &str) -> bool {
 }
 
 /// Decodes the escapes of a URI, for example `%20` to a space.
-pub(super) fn unescaped(uri: &str) -> Result<String, String> {
-    let name = String::from_utf8(percent_decoded(uri)?);
+pub(super) fn decode_uri(uri: &str) -> Result<String, String> {
+    let name = String::from_utf8(decode_percent(uri)?);
     name.map_err(|_| format!("invalid URI {uri}: not UTF-8"))
 }
 
 /// Decodes the escapes of a URI to bytes.
-pub(super) fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
+pub(super) fn decode_percent(text: &str) -> Result<Vec<u8>, String> {
     let mut rest = text.as_bytes();
     let mut bytes = Vec::with_capacity(rest.len());
     while let [first, tail @ ..] = rest {
@@ -234,13 +234,13 @@ pub(super) fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::leaves;
+    use super::leads_outside;
 
     #[test]
-    fn names_that_lead_out_are_told_by_their_words() {
+    fn leads_outside_judges_the_path_as_written() {
         let inside = ["a.stl", "a/b.stl", "./a", "a/../b", "a/b/../../c", "..a", "a..b", ""];
         let outside = ["/a", "..", "../a", "a/../../b", "./../a"];
-        assert!(inside.iter().all(|name| !leaves(name)));
-        assert!(outside.iter().all(|name| leaves(name)));
+        assert!(inside.iter().all(|name| !leads_outside(name)));
+        assert!(outside.iter().all(|name| leads_outside(name)));
     }
 }

@@ -8,27 +8,27 @@ use colltrans_mesh::{Format, Mesh};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::{Draft, Placed, assembled, io, mesh, stem};
+use super::{Draft, Placed, assemble, io_error, parse_mesh, file_stem};
 use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::units;
 
 /// Reads all mesh files of a folder.
-pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
-    let (mut files, mut others) = (Vec::new(), Others::default());
-    for entry in std::fs::read_dir(source.path).map_err(io(source.path))? {
-        let file = entry.map_err(io(source.path))?.path();
+pub(super) fn read_folder(source: Source) -> Result<Assembly, ReadError> {
+    let (mut files, mut others) = (Vec::new(), OtherEntries::default());
+    for entry in std::fs::read_dir(source.path).map_err(io_error(source.path))? {
+        let file = entry.map_err(io_error(source.path))?.path();
         // A dangling link and a pipe are rejected when they are read, not skipped.
         if !file.is_dir() && Format::of_path(&file).is_ok() {
             files.push(file);
         } else {
-            others.count(&file);
+            others.count_entry(&file);
         }
     }
     // The order of directory entries depends on the file system.
-    files.sort_by_key(|file| natural(&stem(file)));
-    let notes = others.unread();
-    let assembly = read_files(source, &files, &others.told())?;
+    files.sort_by_key(|file| natural_sort_key(&file_stem(file)));
+    let notes = others.unread_note();
+    let assembly = read_files(source, &files, &others.contents_text())?;
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
@@ -41,31 +41,31 @@ pub(super) fn read_file(source: Source) -> Result<Assembly, ReadError> {
 /// Reads mesh files as parts of one assembly. `holds` describes the source for the error if there are none.
 fn read_files(source: Source, files: &[PathBuf], holds: &str) -> Result<Assembly, ReadError> {
     let mut drafts = Vec::with_capacity(files.len());
-    let mut units = Units::default();
+    let mut units = UnitOfFirst::default();
     let mut up = None;
     for file in files {
-        let mesh = mesh(file, source.at(file)?)?;
-        let world = units.world_from(&mesh);
+        let mesh = parse_mesh(file, source.required_bytes(file)?)?;
+        let world = units.world_from_mesh(&mesh);
         up = up.or(mesh.up);
         let placed = Placed { mesh: Arc::new(mesh), world };
-        drafts.push(Draft { file: Some(file.clone()), ..Draft::new(stem(file), vec![placed]) });
+        drafts.push(Draft { file: Some(file.clone()), ..Draft::new(file_stem(file), vec![placed]) });
     }
-    let assembly = assembled(source, drafts, holds)?;
+    let assembly = assemble(source, drafts, holds)?;
     let assembly = up.into_iter().fold(assembly, Assembly::with_up);
     Ok(units.name.into_iter().fold(assembly, Assembly::with_unit))
 }
 
 /// The unit of an assembly: that of the first file that has one.
 #[derive(Default)]
-struct Units {
+struct UnitOfFirst {
     name: Option<&'static str>,
     metres: Option<f64>,
 }
 
-impl Units {
+impl UnitOfFirst {
     /// Returns the scale of a mesh to the unit of the assembly. A mesh without a unit is not scaled. If the
     /// first unit has no name, the assembly is in metres.
-    fn world_from(&mut self, mesh: &Mesh) -> DAffine3 {
+    fn world_from_mesh(&mut self, mesh: &Mesh) -> DAffine3 {
         let Some(own) = mesh.unit else { return DAffine3::IDENTITY };
         let metres = *self.metres.get_or_insert_with(|| {
             self.name = Some(units::name(own).unwrap_or("m"));
@@ -81,7 +81,7 @@ impl Units {
 
 /// The entries of a folder that are not mesh files.
 #[derive(Default)]
-struct Others {
+struct OtherEntries {
     folders: usize,
     by_kind: BTreeMap<String, usize>,
     /// Names of files that may place the parts (`.toml`, `.urdf`). JSON is left out, because it may be
@@ -89,9 +89,9 @@ struct Others {
     manifests: Vec<String>,
 }
 
-impl Others {
+impl OtherEntries {
     /// Counts an entry of the folder.
-    fn count(&mut self, file: &Path) {
+    fn count_entry(&mut self, file: &Path) {
         if file.is_dir() {
             self.folders += 1;
             return;
@@ -105,7 +105,7 @@ impl Others {
     }
 
     /// Returns a note on the files that may place the parts and are not read; `None` if there are none.
-    fn unread(&self) -> Option<String> {
+    fn unread_note(&self) -> Option<String> {
         let mut names = self.manifests.clone();
         names.sort();
         (!names.is_empty()).then(|| {
@@ -117,7 +117,7 @@ impl Others {
     }
 
     /// Describes the folder's contents for the error that it has no mesh, with advice.
-    fn told(&self) -> String {
+    fn contents_text(&self) -> String {
         let none = format!("the folder has no {} file", Format::names("or"));
         let counted = |count: usize, what: &str| {
             if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
@@ -149,7 +149,7 @@ impl Others {
 }
 
 /// Returns a sort key that orders numbers in names by value, for example `bolt_2` before `bolt_10`.
-fn natural(name: &str) -> (Vec<(String, u64)>, String) {
+fn natural_sort_key(name: &str) -> (Vec<(String, u64)>, String) {
     let mut key = Vec::new();
     let mut rest = name;
     while !rest.is_empty() {
@@ -165,12 +165,12 @@ fn natural(name: &str) -> (Vec<(String, u64)>, String) {
 
 #[cfg(test)]
 mod tests {
-    use super::natural;
+    use super::natural_sort_key;
 
     #[test]
-    fn numbers_sort_as_numbers() {
+    fn file_names_sort_by_numeric_value() {
         let mut names = ["car_10", "b2", "car_9", "car", "B1", "car_99999999999999999999999"];
-        names.sort_by_key(|n| natural(n));
+        names.sort_by_key(|n| natural_sort_key(n));
         assert_eq!(names, ["B1", "b2", "car", "car_9", "car_10", "car_99999999999999999999999"]);
     }
 }

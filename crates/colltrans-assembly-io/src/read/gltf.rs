@@ -18,16 +18,16 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
-use super::files::{Source, percent_decoded, unescaped};
-use super::{Budget, Draft, Names, Placed, assembled, contents, drafts, plain};
+use super::files::{Source, decode_percent, decode_uri};
+use super::{Budget, Draft, Names, Placed, assemble, contents_error, drafts, plain};
 use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::colour::on_screen;
 
 /// Maximum depth of nested nodes. Deeper ones are rejected as a possible cycle.
-const DEEPEST: usize = 256;
+const MAX_DEPTH: usize = 256;
 /// Prefixes of the names of supported extensions: those without shapes, quantised positions, and hidden nodes.
-const HARMLESS: [&str; 8] = [
+const SUPPORTED_EXTENSIONS: [&str; 8] = [
     "KHR_materials_",
     "KHR_texture_",
     "EXT_texture_",
@@ -41,35 +41,35 @@ const HARMLESS: [&str; 8] = [
 const VISIBILITY: &str = "KHR_node_visibility";
 
 /// Reads the assembly of a glTF or GLB file.
-pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> {
+pub(super) fn read_gltf(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> {
     let path = source.path;
-    let refused = |reason: String| contents(path, "glTF", reason);
-    let (json, binary) = chunks(bytes).map_err(refused)?;
+    let refused = |reason: String| contents_error(path, "glTF", reason);
+    let (json, binary) = split_chunks(bytes).map_err(refused)?;
     let document: Document = serde_json::from_slice(json).map_err(|e| refused(plain(&e)))?;
-    document.check().map_err(refused)?;
-    let buffers = buffers(&source, &document, binary)?;
+    document.check_support().map_err(refused)?;
+    let buffers = read_buffers(&source, &document, binary)?;
     let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
     let scene = document.scenes.get(document.scene.unwrap_or(0));
     let scene =
-        scene.ok_or_else(|| contents(path, "scenes", "the default scene does not exist"))?;
-    let budget = Budget::of(size);
-    let frame = document.asset.extras.frame();
+        scene.ok_or_else(|| contents_error(path, "scenes", "the default scene does not exist"))?;
+    let budget = Budget::with_bytes(size);
+    let frame = document.asset.extras.original_frame();
     let (shown, left_out) = (Vec::new(), Vec::new());
     let mut reader = Reader { path, document: &document, buffers, budget, shown, left_out };
     for &node in &scene.nodes {
-        reader.node(node, frame.world, 0, None)?;
+        reader.collect_node(node, frame.world, 0, None)?;
     }
-    let (drafts, left_out) = reader.drafts(frame.per_metre)?;
+    let (drafts, left_out) = reader.build_drafts(frame.per_metre)?;
     let holds = format!(
         "none of its {} nodes places a mesh of triangles; it has {} meshes",
         document.nodes.len(),
         document.meshes.len()
     );
-    let mut assembly = assembled(source, drafts, &holds)?.with_unit(frame.unit).with_up(frame.up);
+    let mut assembly = assemble(source, drafts, &holds)?.with_unit(frame.unit).with_up(frame.up);
     for note in document.asset.extras.notes() {
         assembly = assembly.with_note(note);
     }
-    let unplaced = document.unplaced(scene);
+    let unplaced = document.unplaced_names(scene);
     if !unplaced.is_empty() {
         let named = first_named(&unplaced, drafts::MOST_NAMED);
         assembly =
@@ -90,7 +90,7 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
 }
 
 /// Returns the JSON text, and the binary chunk of a GLB file if it has one.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+fn split_chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if !bytes.starts_with(b"glTF") {
         return Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None));
     }
@@ -137,7 +137,7 @@ struct Document {
     #[serde(default)]
     accessors: Vec<Accessor>,
     #[serde(default)]
-    buffer_views: Vec<View>,
+    buffer_views: Vec<BufferView>,
     #[serde(default)]
     buffers: Vec<Buffer>,
     #[serde(default)]
@@ -175,7 +175,7 @@ struct Frame {
 
 impl Extras {
     /// Returns the frame of the original file, or that of glTF.
-    fn frame(&self) -> Frame {
+    fn original_frame(&self) -> Frame {
         let per_metre = self.0.get("per_metre").and_then(Value::as_f64);
         let unit = self.0.get("unit").and_then(Value::as_str);
         let (Some(per_metre), Some(unit)) = (per_metre.filter(|n| n.is_finite() && *n > 0.0), unit)
@@ -279,13 +279,13 @@ struct Accessor {
 #[serde(expecting = "an object (sparse data)")]
 struct Sparse {
     count: usize,
-    indices: Few,
-    values: Few,
+    indices: SparseData,
+    values: SparseData,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", expecting = "an object with the index of a buffer view")]
-struct Few {
+struct SparseData {
     buffer_view: usize,
     #[serde(default)]
     byte_offset: usize,
@@ -294,7 +294,7 @@ struct Few {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", expecting = "an object (buffer view)")]
-struct View {
+struct BufferView {
     buffer: usize,
     #[serde(default)]
     byte_offset: usize,
@@ -311,14 +311,14 @@ struct Buffer {
 
 impl Document {
     /// Checks the version and the required extensions.
-    fn check(&self) -> Result<(), String> {
+    fn check_support(&self) -> Result<(), String> {
         if !self.asset.version.starts_with("2.") {
             return Err(format!(
                 "glTF version {} is not supported; accepted: 2",
                 self.asset.version
             ));
         }
-        let known = |name: &String| HARMLESS.iter().any(|start| name.starts_with(start));
+        let known = |name: &String| SUPPORTED_EXTENSIONS.iter().any(|start| name.starts_with(start));
         match self.extensions_required.iter().find(|name| !known(name)) {
             Some(name) => Err(format!(
                 "the required extension {name} is not supported; save the file without it, as plain \
@@ -330,22 +330,22 @@ impl Document {
 }
 
 /// Returns the contents of all buffers.
-fn buffers(
+fn read_buffers(
     source: &Source,
     document: &Document,
     binary: Option<&[u8]>,
 ) -> Result<Vec<Vec<u8>>, ReadError> {
     let read = |(k, buffer): (usize, &Buffer)| {
-        let refused = |reason: String| contents(source.path, format!("buffer {k}"), reason);
+        let refused = |reason: String| contents_error(source.path, format!("buffer {k}"), reason);
         let bytes = match &buffer.uri {
             None if k == 0 => binary.map(<[u8]>::to_vec),
             None => None,
             Some(uri) => {
                 if let Some(data) = uri.strip_prefix("data:") {
-                    Some(embedded(data).map_err(refused)?)
+                    Some(decode_data_uri(data).map_err(refused)?)
                 } else {
-                    let name = unescaped(uri).map_err(refused)?;
-                    let file = source.named(&name)?;
+                    let name = decode_uri(uri).map_err(refused)?;
+                    let file = source.open_reference(&name)?;
                     Some(file.ok_or_else(|| refused(format!("file {name} not found")))?.1)
                 }
             }
@@ -360,13 +360,13 @@ fn buffers(
 }
 
 /// Decodes the text of a `data:` URI after `data:`.
-fn embedded(data: &str) -> Result<Vec<u8>, String> {
+fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     let (kind, text) =
         data.split_once(',').ok_or("invalid data URI: expected a comma before the data")?;
     if kind.ends_with(";base64") {
         return STANDARD.decode(text).map_err(|_| "invalid data URI: not base64".into());
     }
-    percent_decoded(text)
+    decode_percent(text)
 }
 
 /// Reads the meshes of the scene.
@@ -375,14 +375,14 @@ struct Reader<'a> {
     document: &'a Document,
     buffers: Vec<Vec<u8>>,
     budget: Budget,
-    shown: Vec<Shown<'a>>,
+    shown: Vec<PlacedNode<'a>>,
     /// Names of the nodes that are left out, each with the reason.
     left_out: Vec<String>,
 }
 
 impl Document {
     /// Returns the names of the nodes with a mesh that are not in the scene.
-    fn unplaced(&self, scene: &Scene) -> Vec<String> {
+    fn unplaced_names(&self, scene: &Scene) -> Vec<String> {
         let mut reached = vec![false; self.nodes.len()];
         let mut open = scene.nodes.clone();
         while let Some(index) = open.pop() {
@@ -398,7 +398,7 @@ impl Document {
 
     /// Returns the colour of the largest primitive of some meshes. `None` if its material has a texture or no
     /// base colour.
-    fn colour(&self, meshes: impl Iterator<Item = usize>) -> Option<[f64; 3]> {
+    fn main_colour(&self, meshes: impl Iterator<Item = usize>) -> Option<[f64; 3]> {
         let count = |accessor: Option<usize>| Some(self.accessors.get(accessor?)?.count);
         let size = |shape: &&Primitive| {
             count(shape.indices).or_else(|| count(shape.attributes.position)).unwrap_or(0)
@@ -418,7 +418,7 @@ impl Document {
 }
 
 /// A part: the mesh of a node, or all meshes below it.
-struct Shown<'a> {
+struct PlacedNode<'a> {
     node: usize,
     name: Option<&'a str>,
     meshes: Vec<(usize, DAffine3)>,
@@ -427,29 +427,29 @@ struct Shown<'a> {
 impl Reader<'_> {
     /// Collects the meshes of a node and of all nodes below it. `whole` is the index of the part to which they
     /// belong, if a node above is marked as one part.
-    fn node(
+    fn collect_node(
         &mut self,
         index: usize,
         above: DAffine3,
         depth: usize,
         mut whole: Option<usize>,
     ) -> Result<(), ReadError> {
-        let refused = |reason: String| contents(self.path, format!("node {index}"), reason);
+        let refused = |reason: String| contents_error(self.path, format!("node {index}"), reason);
         let document = self.document;
         let node = document.nodes.get(index);
         let node = node.ok_or_else(|| refused("no such node".into()))?;
-        if depth > DEEPEST {
-            return Err(refused(format!("nodes are nested deeper than {DEEPEST}, or in a cycle")));
+        if depth > MAX_DEPTH {
+            return Err(refused(format!("nodes are nested deeper than {MAX_DEPTH}, or in a cycle")));
         }
-        self.budget.place().map_err(refused)?;
+        self.budget.count_placed().map_err(refused)?;
         if node.is_hidden() {
             self.left_out.push(format!("{} (hidden)", node.shown_name(index)));
             return Ok(());
         }
-        let world = above * node.transform().map_err(refused)?;
+        let world = above * node.local_transform().map_err(refused)?;
         if whole.is_none() && node.extras.is_part() {
             whole = Some(self.shown.len());
-            self.shown.push(Shown { node: index, name: node.name(), meshes: Vec::new() });
+            self.shown.push(PlacedNode { node: index, name: node.name(), meshes: Vec::new() });
         }
         if let Some(mesh) = node.mesh {
             let shape = document.meshes.get(mesh);
@@ -463,35 +463,35 @@ impl Reader<'_> {
                 self.shown[whole].meshes.push((mesh, world));
             } else {
                 let name = node.name().or(shape.name.as_deref().filter(|name| is_name(name)));
-                self.shown.push(Shown { node: index, name, meshes: vec![(mesh, world)] });
+                self.shown.push(PlacedNode { node: index, name, meshes: vec![(mesh, world)] });
             }
         }
         for &child in &node.children {
-            self.node(child, world, depth + 1, whole)?;
+            self.collect_node(child, world, depth + 1, whole)?;
         }
         Ok(())
     }
 
     /// Builds a draft for each part. Each mesh is read once, and all are counted before the first part is
     /// built. Also returns the nodes that are left out.
-    fn drafts(mut self, per_metre: f64) -> Result<(Vec<Draft>, Vec<String>), ReadError> {
+    fn build_drafts(mut self, per_metre: f64) -> Result<(Vec<Draft>, Vec<String>), ReadError> {
         let mut budget = std::mem::take(&mut self.budget);
         let mut meshes: HashMap<usize, Arc<Mesh>> = HashMap::new();
         let placed = self.shown.iter().flat_map(|s| s.meshes.iter().map(|(m, _)| (s.node, *m)));
         for (node, mesh) in placed {
             let place = || format!("node {node}, mesh {mesh}");
-            let refused = |reason| contents(self.path, place(), reason);
+            let refused = |reason| contents_error(self.path, place(), reason);
             if let Some(known) = meshes.get(&mesh) {
-                budget.facets(known.faces.len()).map_err(refused)?;
+                budget.count_facets(known.faces.len()).map_err(refused)?;
             } else {
                 let shape = &self.document.meshes[mesh];
-                let read = self.mesh(shape, &mut budget).map_err(refused)?;
+                let read = self.read_mesh(shape, &mut budget).map_err(refused)?;
                 meshes.insert(mesh, Arc::new(read.weld()));
             }
         }
         let (mut drafts, mut names) = (Vec::new(), Names::default());
-        for Shown { node, name, meshes: shown } in std::mem::take(&mut self.shown) {
-            let colour = self.document.colour(shown.iter().map(|(mesh, _)| *mesh));
+        for PlacedNode { node, name, meshes: shown } in std::mem::take(&mut self.shown) {
+            let colour = self.document.main_colour(shown.iter().map(|(mesh, _)| *mesh));
             let placed = |(mesh, world)| Placed { mesh: Arc::clone(&meshes[&mesh]), world };
             let pieces: Vec<Placed> = shown.into_iter().map(placed).collect();
             let pieces: Vec<Placed> =
@@ -501,33 +501,33 @@ impl Reader<'_> {
                 self.left_out.push(format!("{name} (no triangles)"));
                 continue;
             }
-            let name = names.unique(&name);
+            let name = names.unique_name(&name);
             let extras = &self.document.nodes[node].extras;
             let chord_error = extras.chord_error().map(|error| error * per_metre);
             let draft = Draft { chord_error, colour, ..Draft::new(name, pieces) };
-            drafts.push(if extras.is_part() { draft.told() } else { draft });
+            drafts.push(if extras.is_part() { draft.as_one_part() } else { draft });
         }
         Ok((drafts, self.left_out))
     }
 
     /// Returns the triangles of all primitives of a mesh.
-    fn mesh(&self, shape: &Shape, budget: &mut Budget) -> Result<Mesh, String> {
+    fn read_mesh(&self, shape: &Shape, budget: &mut Budget) -> Result<Mesh, String> {
         let mut merged = Mesh::default();
         for primitive in &shape.primitives {
             let Some(position) = primitive.attributes.position else { continue };
-            let positions = self.values(position, "positions", "VEC3")?;
+            let positions = self.accessor_values(position, "positions", "VEC3")?;
             let count = positions.count as u32;
             let indices: Vec<u32> = match primitive.indices {
                 None => (0..count).collect(),
-                Some(index) => self.values(index, "indices", "SCALAR")?.whole_numbers()?,
+                Some(index) => self.accessor_values(index, "indices", "SCALAR")?.integers()?,
             };
             if let Some(beyond) = indices.iter().find(|&&k| k >= count) {
                 return Err(format!(
                     "vertex index {beyond} is out of range; there are {count} vertices"
                 ));
             }
-            let faces = triangles(primitive.mode.unwrap_or(4), &indices)?;
-            budget.facets(faces.len())?;
+            let faces = primitive_triangles(primitive.mode.unwrap_or(4), &indices)?;
+            budget.count_facets(faces.len())?;
             // Primitives may share vertices. Only the vertices in use are copied, in their order.
             let mut used = indices;
             used.sort_unstable();
@@ -535,19 +535,19 @@ impl Reader<'_> {
             let base = merged.vertices.len() as u32;
             let name = |k: u32| base + used.partition_point(|&u| u < k) as u32;
             merged.faces.extend(faces.into_iter().map(|t| t.map(name).to_vec()));
-            merged.vertices.extend(used.iter().map(|&k| positions.vector(k as usize)));
+            merged.vertices.extend(used.iter().map(|&k| positions.vector_at(k as usize)));
         }
         Ok(merged.with_format(NumberFormat::Single))
     }
 
     /// Returns the values of an accessor, after checking that all their bytes exist.
-    fn values(&self, index: usize, what: &'static str, shape: &str) -> Result<Values<'_>, String> {
+    fn accessor_values(&self, index: usize, what: &'static str, shape: &str) -> Result<AccessorValues<'_>, String> {
         let missing = || format!("no such accessor {index} of {what}");
         let accessor = self.document.accessors.get(index).ok_or_else(missing)?;
         if accessor.shape != shape {
             return Err(format!("{what} have type {}, expected {shape}", accessor.shape));
         }
-        let kind = Kind::of(accessor.component_type, what)?;
+        let kind = ComponentType::from_code(accessor.component_type, what)?;
         let width = if shape == "VEC3" { 3 } else { 1 };
         let size = width * kind.size();
         let count = accessor.count;
@@ -556,18 +556,18 @@ impl Reader<'_> {
         let Some(view) = accessor.buffer_view else {
             return Err(format!("{what} without a buffer view are not supported"));
         };
-        let (bytes, stride) = self.span(view, accessor.byte_offset, count, size, what)?;
+        let (bytes, stride) = self.element_bytes(view, accessor.byte_offset, count, size, what)?;
         let replaced = match &accessor.sparse {
-            Some(sparse) => self.sparse(sparse, count, size, what)?,
+            Some(sparse) => self.sparse_elements(sparse, count, size, what)?,
             None => Vec::new(),
         };
         let normalized = accessor.normalized;
-        Ok(Values { bytes, stride, count, kind, normalized, replaced, what })
+        Ok(AccessorValues { bytes, stride, count, kind, normalized, replaced, what })
     }
 
     /// Returns the bytes of a view from an offset on, which contain `count` elements of `size` bytes, and the
     /// stride.
-    fn span(
+    fn element_bytes(
         &self,
         view: usize,
         offset: usize,
@@ -596,7 +596,7 @@ impl Reader<'_> {
     }
 
     /// Returns the elements that replace others, in increasing order of their indices.
-    fn sparse(
+    fn sparse_elements(
         &self,
         sparse: &Sparse,
         count: usize,
@@ -607,19 +607,19 @@ impl Reader<'_> {
         if n > count {
             return Err(format!("{n} sparse {what} replace only {count} elements"));
         }
-        let Few { buffer_view, byte_offset, component_type } = sparse.indices;
-        let kind = Kind::of(component_type.unwrap_or(0), what)?;
-        let (bytes, stride) = self.span(buffer_view, byte_offset, n, kind.size(), what)?;
+        let SparseData { buffer_view, byte_offset, component_type } = sparse.indices;
+        let kind = ComponentType::from_code(component_type.unwrap_or(0), what)?;
+        let (bytes, stride) = self.element_bytes(buffer_view, byte_offset, n, kind.size(), what)?;
         let (normalized, replaced) = (false, Vec::new());
-        let numbers = Values { bytes, stride, count: n, kind, normalized, replaced, what };
-        let numbers = numbers.whole_numbers()?;
+        let numbers = AccessorValues { bytes, stride, count: n, kind, normalized, replaced, what };
+        let numbers = numbers.integers()?;
         if !numbers.is_sorted_by(|a, b| a < b)
             || numbers.last().is_some_and(|&k| k as usize >= count)
         {
             return Err(format!("indices of sparse {what} must be increasing and below {count}"));
         }
-        let Few { buffer_view, byte_offset, .. } = sparse.values;
-        let (bytes, stride) = self.span(buffer_view, byte_offset, n, size, what)?;
+        let SparseData { buffer_view, byte_offset, .. } = sparse.values;
+        let (bytes, stride) = self.element_bytes(buffer_view, byte_offset, n, size, what)?;
         let value = |(k, number): (usize, u32)| (number, &bytes[k * stride..k * stride + size]);
         Ok(numbers.into_iter().enumerate().map(value).collect())
     }
@@ -648,7 +648,7 @@ impl Node {
     }
 
     /// Returns the transform of the node relative to its parent.
-    fn transform(&self) -> Result<DAffine3, String> {
+    fn local_transform(&self) -> Result<DAffine3, String> {
         let transform = if let Some(columns) = &self.matrix {
             DAffine3::from_mat4(DMat4::from_cols_array(columns))
         } else {
@@ -668,7 +668,7 @@ impl Node {
 
 /// The component type of an accessor.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum ComponentType {
     I8,
     U8,
     I16,
@@ -677,9 +677,9 @@ enum Kind {
     F32,
 }
 
-impl Kind {
+impl ComponentType {
     /// Parses the code of a component type.
-    fn of(code: u32, what: &str) -> Result<Self, String> {
+    fn from_code(code: u32, what: &str) -> Result<Self, String> {
         Ok(match code {
             5120 => Self::I8,
             5121 => Self::U8,
@@ -701,7 +701,7 @@ impl Kind {
     }
 
     /// Returns the largest integer, which represents 1 in normalised values.
-    fn largest(self) -> f64 {
+    fn largest_value(self) -> f64 {
         match self {
             Self::I8 => f64::from(i8::MAX),
             Self::U8 => f64::from(u8::MAX),
@@ -721,27 +721,27 @@ impl Kind {
             (Self::U16, [a, b, ..]) => f64::from(u16::from_le_bytes([*a, *b])),
             (Self::U32, [a, b, c, d, ..]) => f64::from(u32::from_le_bytes([*a, *b, *c, *d])),
             (Self::F32, [a, b, c, d, ..]) => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
-            // Unreachable: `span` checked that the bytes exist.
+            // Unreachable: `element_bytes` checked that the bytes exist.
             _ => f64::NAN,
         }
     }
 }
 
 /// The values of an accessor, all of whose bytes exist.
-struct Values<'a> {
+struct AccessorValues<'a> {
     bytes: &'a [u8],
     stride: usize,
     count: usize,
-    kind: Kind,
+    kind: ComponentType,
     normalized: bool,
     /// The elements that replace others, by increasing index.
     replaced: Vec<(u32, &'a [u8])>,
     what: &'static str,
 }
 
-impl Values<'_> {
+impl AccessorValues<'_> {
     /// Returns the bytes from element `k` on.
-    fn element(&self, k: usize) -> &[u8] {
+    fn element_at(&self, k: usize) -> &[u8] {
         match self.replaced.binary_search_by_key(&(k as u32), |r| r.0) {
             Ok(found) => self.replaced[found].1,
             Err(_) => &self.bytes[k * self.stride..],
@@ -749,9 +749,9 @@ impl Values<'_> {
     }
 
     /// Returns element `k` as a vector.
-    fn vector(&self, k: usize) -> DVec3 {
-        let element = self.element(k);
-        let scale = if self.normalized { self.kind.largest() } else { 1.0 };
+    fn vector_at(&self, k: usize) -> DVec3 {
+        let element = self.element_at(k);
+        let scale = if self.normalized { self.kind.largest_value() } else { 1.0 };
         let number = |j: usize| {
             let number = self.kind.number(&element[j * self.kind.size()..]) / scale;
             if self.normalized { number.max(-1.0) } else { number }
@@ -760,16 +760,16 @@ impl Values<'_> {
     }
 
     /// Returns all elements as integers.
-    fn whole_numbers(&self) -> Result<Vec<u32>, String> {
-        if !matches!(self.kind, Kind::U8 | Kind::U16 | Kind::U32) {
+    fn integers(&self) -> Result<Vec<u32>, String> {
+        if !matches!(self.kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
             return Err(format!("{} are not unsigned integers", self.what));
         }
-        Ok((0..self.count).map(|k| self.kind.number(self.element(k)) as u32).collect())
+        Ok((0..self.count).map(|k| self.kind.number(self.element_at(k)) as u32).collect())
     }
 }
 
 /// Returns the triangles of a list, strip or fan. Points and lines have none.
-fn triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, String> {
+fn primitive_triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, String> {
     Ok(match mode {
         0..=3 => Vec::new(),
         4 if !indices.len().is_multiple_of(3) => {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::files::Source;
 use super::{
-    Budget, Draft, Placed, Split, assembled, contents, in_file, mesh, plain, plain_words, stem,
+    Budget, Draft, Placed, Split, assemble, contents_error, assembly_error, parse_mesh, plain, reword_parser_message, file_stem,
 };
 use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
@@ -26,7 +26,7 @@ use colltrans_assembly::{Assembly, Ignored};
 struct Manifest {
     unit: Option<String>,
     #[serde(default, alias = "part")]
-    parts: Vec<Entry>,
+    parts: Vec<PartEntry>,
     #[serde(default)]
     ignore: Vec<Exactly<String, 2>>,
     #[serde(default)]
@@ -42,7 +42,7 @@ struct Manifest {
     #[serde(default, alias = "subassembly")]
     subassemblies: Vec<Subassembly>,
     #[serde(default)]
-    never: Vec<Kept>,
+    never: Vec<NeverTaken>,
 }
 
 /// The fit of two parts.
@@ -68,21 +68,21 @@ struct Subassembly {
     deny_unknown_fields,
     expecting = "an object with parts and the direction that they never take"
 )]
-struct Kept {
+struct NeverTaken {
     parts: Vec<String>,
     along: Exactly<f64, 3>,
-    #[serde(default = "within_degrees")]
+    #[serde(default = "default_within_degrees")]
     within_degrees: f64,
 }
 
 /// Returns the default of the field `within_degrees`.
-const fn within_degrees() -> f64 {
+const fn default_within_degrees() -> f64 {
     WITHIN_DEGREES
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object (part)")]
-struct Entry {
+struct PartEntry {
     file: OneOrMany,
     name: Option<String>,
     translation: Option<Exactly<f64, 3>>,
@@ -142,23 +142,23 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N
 }
 
 /// Reads the assembly of a manifest.
-pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
+pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
     let path = source.path;
     let text = source.text()?;
     let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let manifest: Manifest = if toml {
         toml::from_str(&text)
-            .map_err(|e| contents(path, toml_place(&text, &e), plain_words(e.message())))?
+            .map_err(|e| contents_error(path, toml_place(&text, &e), reword_parser_message(e.message())))?
     } else {
         let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
-        serde_json::from_str(&text).map_err(|e| contents(path, place(&e), plain(&e)))?
+        serde_json::from_str(&text).map_err(|e| contents_error(path, part_place(&e), plain(&e)))?
     };
     let metres = manifest.unit.as_deref().and_then(units::metres);
-    let mut gathered = Gathered { budget: Budget::of(text.len()), metres, ..Gathered::default() };
+    let mut gathered = PartGatherer { budget: Budget::with_bytes(text.len()), metres, ..PartGatherer::default() };
     for (k, entry) in manifest.parts.iter().enumerate() {
-        gathered.part(&source, k, entry)?;
+        gathered.add_part(&source, k, entry)?;
     }
-    let Gathered { drafts, missing, left_out, notes, .. } = gathered;
+    let PartGatherer { drafts, missing, left_out, notes, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
@@ -166,14 +166,14 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         0 => "it lists no parts".to_owned(),
         missing => format!("none of its parts has all of its files; {missing} files not found"),
     };
-    let mut assembly = assembled(source, drafts, &holds)?;
-    let (manifest, dropped) = manifest.without(&left_out, &assembly);
+    let mut assembly = assemble(source, drafts, &holds)?;
+    let (manifest, dropped) = manifest.without_parts(&left_out, &assembly);
     let Manifest { ignore, ignore_always: always, .. } = &manifest;
     for (pairs, ignored) in [(ignore, Ignored::Overlap), (always, Ignored::Always)] {
         let pairs: Vec<[&String; 2]> = pairs.iter().map(|pair| pair.0.each_ref()).collect();
-        assembly = assembly.with_ignored(&pairs, ignored).map_err(in_file(path))?;
+        assembly = assembly.with_ignored(&pairs, ignored).map_err(assembly_error(path))?;
     }
-    assembly = manifest.constrained(assembly).map_err(in_file(path))?;
+    assembly = manifest.add_constraints(assembly).map_err(assembly_error(path))?;
     for note in notes {
         assembly = assembly.with_note(note);
     }
@@ -189,7 +189,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
 impl Manifest {
     /// Removes the parts that are left out from pairs and constraints. Returns the manifest with a note on each
     /// changed entry. Entries with too few remaining parts are dropped, others apply to the remaining parts.
-    fn without(mut self, left_out: &[String], assembly: &Assembly) -> (Self, Vec<String>) {
+    fn without_parts(mut self, left_out: &[String], assembly: &Assembly) -> (Self, Vec<String>) {
         let like = |name: &str, part: &String| match name.trim().strip_suffix('*') {
             Some(prefix) => part.starts_with(prefix),
             None => part == name.trim(),
@@ -226,7 +226,7 @@ impl Manifest {
     }
 
     /// Adds pairs and constraints to the assembly.
-    fn constrained(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
+    fn add_constraints(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
         for Contact { parts: Exactly([a, b]), role, tolerance } in &self.pairs {
             let fit = PairFit { role: *role, tolerance: *tolerance };
             assembly = assembly.with_pair([&[a], &[b]], fit)?;
@@ -241,7 +241,7 @@ impl Manifest {
         for Subassembly { name, parts } in &self.subassemblies {
             assembly = assembly.with_subassembly(name, parts)?;
         }
-        for Kept { parts, along, within_degrees } in &self.never {
+        for NeverTaken { parts, along, within_degrees } in &self.never {
             assembly = assembly.with_never(parts, DVec3::from_array(along.0), *within_degrees)?;
         }
         Ok(assembly)
@@ -250,7 +250,7 @@ impl Manifest {
 
 /// The parts while they are gathered.
 #[derive(Default)]
-struct Gathered {
+struct PartGatherer {
     budget: Budget,
     /// The unit of the manifest in metres, if it names a known unit.
     metres: Option<f64>,
@@ -261,21 +261,21 @@ struct Gathered {
     notes: Vec<String>,
 }
 
-impl Gathered {
+impl PartGatherer {
     /// Reads the files of part `k` and adds its draft.
-    fn part(&mut self, source: &Source, k: usize, entry: &Entry) -> Result<(), ReadError> {
+    fn add_part(&mut self, source: &Source, k: usize, entry: &PartEntry) -> Result<(), ReadError> {
         let files = match &entry.file {
             OneOrMany::One(file) => std::slice::from_ref(file),
             OneOrMany::Many(files) => files,
         };
-        let refused = |reason: String| contents(source.path, place(k), reason);
+        let refused = |reason: String| contents_error(source.path, part_place(k), reason);
         let first = files
             .first()
             .ok_or_else(|| refused("the list of files is empty; give at least one file".into()))?;
-        let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
+        let name = entry.name.clone().unwrap_or_else(|| file_stem(Path::new(first)));
         let (world, normalised) = entry
             .world_from_mesh()
-            .map_err(|reason| contents(source.path, format!("{} ({name})", place(k)), reason))?;
+            .map_err(|reason| contents_error(source.path, format!("{} ({name})", part_place(k)), reason))?;
         if let Some(off) = normalised {
             self.notes.push(format!(
                 "the rotation of {name} deviates from a rotation by {off:.0e} and was normalised; directions may \
@@ -284,13 +284,13 @@ impl Gathered {
         }
         let (mut pieces, missing) = (Vec::new(), self.missing.len());
         for file in files {
-            let Some((path, bytes)) = source.named(file)? else {
+            let Some((path, bytes)) = source.open_reference(file)? else {
                 self.missing.push(file.clone());
                 continue;
             };
-            self.budget.read(&path, bytes.len());
-            let mesh = mesh(&path, bytes)?;
-            self.budget.facets(mesh.faces.len().max(mesh.vertices.len())).map_err(refused)?;
+            self.budget.count_file(&path, bytes.len());
+            let mesh = parse_mesh(&path, bytes)?;
+            self.budget.count_facets(mesh.faces.len().max(mesh.vertices.len())).map_err(refused)?;
             // A mesh file with a unit is converted to the unit of the manifest.
             let world = match (mesh.unit, self.metres) {
                 (Some(own), Some(metres)) if own != metres => {
@@ -301,13 +301,13 @@ impl Gathered {
             pieces.push(Placed { mesh: Arc::new(mesh), world });
         }
         if self.missing.len() == missing {
-            self.budget.place().map_err(refused)?;
+            self.budget.count_placed().map_err(refused)?;
             let split = entry.split.as_ref().map(|word| word.parse::<Split>());
             let split = split.transpose().map_err(|e| {
-                contents(source.path, format!("{} ({name})", place(k)), format!("split: {e}"))
+                contents_error(source.path, format!("{} ({name})", part_place(k)), format!("split: {e}"))
             })?;
             let draft = Draft { fixed: entry.fixed, split, ..Draft::new(name, pieces) };
-            self.drafts.push(draft.told());
+            self.drafts.push(draft.as_one_part());
         } else {
             self.left_out.push(name);
         }
@@ -316,7 +316,7 @@ impl Gathered {
 }
 
 /// Returns the place of part `k` for messages.
-fn place(k: usize) -> String {
+fn part_place(k: usize) -> String {
     format!("part {}", k + 1)
 }
 
@@ -329,11 +329,11 @@ fn toml_place(text: &str, error: &toml::de::Error) -> String {
     format!("line {line}, column {column}")
 }
 
-impl Entry {
+impl PartEntry {
     /// Returns the transformation of the part, and the defect of its rotation if it was normalised.
     fn world_from_mesh(&self) -> Result<(DAffine3, Option<f64>), String> {
         let exact = Ok((DMat3::IDENTITY, None));
-        let (rotation, normalised) = self.rotation.as_ref().map_or(exact, Rotation::matrix)?;
+        let (rotation, normalised) = self.rotation.as_ref().map_or(exact, Rotation::to_matrix)?;
         let scale = match self.scale {
             None => DVec3::ONE,
             Some(Scale::Same(s)) => DVec3::splat(s),
@@ -359,22 +359,22 @@ impl Entry {
 
 impl Rotation {
     /// Returns the rotation, and its defect if it was normalised.
-    fn matrix(&self) -> Result<(DMat3, Option<f64>), String> {
+    fn to_matrix(&self) -> Result<(DMat3, Option<f64>), String> {
         match self {
-            Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => quaternion(*q),
+            Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => rotation_from_quaternion(*q),
             Self::Named(NamedRotation::RpyDegrees(rpy)) if rpy.iter().any(|a| !a.is_finite()) => {
                 Err(format!("invalid rpy_degrees {rpy:?}; accepted: finite numbers"))
             }
             Self::Named(NamedRotation::RpyDegrees(rpy)) => {
-                Ok((rpy_matrix(rpy.map(f64::to_radians)), None))
+                Ok((rotation_from_rpy(rpy.map(f64::to_radians)), None))
             }
-            Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => matrix(rows),
+            Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => rotation_from_matrix(rows),
         }
     }
 }
 
 /// Returns the rotation, and its defect if it was normalised, by the rule of [`Pose::from_rounded`].
-fn quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
+fn rotation_from_quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
     let rotation = DQuat::from_array(q);
     let (_, defect) = Pose::from_rounded(rotation, DVec3::ZERO).map_err(|_| {
         format!("quaternion {q:?} (x, y, z, w) has length {}, expected 1", rotation.length())
@@ -383,7 +383,7 @@ fn quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
 }
 
 /// Returns the rotation, and its defect if it was normalised, by the rule of [`Pose::from_rounded_matrix`].
-fn matrix(rows: &[[f64; 3]; 3]) -> Result<(DMat3, Option<f64>), String> {
+fn rotation_from_matrix(rows: &[[f64; 3]; 3]) -> Result<(DMat3, Option<f64>), String> {
     let matrix = DMat3::from_cols_array_2d(rows).transpose();
     let (pose, defect) = Pose::from_rounded_matrix(matrix, DVec3::ZERO).map_err(|_| {
         format!("matrix {rows:?} is not a rotation; give scale factors in the field scale")
@@ -394,7 +394,7 @@ fn matrix(rows: &[[f64; 3]; 3]) -> Result<(DMat3, Option<f64>), String> {
 
 /// Returns the rotation by roll about x, then pitch about y, then yaw about z, in radians. Quarter turns are
 /// exact.
-pub(super) fn rpy_matrix([roll, pitch, yaw]: [f64; 3]) -> DMat3 {
+pub(super) fn rotation_from_rpy([roll, pitch, yaw]: [f64; 3]) -> DMat3 {
     let turn = |angle: f64| {
         let (s, c) = angle.sin_cos();
         let tidy = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };

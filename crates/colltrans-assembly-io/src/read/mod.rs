@@ -34,13 +34,13 @@ use colltrans_mesh::body::BodyOptions;
 use crate::error::ReadError;
 pub use crate::plain::plain;
 #[cfg(feature = "files")]
-use crate::plain::plain_words;
+use crate::plain::reword_parser_message;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::AssemblyError;
 pub use drafts::Split;
-use drafts::{Draft, Placed, assembled};
+use drafts::{Draft, Placed, assemble};
 pub use files::{FileFault, Files};
-use files::{Nothing, Source};
+use files::{NoFiles, Source};
 
 /// The geometry of a URDF link to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -136,7 +136,7 @@ impl ReadOptions {
     }
 
     /// Returns the options for building bodies from meshes.
-    fn body(&self) -> BodyOptions {
+    fn body_options(&self) -> BodyOptions {
         BodyOptions::default().with_as_is(self.as_is)
     }
 
@@ -153,19 +153,19 @@ impl ReadOptions {
 /// # Errors
 /// [`ReadError`] if a file cannot be read, with the file and the place, or if the source has no parts.
 #[cfg(feature = "files")]
-pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
+pub fn count_file(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
     let path = path.as_ref();
-    let folders = files::Folders::of(path, options);
+    let folders = files::Folders::for_source(path, options);
     if path.is_dir() {
-        return folder::read(Source::new(path, options, &folders));
+        return folder::read_folder(Source::new(path, options, &folders));
     }
     let known = is_known(path);
     match path.metadata() {
-        Err(e) => Err(io(path)(e)),
-        Ok(_) if !known => Err(unknown(path)),
+        Err(e) => Err(io_error(path)(e)),
+        Ok(_) if !known => Err(unknown_source(path)),
         // The source itself may be a symbolic link.
         Ok(_) => {
-            let files = files::Given { path, files: &folders };
+            let files = files::SourceAndFiles { path, files: &folders };
             read_from(path, &files, options)
         }
     }
@@ -180,11 +180,11 @@ fn is_known(path: &Path) -> bool {
     sources.contains(&extension.as_str()) || colltrans_mesh::Format::of_path(path).is_ok()
 }
 
-/// Reads an assembly like [`read`], from a provider of files. The extension of `path`, the source, selects the
+/// Reads an assembly like [`count_file`], from a provider of files. The extension of `path`, the source, selects the
 /// reader.
 ///
 /// # Errors
-/// The errors of [`read`].
+/// The errors of [`count_file`].
 #[cfg(feature = "files")]
 pub fn read_from(
     path: impl AsRef<Path>,
@@ -195,21 +195,21 @@ pub fn read_from(
     let source = Source::new(path, options, files);
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match extension.to_ascii_lowercase().as_str() {
-        "toml" | "json" => manifest::read(source),
-        "urdf" => urdf::read(source),
+        "toml" | "json" => manifest::read_manifest(source),
+        "urdf" => urdf::read_urdf(source),
         "glb" | "gltf" => {
-            let bytes = source.own()?;
-            gltf::read(source, &bytes)
+            let bytes = source.own_bytes()?;
+            gltf::read_gltf(source, &bytes)
         }
-        "3mf" => threemf::read(source),
+        "3mf" => threemf::read_package(source),
         _ if is_known(path) => folder::read_file(source),
-        _ => Err(unknown(path)),
+        _ => Err(unknown_source(path)),
     }
 }
 
 #[cfg(feature = "files")]
 /// Builds the error for an unsupported source.
-fn unknown(path: &Path) -> ReadError {
+fn unknown_source(path: &Path) -> ReadError {
     let extension = path.extension().unwrap_or_default();
     let is_step = ["step", "stp"].iter().any(|known| extension.eq_ignore_ascii_case(known));
     let path = path.into();
@@ -224,8 +224,8 @@ fn unknown(path: &Path) -> ReadError {
 #[cfg(feature = "files")]
 pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Robot, ReadError> {
     let path = path.as_ref();
-    let folders = files::Folders::of(path, options);
-    robot::read(Source::new(path, options, &files::Given { path, files: &folders }))
+    let folders = files::Folders::for_source(path, options);
+    robot::read_robot(Source::new(path, options, &files::SourceAndFiles { path, files: &folders }))
 }
 
 /// Reads the pairs of links that an SRDF file excludes from collision checks.
@@ -235,8 +235,8 @@ pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Rob
 #[cfg(feature = "files")]
 pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
     let (path, options) = (path.as_ref(), ReadOptions::default());
-    let folders = files::Folders::of(path, &options);
-    srdf::read(&Source::new(path, &options, &files::Given { path, files: &folders }))
+    let folders = files::Folders::for_source(path, &options);
+    srdf::read_disabled_pairs(&Source::new(path, &options, &files::SourceAndFiles { path, files: &folders }))
 }
 
 /// Reads a GLB file from memory. The file must not refer to other files.
@@ -256,28 +256,28 @@ pub fn glb_with(
     bytes: &[u8],
     options: &ReadOptions,
 ) -> Result<Assembly, ReadError> {
-    gltf::read(Source::new(name.as_ref(), options, &Nothing), bytes)
+    gltf::read_gltf(Source::new(name.as_ref(), options, &NoFiles), bytes)
 }
 
 #[cfg(feature = "files")]
 /// Returns a function that adds the path to an error of the operating system.
-fn io(path: &Path) -> impl Fn(std::io::Error) -> ReadError + '_ {
+fn io_error(path: &Path) -> impl Fn(std::io::Error) -> ReadError + '_ {
     move |source| ReadError::Io { path: path.into(), source }
 }
 
 /// Returns a function that adds the path to an error of an assembly.
-fn in_file(path: &Path) -> impl Fn(AssemblyError) -> ReadError + '_ {
+fn assembly_error(path: &Path) -> impl Fn(AssemblyError) -> ReadError + '_ {
     move |source| ReadError::Assembly { path: path.into(), source }
 }
 
 /// Builds an error about the contents of a file.
-fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Display) -> ReadError {
+fn contents_error(path: &Path, place: impl Into<String>, reason: impl std::fmt::Display) -> ReadError {
     ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
 }
 
 /// Parses a mesh file. Its extension selects the format.
 #[cfg(feature = "files")]
-fn mesh(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
+fn parse_mesh(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
     let format = colltrans_mesh::Format::of_path(path)?;
     Ok(colltrans_mesh::parse(format, bytes, path)?)
 }
@@ -300,20 +300,20 @@ struct Budget {
 
 impl Budget {
     /// Builds the budget of a source with this number of bytes.
-    fn of(bytes: usize) -> Self {
+    fn with_bytes(bytes: usize) -> Self {
         Self { bytes, ..Self::default() }
     }
 
     /// Adds the bytes of a file that was read. Each file counts once.
     #[cfg(feature = "files")]
-    fn read(&mut self, file: &Path, bytes: usize) {
+    fn count_file(&mut self, file: &Path, bytes: usize) {
         if self.files.insert(file.into()) {
             self.bytes += bytes;
         }
     }
 
     /// Counts a placed node, component, link or part.
-    fn place(&mut self) -> Result<(), String> {
+    fn count_placed(&mut self) -> Result<(), String> {
         self.placed += 1;
         if self.placed > MOST_PLACED {
             return Err(format!(
@@ -324,7 +324,7 @@ impl Budget {
     }
 
     /// Counts placed facets.
-    fn facets(&mut self, count: usize) -> Result<(), String> {
+    fn count_facets(&mut self, count: usize) -> Result<(), String> {
         self.facets += count;
         if self.facets > self.bytes + MOST_REPEATED {
             return Err(format!(
@@ -339,7 +339,7 @@ impl Budget {
 
 /// Returns the name of a file without its extension.
 #[cfg(feature = "files")]
-fn stem(path: &Path) -> String {
+fn file_stem(path: &Path) -> String {
     path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
@@ -353,12 +353,12 @@ struct Names {
 
 impl Names {
     /// Reserves the names of other parts.
-    fn take<'a>(&mut self, names: impl Iterator<Item = &'a String>) {
+    fn reserve<'a>(&mut self, names: impl Iterator<Item = &'a String>) {
         self.taken.extend(names.cloned());
     }
 
     /// Returns the name, with a number appended if it is in use.
-    fn unique(&mut self, name: &str) -> String {
+    fn unique_name(&mut self, name: &str) -> String {
         let number = self.next.entry(name.to_owned()).or_insert(2);
         let mut chosen = name.to_owned();
         while !self.taken.insert(chosen.clone()) {

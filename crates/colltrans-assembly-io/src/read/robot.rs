@@ -14,8 +14,8 @@ use glam::{DAffine3, DVec3};
 
 use super::files::Source;
 use super::shapes::{Round, SIDES};
-use super::urdf::{self, Gathered};
-use super::{contents, in_file};
+use super::urdf::{self, PartGatherer};
+use super::{contents_error, assembly_error};
 use crate::error::ReadError;
 use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
 use colltrans_assembly::AssemblyError;
@@ -23,51 +23,51 @@ use colltrans_assembly::Piece;
 use colltrans_mesh::xml::Element;
 
 /// Reads a robot from a URDF file.
-pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
-    let (element, bytes) = urdf::robot(&source)?;
-    let joints = urdf::joints(&source, &element)?;
+pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
+    let (element, bytes) = urdf::parse_robot(&source)?;
+    let joints = urdf::read_joints(&source, &element)?;
     // Rejects cycles, unknown links, and links with two parents.
-    urdf::places(&source, &element, &joints)?;
-    let mut made =
-        Made { source: &source, frames: Vec::new(), of_link: HashMap::new(), joints: Vec::new() };
+    urdf::link_poses(&source, &element, &joints)?;
+    let mut tree =
+        TreeBuilder { source: &source, frames: Vec::new(), frame_of_link: HashMap::new(), joints: Vec::new() };
     let above: HashMap<&str, (&str, &urdf::Joint)> =
         joints.iter().map(|(name, joint)| (joint.child, (*name, joint))).collect();
     let names: Vec<&str> =
-        element.all("link").map(|link| urdf::named(&source, link)).collect::<Result<_, _>>()?;
+        element.all("link").map(|link| urdf::element_name(&source, link)).collect::<Result<_, _>>()?;
     for name in &names {
         // Collects the links up to one whose frame is known, then adds their frames downwards.
         let mut way = vec![*name];
         while let Some((_, joint)) = above.get(way[way.len() - 1])
-            && !made.of_link.contains_key(joint.parent)
+            && !tree.frame_of_link.contains_key(joint.parent)
         {
             way.push(joint.parent);
         }
         for link in way.into_iter().rev() {
-            made.link(link, above.get(link).copied())?;
+            tree.add_link(link, above.get(link).copied())?;
         }
     }
     let mechanism =
-        Mechanism::new(made.frames).map_err(|e| contents(source.path, "joints", e.to_string()))?;
-    let joints = mimics(&source, made.joints, &joints)?;
+        Mechanism::new(tree.frames).map_err(|e| contents_error(source.path, "joints", e.to_string()))?;
+    let joints = set_mimics(&source, tree.joints, &joints)?;
     let hulls = source.options.hulls.iter().filter(|name| *name != "*");
     if let Some(name) = hulls.into_iter().find(|name| !names.contains(&name.as_str())) {
         let reason =
             format!("cannot use the hull of unknown link {name}; links: {}", names.join(", "));
-        return Err(contents(source.path, "links", reason));
+        return Err(contents_error(source.path, "links", reason));
     }
-    let mut gathered = Gathered::new(&source, bytes, Round::Around);
+    let mut gathered = PartGatherer::new(&source, bytes, Round::Circumscribed);
     let mut links = Vec::new();
     let mut notes = Vec::new();
     for link in element.all("link") {
-        let name = urdf::named(&source, link)?;
-        let pieces = gathered.pieces(link, name, DAffine3::IDENTITY)?;
+        let name = urdf::element_name(&source, link)?;
+        let pieces = gathered.link_pieces(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
         let (takes_hull, mut is_hull) = (source.options.takes_hull(name), false);
         let mut dent: Option<f64> = None;
         for piece in &pieces {
-            let options = source.options.body().with_hull(takes_hull);
-            let loaded = any_body(piece, &options).map_err(|refused| {
-                in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
+            let options = source.options.body_options().with_hull(takes_hull);
+            let loaded = body_of_piece(piece, &options).map_err(|refused| {
+                assembly_error(source.path)(AssemblyError::Part { part: name.into(), source: refused })
             })?;
             // If the hull equals the mesh, there is no note.
             is_hull |= takes_hull && !loaded.notes.is_empty();
@@ -76,14 +76,14 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
             notes.extend(loaded.notes.iter().map(|said| format!("link {name}{whose}: {said}")));
             bodies.push(loaded.body);
         }
-        notes.extend(round(link).map(|said| format!("link {name}: {said}")));
-        let frame = made.of_link[name];
+        notes.extend(round_shape_notes(link).map(|said| format!("link {name}: {said}")));
+        let frame = tree.frame_of_link[name];
         links.push(Link { name: name.into(), frame, bodies, is_hull, dent });
     }
-    let Gathered { missing, notes: left_out, .. } = gathered;
+    let PartGatherer { missing, notes: left_out, .. } = gathered;
     if let Some(capsule) = left_out.first() {
         let reason = format!("{capsule}; replace the capsule by a cylinder and two spheres");
-        return Err(contents(source.path, "links", reason));
+        return Err(contents_error(source.path, "links", reason));
     }
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: source.path.into(), missing });
@@ -98,37 +98,37 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
 }
 
 /// The kinematic tree while it is built.
-struct Made<'a> {
+struct TreeBuilder<'a> {
     source: &'a Source<'a>,
     frames: Vec<Frame>,
-    of_link: HashMap<&'a str, Option<usize>>,
+    frame_of_link: HashMap<&'a str, Option<usize>>,
     joints: Vec<RobotJoint>,
 }
 
-impl<'a> Made<'a> {
+impl<'a> TreeBuilder<'a> {
     /// Adds the frame of a link. The frame of its parent must exist.
-    fn link(
+    fn add_link(
         &mut self,
         link: &'a str,
         above: Option<(&str, &urdf::Joint<'a>)>,
     ) -> Result<(), ReadError> {
-        if self.of_link.contains_key(link) {
+        if self.frame_of_link.contains_key(link) {
             return Ok(());
         }
         let Some((name, joint)) = above else {
-            self.of_link.insert(link, None);
+            self.frame_of_link.insert(link, None);
             return Ok(());
         };
-        let refused = |reason: String| contents(self.source.path, format!("joint {name}"), reason);
-        let (kind, moves) = moves(joint.element).map_err(refused)?;
+        let refused = |reason: String| contents_error(self.source.path, format!("joint {name}"), reason);
+        let (kind, moves) = joint_motion(joint.element).map_err(refused)?;
         let DAffine3 { matrix3, translation } = joint.origin;
         let origin = Pose::from_matrix(matrix3, translation).map_err(|e| refused(e.to_string()))?;
         let frame = self.frames.len();
-        self.frames.push(Frame { parent: self.of_link[joint.parent], origin, joint: moves });
-        self.of_link.insert(link, Some(frame));
+        self.frames.push(Frame { parent: self.frame_of_link[joint.parent], origin, joint: moves });
+        self.frame_of_link.insert(link, Some(frame));
         if let Some(kind) = kind {
             let limits =
-                limits(joint.element).map_err(refused)?.filter(|_| kind != Kind::Continuous);
+                joint_limits(joint.element).map_err(refused)?.filter(|_| kind != Kind::Continuous);
             self.joints.push(RobotJoint { name: name.into(), frame, kind, limits, mimic: None });
         }
         Ok(())
@@ -136,7 +136,7 @@ impl<'a> Made<'a> {
 }
 
 /// Returns the kind of a joint (`None` if fixed) and its motion.
-fn moves(element: &Element) -> Result<(Option<Kind>, Joint), String> {
+fn joint_motion(element: &Element) -> Result<(Option<Kind>, Joint), String> {
     let axis = match element.first("axis") {
         Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
         None => [1.0, 0.0, 0.0],
@@ -160,7 +160,7 @@ fn moves(element: &Element) -> Result<(Option<Kind>, Joint), String> {
 }
 
 /// Returns the limits of a joint. `None` if there are no limits, or both are 0.
-fn limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
+fn joint_limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
     let Some(limit) = element.first("limit") else { return Ok(None) };
     let lower = limit.numbers::<1>("lower")?.map_or(0.0, |[x]| x);
     let upper = limit.numbers::<1>("upper")?.map_or(0.0, |[x]| x);
@@ -168,7 +168,7 @@ fn limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
 }
 
 /// Sets the joint that each joint mimics. Rejects unknown joints and cycles.
-fn mimics(
+fn set_mimics(
     source: &Source,
     mut joints: Vec<RobotJoint>,
     elements: &urdf::Joints,
@@ -176,7 +176,7 @@ fn mimics(
     let places: HashMap<String, usize> =
         joints.iter().enumerate().map(|(k, joint)| (joint.name.clone(), k)).collect();
     for RobotJoint { name, mimic, .. } in &mut joints {
-        let refused = |reason: String| contents(source.path, format!("joint {name}"), reason);
+        let refused = |reason: String| contents_error(source.path, format!("joint {name}"), reason);
         let Some(found) = elements[name.as_str()].element.first("mimic") else { continue };
         let of = found.need("joint").map_err(refused)?;
         let place = places.get(of).copied();
@@ -197,14 +197,14 @@ fn mimics(
         }
         if at.mimic.is_some() {
             let reason = "mimic elements form a cycle";
-            return Err(contents(source.path, format!("joint {}", joint.name), reason));
+            return Err(contents_error(source.path, format!("joint {}", joint.name), reason));
         }
     }
     Ok(joints)
 }
 
 /// Builds a body from a piece, in the frame of its link: convex if the piece is, otherwise a solid.
-fn any_body(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::Refused> {
+fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::Refused> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);
@@ -216,12 +216,12 @@ fn any_body(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, bod
 }
 
 /// Returns notes on the round shapes of a link, with the error of the polyhedra.
-fn round(link: &Element) -> impl Iterator<Item = String> + '_ {
+fn round_shape_notes(link: &Element) -> impl Iterator<Item = String> + '_ {
     let shapes = link.all("collision").filter_map(|of| of.first("geometry")?.children.first());
     shapes.filter_map(move |shape| {
         let larger = match shape.name.as_str() {
-            "cylinder" => Round::Around.cylinder(),
-            "sphere" => Round::Around.sphere(),
+            "cylinder" => Round::Circumscribed.cylinder_scale(),
+            "sphere" => Round::Circumscribed.sphere_scale(),
             _ => return None,
         };
         let radius = shape.numbers::<1>("radius").ok()??[0];

@@ -8,7 +8,7 @@
 //!   of the inscribed polyhedron is a polygon of `n` sides, at least `c` from the centre. Halfway between
 //!   meridians that profile is narrower by `c`. All faces are therefore at least `c^2` from the centre, and the
 //!   factor `1 / c^2` encloses the sphere.
-//! - The factor `MORE` covers the rounding errors of the vertices.
+//! - The factor `ROUNDING_MARGIN` covers the rounding errors of the vertices.
 
 use std::f64::consts::TAU;
 
@@ -22,31 +22,31 @@ pub(super) const SIDES: usize = 64;
 
 /// A factor above 1 that exceeds the rounding errors and the error of a hull at a vertex, relative to the
 /// radius.
-const MORE: f64 = 1.0 + 1e-12;
+const ROUNDING_MARGIN: f64 = 1.0 + 1e-12;
 
 /// The position of the polyhedron relative to the round shape that it replaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Round {
     /// Inscribed: it touches the true shape at its vertices, so shapes that fit still fit.
-    Inside,
+    Inscribed,
     /// Circumscribed: it encloses the true shape, so a body that does not meet it does not meet the true shape.
-    Around,
+    Circumscribed,
 }
 
 impl Round {
     /// Returns the size relative to the inscribed polyhedron, for a cylinder.
-    pub(super) fn cylinder(self) -> f64 {
+    pub(super) fn cylinder_scale(self) -> f64 {
         match self {
-            Self::Inside => 1.0,
-            Self::Around => MORE / (TAU / 2.0 / SIDES as f64).cos(),
+            Self::Inscribed => 1.0,
+            Self::Circumscribed => ROUNDING_MARGIN / (TAU / 2.0 / SIDES as f64).cos(),
         }
     }
 
     /// Returns the size relative to the inscribed polyhedron, for a sphere.
-    pub(super) fn sphere(self) -> f64 {
+    pub(super) fn sphere_scale(self) -> f64 {
         match self {
-            Self::Inside => 1.0,
-            Self::Around => MORE / (TAU / 2.0 / SIDES as f64).cos().powi(2),
+            Self::Inscribed => 1.0,
+            Self::Circumscribed => ROUNDING_MARGIN / (TAU / 2.0 / SIDES as f64).cos().powi(2),
         }
     }
 }
@@ -65,29 +65,29 @@ pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
 }
 
 /// Builds a cylinder about z, centred at the origin of the piece.
-pub(super) fn cylinder(
+pub(super) fn cylinder_scale(
     radius: f64,
     length: f64,
     round: Round,
     world_from_piece: DAffine3,
 ) -> Piece {
-    let radius = radius * round.cylinder();
-    turned(&[(radius, -length / 2.0), (radius, length / 2.0)], None, world_from_piece)
+    let radius = radius * round.cylinder_scale();
+    solid_of_revolution(&[(radius, -length / 2.0), (radius, length / 2.0)], None, world_from_piece)
 }
 
 /// Builds a sphere, centred at the origin of the piece.
-pub(super) fn sphere(radius: f64, round: Round, world_from_piece: DAffine3) -> Piece {
-    let radius = radius * round.sphere();
+pub(super) fn sphere_scale(radius: f64, round: Round, world_from_piece: DAffine3) -> Piece {
+    let radius = radius * round.sphere_scale();
     let rings = SIDES / 2;
     let at = |k: usize| (k as f64 / rings as f64 * TAU / 2.0).sin_cos();
     let profile: Vec<(f64, f64)> =
         (1..rings).map(at).map(|(s, c)| (radius * s, -radius * c)).collect();
-    turned(&profile, Some([-radius, radius]), world_from_piece)
+    solid_of_revolution(&profile, Some([-radius, radius]), world_from_piece)
 }
 
 /// Builds a solid of revolution: rotates a profile of points (radius, z), in increasing order of z, about z.
 /// Its ends are the points `poles` on the axis, or flat faces if that is `None`.
-fn turned(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAffine3) -> Piece {
+fn solid_of_revolution(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAffine3) -> Piece {
     let angle = |k: usize| (k as f64 / SIDES as f64 * TAU).sin_cos();
     let mut vertices: Vec<DVec3> = Vec::new();
     for &(r, z) in profile {
@@ -123,13 +123,13 @@ mod tests {
     use colltrans_assembly::Part;
 
     #[test]
-    fn shapes_are_closed_and_have_their_volumes() {
+    fn shapes_are_closed_with_expected_volumes() {
         let at = DAffine3::IDENTITY;
         let round = 0.5 * SIDES as f64 * (TAU / SIDES as f64).sin();
         let cases = [
             (cuboid(DVec3::new(1.0, 2.0, 3.0), at), 6.0, 1e-12),
-            (cylinder(2.0, 3.0, Round::Inside, at), round * 12.0, 1e-9),
-            (sphere(1.0, Round::Inside, at), 4.0 / 3.0 * TAU / 2.0, 0.02),
+            (cylinder(2.0, 3.0, Round::Inscribed, at), round * 12.0, 1e-9),
+            (sphere(1.0, Round::Inscribed, at), 4.0 / 3.0 * TAU / 2.0, 0.02),
         ];
         for (piece, volume, error) in cases {
             let part = Part::new("shape", &[piece]).unwrap();
@@ -140,7 +140,7 @@ mod tests {
 
     /// Returns the smallest distance of a face's plane and the largest distance of a vertex, from the axis of a
     /// cylinder (`flat`) or the centre of a sphere. The planes of a cylinder's end faces do not count.
-    fn reach(piece: &Piece, flat: bool) -> [f64; 2] {
+    fn distance_range(piece: &Piece, flat: bool) -> [f64; 2] {
         let Mesh { vertices, faces, .. } = &piece.mesh;
         let from_axis = |v: DVec3| if flat { v.truncate().length() } else { v.length() };
         let plane = |face: &Vec<u32>| {
@@ -154,14 +154,14 @@ mod tests {
     }
 
     #[test]
-    fn round_shapes_are_enclosed_or_enclose() {
+    fn round_shapes_are_inscribed_or_circumscribed() {
         let at = DAffine3::IDENTITY;
         for radius in [1e-3, 0.7, 40.0] {
-            for (round, is_around) in [(Round::Inside, false), (Round::Around, true)] {
+            for (round, is_around) in [(Round::Inscribed, false), (Round::Circumscribed, true)] {
                 for (piece, flat) in
                     [(cylinder(radius, 3.0, round, at), true), (sphere(radius, round, at), false)]
                 {
-                    let [least, most] = reach(&piece, flat).map(|x| x / radius);
+                    let [least, most] = distance_range(&piece, flat).map(|x| x / radius);
                     if is_around {
                         // The reported bound is the factor of the vertices.
                         assert!(least >= 1.0 + 1e-13, "{least}");

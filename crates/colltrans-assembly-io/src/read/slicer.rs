@@ -17,44 +17,44 @@ pub(super) const FILES: [&str; 2] =
 
 /// The settings of the objects of the root model, by their ids.
 #[derive(Default)]
-pub(super) struct Told(HashMap<String, Whole>);
+pub(super) struct SlicerSettings(HashMap<String, ObjectSettings>);
 
 /// The settings of an object.
 #[derive(Default)]
-pub(super) struct Whole {
+pub(super) struct ObjectSettings {
     pub(super) name: Option<String>,
     /// The settings of its components, by the id of the object that each places.
-    pub(super) parts: HashMap<String, Body>,
+    pub(super) parts: HashMap<String, BodySettings>,
     /// The ranges of triangles of its mesh that form separate bodies, with their settings.
-    pub(super) volumes: Vec<(Range<usize>, Body)>,
+    pub(super) volumes: Vec<(Range<usize>, BodySettings)>,
 }
 
 /// The settings of a body.
 #[derive(Clone, Default)]
-pub(super) struct Body {
+pub(super) struct BodySettings {
     pub(super) name: Option<String>,
     /// The role of the body if it is not a part of the model.
-    pub(super) instead: Option<&'static str>,
+    pub(super) role: Option<&'static str>,
 }
 
-impl Told {
+impl SlicerSettings {
     /// Adds the settings in a file.
-    pub(super) fn add(&mut self, text: &str) {
+    pub(super) fn add_file(&mut self, text: &str) {
         let Ok(file) = Element::parse(text) else { return };
         for object in file.all("object") {
             let Some(id) = object.get("id") else { continue };
             let whole = self.0.entry(id.to_owned()).or_default();
-            whole.name = whole.name.take().or_else(|| said(object, "name"));
+            whole.name = whole.name.take().or_else(|| metadata_value(object, "name"));
             for part in object.all("part") {
                 if let Some(id) = part.get("id") {
-                    whole.parts.insert(id.to_owned(), Body::of(part, part.get("subtype")));
+                    whole.parts.insert(id.to_owned(), BodySettings::from_element(part, part.get("subtype")));
                 }
             }
             for volume in object.all("volume") {
                 let end = |key| volume.get(key).and_then(|text| text.parse::<usize>().ok());
                 if let (Some(first), Some(last)) = (end("firstid"), end("lastid")) {
-                    let kind = said(volume, "volume_type");
-                    let body = Body::of(volume, kind.as_deref());
+                    let kind = metadata_value(volume, "volume_type");
+                    let body = BodySettings::from_element(volume, kind.as_deref());
                     whole.volumes.push((first..last.saturating_add(1), body));
                 }
             }
@@ -62,15 +62,15 @@ impl Told {
     }
 
     /// Returns the settings of an object by its id; `None` if the files have none.
-    pub(super) fn of(&self, id: &str) -> Option<&Whole> {
+    pub(super) fn object(&self, id: &str) -> Option<&ObjectSettings> {
         self.0.get(id)
     }
 }
 
-impl Whole {
+impl ObjectSettings {
     /// Returns the bodies if there are several and their consecutive ranges cover exactly `triangles`
     /// triangles; otherwise `None`.
-    pub(super) fn bodies(&self, triangles: usize) -> Option<&[(Range<usize>, Body)]> {
+    pub(super) fn consecutive_bodies(&self, triangles: usize) -> Option<&[(Range<usize>, BodySettings)]> {
         let mut end = 0;
         for (run, _) in &self.volumes {
             if run.start != end || run.end <= end {
@@ -82,10 +82,10 @@ impl Whole {
     }
 }
 
-impl Body {
+impl BodySettings {
     /// Builds the settings of a body from its element and its kind.
-    fn of(element: &Element, kind: Option<&str>) -> Self {
-        let instead = match kind {
+    fn from_element(element: &Element, kind: Option<&str>) -> Self {
+        let role = match kind {
             Some("negative_part" | "NegativeVolume") => Some("negative"),
             Some("modifier_part" | "ParameterModifier") => Some("modifier"),
             Some("support_blocker" | "support_enforcer" | "SupportBlocker" | "SupportEnforcer") => {
@@ -93,13 +93,13 @@ impl Body {
             }
             _ => None,
         };
-        Self { name: said(element, "name"), instead }
+        Self { name: metadata_value(element, "name"), role }
     }
 }
 
 /// Returns the value of a `metadata` child with this key; `None` if it is missing or blank.
-fn said(element: &Element, key: &str) -> Option<String> {
-    let found = element.all("metadata").find(|said| said.get("key") == Some(key));
-    let value = found.and_then(|said| said.get("value"));
+fn metadata_value(element: &Element, key: &str) -> Option<String> {
+    let found = element.all("metadata").find(|entry| entry.get("key") == Some(key));
+    let value = found.and_then(|entry| entry.get("value"));
     value.map(str::trim).filter(|value| !value.is_empty()).map(str::to_owned)
 }

@@ -7,24 +7,24 @@ use std::path::PathBuf;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::files::Source;
-use super::manifest::rpy_matrix;
+use super::manifest::rotation_from_rpy;
 use super::shapes::Round;
-use super::{Budget, Draft, Geometry, Placed, assembled, contents, mesh, shapes};
+use super::{Budget, Draft, Geometry, Placed, assemble, contents_error, parse_mesh, shapes};
 use crate::error::ReadError;
 use colltrans_assembly::{Assembly, Piece};
 use colltrans_mesh::xml::Element;
 
 /// Reads the parts of a URDF file.
-pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
-    let (robot, bytes) = robot(&source)?;
-    let joints = joints(&source, &robot)?;
-    let places = places(&source, &robot, &joints)?;
-    let mut gathered = Gathered::new(&source, bytes, Round::Inside);
+pub(super) fn read_urdf(source: Source) -> Result<Assembly, ReadError> {
+    let (robot, bytes) = parse_robot(&source)?;
+    let joints = read_joints(&source, &robot)?;
+    let places = link_poses(&source, &robot, &joints)?;
+    let mut gathered = PartGatherer::new(&source, bytes, Round::Inscribed);
     for link in robot.all("link") {
-        let name = named(&source, link)?;
-        gathered.link(link, name, places[name])?;
+        let name = element_name(&source, link)?;
+        gathered.add_link(link, name, places[name])?;
     }
-    let Gathered { drafts, missing, mut notes, .. } = gathered;
+    let PartGatherer { drafts, missing, mut notes, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: source.path.into(), missing });
     }
@@ -38,29 +38,29 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         0 => format!("none of its {links} links has {which} geometry"),
         missing => format!("none of its {missing} referenced meshes was found"),
     };
-    let assembly = assembled(source, drafts, &holds)?.with_unit("m");
+    let assembly = assemble(source, drafts, &holds)?.with_unit("m");
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
 /// Parses the robot of a file. Returns it with the number of bytes of the text.
-pub(super) fn robot(source: &Source) -> Result<(Element, usize), ReadError> {
+pub(super) fn parse_robot(source: &Source) -> Result<(Element, usize), ReadError> {
     let text = source.text()?;
-    let refused = |(place, reason)| contents(source.path, format!("URDF: {place}"), reason);
+    let refused = |(place, reason)| contents_error(source.path, format!("URDF: {place}"), reason);
     let robot = Element::parse(&text).map_err(refused)?;
     if robot.name != "robot" {
         let reason = format!("the root element is {}, expected robot", robot.name);
-        return Err(contents(source.path, format!("URDF: line {}", robot.line), reason));
+        return Err(contents_error(source.path, format!("URDF: line {}", robot.line), reason));
     }
     let macros = |e: &&Element| e.name.starts_with("xacro:");
     if let Some(found) = robot.children.iter().find(macros) {
         let reason = format!("unexpanded macro {}; run xacro first", found.name);
-        return Err(contents(source.path, format!("URDF: line {}", found.line), reason));
+        return Err(contents_error(source.path, format!("URDF: line {}", found.line), reason));
     }
     Ok((robot, text.len()))
 }
 
 /// The parts while they are gathered.
-pub(super) struct Gathered<'a> {
+pub(super) struct PartGatherer<'a> {
     source: &'a Source<'a>,
     budget: Budget,
     drafts: Vec<Draft>,
@@ -69,27 +69,27 @@ pub(super) struct Gathered<'a> {
     round: Round,
 }
 
-impl<'a> Gathered<'a> {
+impl<'a> PartGatherer<'a> {
     pub(super) fn new(source: &'a Source<'a>, bytes: usize, round: Round) -> Self {
         let (drafts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { source, budget: Budget::of(bytes), drafts, missing, notes, round }
+        Self { source, budget: Budget::with_bytes(bytes), drafts, missing, notes, round }
     }
 
     /// Adds the part of a link, if it has geometry.
-    fn link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
-        let pieces = self.pieces(link, name, world)?;
+    fn add_link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
+        let pieces = self.link_pieces(link, name, world)?;
         if !pieces.is_empty() {
             let refused =
-                |reason: String| contents(self.source.path, format!("link {name}"), reason);
-            self.budget.place().map_err(refused)?;
+                |reason: String| contents_error(self.source.path, format!("link {name}"), reason);
+            self.budget.count_placed().map_err(refused)?;
             let pieces = pieces.into_iter().map(Placed::from).collect();
-            self.drafts.push(Draft::new(name, pieces).told());
+            self.drafts.push(Draft::new(name, pieces).as_one_part());
         }
         Ok(())
     }
 
     /// Builds the geometry of a link whose frame is at `world`.
-    pub(super) fn pieces(
+    pub(super) fn link_pieces(
         &mut self,
         link: &Element,
         name: &str,
@@ -102,20 +102,20 @@ impl<'a> Gathered<'a> {
         let mut pieces = Vec::new();
         for shown in link.all(which) {
             let refused =
-                |reason: String| contents(self.source.path, format!("link {name}"), reason);
-            let at = world * origin(shown).map_err(refused)?;
+                |reason: String| contents_error(self.source.path, format!("link {name}"), reason);
+            let at = world * element_pose(shown).map_err(refused)?;
             let shape = shown.first("geometry").and_then(|g| g.children.first());
             let shape =
                 shape.ok_or_else(|| refused(format!("a {which} element has no geometry")))?;
             match shape.name.as_str() {
-                "mesh" => pieces.extend(self.mesh(shape, name, at)?),
+                "mesh" => pieces.extend(self.read_mesh(shape, name, at)?),
                 "capsule" => self
                     .notes
                     .push(format!("link {name}: capsule left out: not a supported geometry")),
                 _ => {
-                    let piece = solid(shape, self.round, at).map_err(refused)?;
-                    self.budget.place().map_err(refused)?;
-                    self.budget.facets(piece.mesh.faces.len()).map_err(refused)?;
+                    let piece = primitive_piece(shape, self.round, at).map_err(refused)?;
+                    self.budget.count_placed().map_err(refused)?;
+                    self.budget.count_facets(piece.mesh.faces.len()).map_err(refused)?;
                     pieces.push(piece);
                 }
             }
@@ -124,22 +124,22 @@ impl<'a> Gathered<'a> {
     }
 
     /// Reads a mesh of a link. `None` if the file does not exist, which is recorded.
-    fn mesh(
+    fn read_mesh(
         &mut self,
         mesh: &Element,
         link: &str,
         at: DAffine3,
     ) -> Result<Option<Piece>, ReadError> {
-        let refused = |reason: String| contents(self.source.path, format!("link {link}"), reason);
+        let refused = |reason: String| contents_error(self.source.path, format!("link {link}"), reason);
         let filename = mesh.need("filename").map_err(refused)?;
         let scale = mesh.numbers::<3>("scale").map_err(refused)?.unwrap_or([1.0; 3]);
-        let Some((file, bytes)) = find(self.source, filename)? else {
+        let Some((file, bytes)) = find_mesh(self.source, filename)? else {
             self.missing.push(filename.to_owned());
             return Ok(None);
         };
-        self.budget.read(&file, bytes.len());
-        let found = self::mesh(&file, bytes)?;
-        self.budget.facets(found.faces.len().max(found.vertices.len())).map_err(refused)?;
+        self.budget.count_file(&file, bytes.len());
+        let found = parse_mesh(&file, bytes)?;
+        self.budget.count_facets(found.faces.len().max(found.vertices.len())).map_err(refused)?;
         // URDF is in metres. The upward axis of a mesh file is ignored.
         let scale = DVec3::from_array(scale) * found.unit.unwrap_or(1.0);
         let world_from_piece = at * DAffine3::from_scale(scale);
@@ -148,7 +148,7 @@ impl<'a> Gathered<'a> {
 }
 
 /// Builds a box, cylinder or sphere.
-fn solid(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
+fn primitive_piece(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
     let number = |name: &str| -> Result<f64, String> {
         shape.need(name)?;
         Ok(shape.numbers::<1>(name)?.map_or(0.0, |[x]| x))
@@ -179,19 +179,19 @@ fn solid(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
 }
 
 /// Returns the name of an element, which must have one.
-pub(super) fn named<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
-    let refused = |e| contents(source.path, format!("URDF: line {}", element.line), e);
+pub(super) fn element_name<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
+    let refused = |e| contents_error(source.path, format!("URDF: line {}", element.line), e);
     element.need("name").map_err(refused)
 }
 
-/// Returns the pose of an element, the identity if it has no `origin`.
-pub(super) fn origin(element: &Element) -> Result<DAffine3, String> {
+/// Returns the pose of an element, the identity if it has no `element_pose`.
+pub(super) fn element_pose(element: &Element) -> Result<DAffine3, String> {
     let Some(origin) = element.first("origin") else { return Ok(DAffine3::IDENTITY) };
     let xyz = origin.numbers::<3>("xyz")?.unwrap_or_default();
     let rpy = origin.numbers::<3>("rpy")?.unwrap_or_default();
     let matrix = match origin.numbers::<4>("quat_xyzw")? {
         Some(quaternion) => DMat3::from_quat(DQuat::from_array(quaternion).normalize()),
-        None => rpy_matrix(rpy),
+        None => rotation_from_rpy(rpy),
     };
     let pose = DAffine3::from_mat3_translation(matrix, DVec3::from_array(xyz));
     if pose.is_finite() {
@@ -213,24 +213,24 @@ pub(super) struct Joint<'a> {
 pub(super) type Joints<'a> = HashMap<&'a str, Joint<'a>>;
 
 /// Returns the joints of a robot, and checks the joint positions of the options.
-pub(super) fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
+pub(super) fn read_joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
     let mut joints = HashMap::new();
     for element in robot.all("joint") {
-        let name = named(source, element)?;
-        let refused = |reason: String| contents(source.path, format!("joint {name}"), reason);
+        let name = element_name(source, element)?;
+        let refused = |reason: String| contents_error(source.path, format!("joint {name}"), reason);
         let link = |what: &'static str| {
             let of =
                 element.first(what).ok_or_else(|| refused(format!("missing element {what}")))?;
             of.need("link").map_err(refused)
         };
-        let origin = origin(element).map_err(refused)?;
+        let origin = element_pose(element).map_err(refused)?;
         let joint = Joint { element, parent: link("parent")?, child: link("child")?, origin };
         if joints.insert(name, joint).is_some() {
             return Err(refused("duplicate joint name; names must be unique".into()));
         }
     }
     for (name, value) in &source.options.joints {
-        let refused = |reason: String| contents(source.path, "joints", reason);
+        let refused = |reason: String| contents_error(source.path, "joints", reason);
         if !value.is_finite() {
             return Err(refused(format!(
                 "invalid position {value} of joint {name}; accepted: a finite number"
@@ -244,16 +244,16 @@ pub(super) fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'
 }
 
 /// Returns the pose of each link in the world. Root links are at the origin.
-pub(super) fn places<'a>(
+pub(super) fn link_poses<'a>(
     source: &Source,
     robot: &'a Element,
     joints: &Joints<'a>,
 ) -> Result<HashMap<&'a str, DAffine3>, ReadError> {
     let mut links: HashMap<&str, Option<(&str, &Joint)>> = HashMap::new();
     for link in robot.all("link") {
-        let name = named(source, link)?;
+        let name = element_name(source, link)?;
         if links.insert(name, None).is_some() {
-            return Err(contents(
+            return Err(contents_error(
                 source.path,
                 format!("link {name}"),
                 "duplicate link name; names must be unique",
@@ -261,7 +261,7 @@ pub(super) fn places<'a>(
         }
     }
     for joint in robot.all("joint").filter_map(|joint| joint.get("name")) {
-        let refused = |reason| contents(source.path, format!("joint {joint}"), reason);
+        let refused = |reason| contents_error(source.path, format!("joint {joint}"), reason);
         let Joint { parent, child, .. } = joints[joint];
         for link in [parent, child] {
             if !links.contains_key(link) {
@@ -285,7 +285,7 @@ pub(super) fn places<'a>(
                 break DAffine3::IDENTITY;
             };
             if above.len() > joints.len() {
-                return Err(contents(
+                return Err(contents_error(
                     source.path,
                     format!("link {link}"),
                     "its joints form a cycle",
@@ -295,8 +295,8 @@ pub(super) fn places<'a>(
             name = found.parent;
         };
         for (name, joint) in above.into_iter().rev() {
-            let refused = |reason| contents(source.path, format!("joint {name}"), reason);
-            at = at * joint.origin * motion(source, joints, name, joint).map_err(refused)?;
+            let refused = |reason| contents_error(source.path, format!("joint {name}"), reason);
+            at = at * joint.origin * joint_motion(source, joints, name, joint).map_err(refused)?;
             places.insert(joint.child, at);
         }
     }
@@ -304,9 +304,9 @@ pub(super) fn places<'a>(
 }
 
 /// Returns the motion of a joint at its position.
-fn motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result<DAffine3, String> {
+fn joint_motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result<DAffine3, String> {
     let kind = joint.element.need("type")?;
-    let position = position(source, joints, name, 8)?;
+    let position = joint_position(source, joints, name, 8)?;
     let axis = match joint.element.first("axis") {
         Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
         None => [1.0, 0.0, 0.0],
@@ -325,13 +325,13 @@ fn motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result
 }
 
 /// Returns the position of a joint: the given one, or that computed from the joint that it mimics, or 0.
-fn position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Result<f64, String> {
+fn joint_position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Result<f64, String> {
     if let Some(given) = source.options.joints.get(name) {
         return Ok(*given);
     }
     let mimic = joints.get(name).and_then(|joint| joint.element.first("mimic"));
     let Some(mimic) = mimic.filter(|_| depth > 0) else { return Ok(0.0) };
-    let value = position(source, joints, mimic.need("joint")?, depth - 1)?;
+    let value = joint_position(source, joints, mimic.need("joint")?, depth - 1)?;
     let number = |name: &str, default: f64| {
         mimic.numbers::<1>(name).map(|found| found.map_or(default, |[x]| x))
     };
@@ -339,24 +339,24 @@ fn position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Resul
 }
 
 /// Opens a mesh by the reference in the robot.
-fn find(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+fn find_mesh(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
     if let Some(rest) = name.strip_prefix("package://") {
         // Some files have an empty package name, as in `package:///meshes/a.stl`.
-        return in_packages(source, rest.trim_start_matches('/'));
+        return find_in_packages(source, rest.trim_start_matches('/'));
     }
     let name = name.strip_prefix("file://").unwrap_or(name);
-    match source.named(name)? {
+    match source.open_reference(name)? {
         Some(found) => Ok(Some(found)),
-        None => in_packages(source, name),
+        None => find_in_packages(source, name),
     }
 }
 
 /// Searches the package roots for a path, then for the path without its leading folders, one by one.
-fn in_packages(source: &Source, rest: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+fn find_in_packages(source: &Source, rest: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
     let mut rest = Some(rest);
     while let Some(tail) = rest.filter(|tail| !tail.is_empty()) {
         for root in &source.options.packages {
-            if let Some(found) = source.beside(root, tail)? {
+            if let Some(found) = source.open_relative(root, tail)? {
                 return Ok(Some(found));
             }
         }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use colltrans::motion::path::{JointPath, PathBody, PathCast, PathError};
 use colltrans::{AnyBody, Pose};
 
-use super::table::twice;
+use super::table::first_duplicate;
 use super::{Robot, RobotError, RobotJoint};
 
 /// A robot together with scene bodies, which are fixed in the world.
@@ -24,7 +24,7 @@ pub struct Cell {
 
 /// The links, followed by the scene bodies, each with the bodies that belong to it. In this module a *thing* is
 /// a link or a scene body.
-struct Things {
+struct NamedBodies {
     names: Vec<String>,
     links: usize,
     /// For each body the number of its thing.
@@ -48,12 +48,12 @@ impl Cell {
         let (scene_names, scene): (Vec<String>, Vec<AnyBody>) = scene.into_iter().unzip();
         let links = robot.links().iter().map(|link| &link.name);
         let around: Vec<&String> = links.chain(&scene_names).collect();
-        if let Some(name) = twice(&around) {
+        if let Some(name) = first_duplicate(&around) {
             return Err(RobotError::Twice { name: (*name).clone() });
         }
-        let things = Things::of(&robot, scene_names);
+        let things = NamedBodies::new(&robot, scene_names);
         let mut notes = Vec::new();
-        let pairs = things.pairs(&robot, listed, &mut notes)?;
+        let pairs = things.body_pairs(&robot, listed, &mut notes)?;
         let names = things.bodies.iter().map(|thing| things.names[*thing].clone()).collect();
         let of_links =
             robot.links().iter().filter_map(|link| Some((link.name.clone(), link.dent?)));
@@ -77,7 +77,7 @@ impl Cell {
         for [a, b] in pairs {
             for name in [a, b] {
                 if !self.names.contains(name) && self.robot.link(name).is_err() {
-                    let known = self.known().join(", ");
+                    let known = self.known_names().join(", ");
                     return Err(RobotError::Unknown { name: name.clone(), known });
                 }
             }
@@ -94,7 +94,7 @@ impl Cell {
     }
 
     /// Returns the names of all links and scene bodies.
-    fn known(&self) -> Vec<&str> {
+    fn known_names(&self) -> Vec<&str> {
         let links = self.robot.links().iter().map(|link| link.name.as_str());
         let around = &self.names[self.names.len() - self.scene.len()..];
         links.chain(around.iter().map(String::as_str)).collect()
@@ -176,8 +176,8 @@ impl Cell {
     }
 }
 
-impl Things {
-    fn of(robot: &Robot, scene: Vec<String>) -> Self {
+impl NamedBodies {
+    fn new(robot: &Robot, scene: Vec<String>) -> Self {
         let links = robot.links();
         let counts = links.iter().map(|link| link.bodies.len()).chain(scene.iter().map(|_| 1));
         let bodies = counts.enumerate().flat_map(|(k, count)| std::iter::repeat_n(k, count));

@@ -9,7 +9,7 @@ use super::{Kind, Robot, RobotError, RobotJoint, Table};
 
 /// The source of a joint's values.
 #[derive(Debug, Clone, Copy)]
-enum From {
+enum ValueSource {
     Column(usize),
     Rest(f64),
     Follows,
@@ -28,34 +28,34 @@ impl Robot {
         table: &Table,
         rest: &BTreeMap<String, f64>,
     ) -> Result<(JointPath, Vec<String>), RobotError> {
-        let sources = self.sources(table, rest)?;
-        let rows = table.rows.iter().map(|row| self.row(row, &sources)).collect();
+        let sources = self.value_sources(table, rest)?;
+        let rows = table.rows.iter().map(|row| self.joint_values(row, &sources)).collect();
         let path = match &table.times {
             Some(times) => JointPath::new(times.clone(), rows)?,
             None => JointPath::evenly(rows)?,
         };
         let beyond = self.joints.iter().enumerate();
-        let beyond = beyond.filter_map(|(k, joint)| exceeded(joint, k, &path));
+        let beyond = beyond.filter_map(|(k, joint)| exceeded_limits_note(joint, k, &path));
         let notes = table.straight().into_iter().chain(beyond).collect();
         Ok((path, notes))
     }
 
     /// Returns the names of the independent joints in their order, without those in `but`.
-    fn own(&self, but: &BTreeMap<String, f64>) -> Vec<&str> {
+    fn independent_joint_names(&self, but: &BTreeMap<String, f64>) -> Vec<&str> {
         let own = self.joints.iter().filter(|joint| joint.mimic.is_none());
         own.map(|joint| joint.name.as_str()).filter(|name| !but.contains_key(*name)).collect()
     }
 
-    fn sources(
+    fn value_sources(
         &self,
         table: &Table,
         rest: &BTreeMap<String, f64>,
-    ) -> Result<Vec<From>, RobotError> {
-        let own = self.own(&BTreeMap::new());
+    ) -> Result<Vec<ValueSource>, RobotError> {
+        let own = self.independent_joint_names(&BTreeMap::new());
         if let Some(joint) = rest.keys().find(|name| !own.contains(&name.as_str())) {
             return Err(RobotError::Joint { joint: joint.clone(), joints: own.join(", ") });
         }
-        let given = self.own(rest);
+        let given = self.independent_joint_names(rest);
         let columns: Vec<&str> = if let Some(names) = &table.names {
             names.iter().map(String::as_str).collect()
         } else {
@@ -71,40 +71,40 @@ impl Robot {
         }
         let source = |joint: &RobotJoint| {
             if joint.mimic.is_some() {
-                return Ok(From::Follows);
+                return Ok(ValueSource::Follows);
             }
             if let Some(value) = rest.get(&joint.name) {
-                return Ok(From::Rest(*value));
+                return Ok(ValueSource::Rest(*value));
             }
             let column = columns.iter().position(|column| *column == joint.name);
             column
-                .map(From::Column)
+                .map(ValueSource::Column)
                 .ok_or_else(|| RobotError::NoValues { joint: joint.name.clone() })
         };
         self.joints.iter().map(source).collect()
     }
 
-    fn row(&self, row: &[f64], sources: &[From]) -> Vec<f64> {
-        let value = |k: usize| self.value(k, row, sources);
+    fn joint_values(&self, row: &[f64], sources: &[ValueSource]) -> Vec<f64> {
+        let value = |k: usize| self.joint_value(k, row, sources);
         (0..self.joints.len()).map(value).collect()
     }
 
     /// Returns the value of a joint in a row. The recursion ends because mimics form no cycle (checked by the
     /// reader).
-    fn value(&self, joint: usize, row: &[f64], sources: &[From]) -> f64 {
+    fn joint_value(&self, joint: usize, row: &[f64], sources: &[ValueSource]) -> f64 {
         match (sources[joint], self.joints[joint].mimic) {
-            (From::Column(column), _) => row[column],
-            (From::Rest(value), _) => value,
-            (From::Follows, Some(mimic)) => {
-                mimic.multiplier * self.value(mimic.joint, row, sources) + mimic.offset
+            (ValueSource::Column(column), _) => row[column],
+            (ValueSource::Rest(value), _) => value,
+            (ValueSource::Follows, Some(mimic)) => {
+                mimic.multiplier * self.joint_value(mimic.joint, row, sources) + mimic.offset
             }
-            (From::Follows, None) => 0.0,
+            (ValueSource::Follows, None) => 0.0,
         }
     }
 }
 
 /// Returns a note on the values beyond the limits of a joint, or `None` if there are none.
-fn exceeded(joint: &RobotJoint, column: usize, path: &JointPath) -> Option<String> {
+fn exceeded_limits_note(joint: &RobotJoint, column: usize, path: &JointPath) -> Option<String> {
     let [lower, upper] = joint.limits?;
     let beyond = |row: &&Vec<f64>| !(lower..=upper).contains(&row[column]);
     let count = path.rows().iter().filter(beyond).count();

@@ -47,12 +47,12 @@ pub struct TableError {
 }
 
 /// Builds an error from a place and a reason.
-fn wrong(place: impl Into<String>, reason: impl Into<String>) -> TableError {
+fn table_error(place: impl Into<String>, reason: impl Into<String>) -> TableError {
     TableError { place: place.into(), reason: reason.into() }
 }
 
 /// Returns the first name that occurs a second time; `None` if all differ.
-pub(super) fn twice<T: PartialEq>(names: &[T]) -> Option<&T> {
+pub(super) fn first_duplicate<T: PartialEq>(names: &[T]) -> Option<&T> {
     (1..names.len()).find(|&k| names[..k].contains(&names[k])).map(|k| &names[k])
 }
 
@@ -71,14 +71,14 @@ impl Table {
     pub fn parse(text: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let table = match text.trim_start().chars().next() {
-            Some('[' | '{') => Self::json(text)?,
-            _ => Self::csv(text)?,
+            Some('[' | '{') => Self::parse_json(text)?,
+            _ => Self::parse_csv(text)?,
         };
         if table.rows.is_empty() {
-            return Err(wrong("end of file", "no rows; expected at least one"));
+            return Err(table_error("end of file", "no rows; expected at least one"));
         }
-        if let Some(name) = table.names.as_deref().and_then(twice) {
-            return Err(wrong(
+        if let Some(name) = table.names.as_deref().and_then(first_duplicate) {
+            return Err(table_error(
                 "names of columns",
                 format!("duplicate name `{name}`; names must be unique"),
             ));
@@ -86,10 +86,10 @@ impl Table {
         Ok(table)
     }
 
-    fn csv(text: &str) -> Result<Self, TableError> {
+    fn parse_csv(text: &str) -> Result<Self, TableError> {
         let mut table = Self::default();
         if let Some(reason) = is_yaml(text).then_some(YAML) {
-            return Err(wrong("file", reason));
+            return Err(table_error("file", reason));
         }
         let mut first: Option<(usize, usize)> = None;
         for (k, line) in text.lines().enumerate() {
@@ -109,12 +109,12 @@ impl Table {
             if fields.len() != columns {
                 let reason =
                     format!("{} values, expected {columns} as in the lines above", fields.len());
-                return Err(wrong(place, reason));
+                return Err(table_error(place, reason));
             }
             let row: Option<Vec<f64>> = numbers.into_iter().collect();
             let row = row.filter(|row| row.iter().all(|x| x.is_finite()));
             let row = row.ok_or_else(|| {
-                wrong(place, format!("`{content}` has a value that is not a finite number"))
+                table_error(place, format!("`{content}` has a value that is not a finite number"))
             })?;
             table.rows.push(row);
         }
@@ -131,23 +131,23 @@ impl Table {
         self.times = Some(self.rows.iter_mut().map(|row| row.remove(column)).collect());
     }
 
-    fn json(text: &str) -> Result<Self, TableError> {
+    fn parse_json(text: &str) -> Result<Self, TableError> {
         // Errors about the document as a whole have no line.
         let place = |e: &serde_json::Error| match e.line() {
             0 => "JSON".into(),
             line => format!("line {line} column {}", e.column()),
         };
-        let at = |e: &serde_json::Error| wrong(place(e), crate::plain::plain(e));
-        let read: Json =
-            serde_json::from_str(text).map_err(|e| wrong_point(text).unwrap_or_else(|| at(&e)))?;
+        let at = |e: &serde_json::Error| table_error(place(e), crate::plain::plain(e));
+        let read: JsonTable =
+            serde_json::from_str(text).map_err(|e| first_invalid_point(text).unwrap_or_else(|| at(&e)))?;
         let Trajectory { joint_names: names, points } = match read {
-            Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),
-            Json::Trajectory(trajectory) => trajectory,
-            Json::Wrapped { joint_trajectory, multi_dof_joint_trajectory: several } => {
+            JsonTable::Rows(rows) => return Self { rows, ..Self::default() }.check_row_lengths(),
+            JsonTable::Trajectory(trajectory) => trajectory,
+            JsonTable::Wrapped { joint_trajectory, multi_dof_joint_trajectory: several } => {
                 if several.is_some_and(|several| !several.points.is_empty()) {
                     let reason = "joints with several degrees of freedom are not supported; accepted: a trajectory \
                                   without points here";
-                    return Err(wrong("multi_dof_joint_trajectory", reason));
+                    return Err(table_error("multi_dof_joint_trajectory", reason));
                 }
                 joint_trajectory
             }
@@ -166,7 +166,7 @@ impl Table {
         let untimed = points.iter().position(|point| point.time_from_start.is_none());
         if let Some(k) = untimed.filter(|_| timed > 0) {
             let reason = "missing time_from_start, which other points have; give it for all points or for none";
-            return Err(wrong(format!("points[{k}]"), reason));
+            return Err(table_error(format!("points[{k}]"), reason));
         }
         let times: Vec<f64> =
             points.iter().filter_map(|point| Some(point.time_from_start?.seconds())).collect();
@@ -175,20 +175,20 @@ impl Table {
             let (found, wanted) = (rows[k].len(), names.len());
             let reason =
                 format!("{found} positions, expected {wanted}, one for each of joint_names");
-            return Err(wrong(format!("points[{k}]"), reason));
+            return Err(table_error(format!("points[{k}]"), reason));
         }
-        Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }.even()
+        Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }.check_row_lengths()
     }
 
     /// Returns the table if all rows have the same number of values, which is that of the names if there are
     /// names.
-    fn even(self) -> Result<Self, TableError> {
+    fn check_row_lengths(self) -> Result<Self, TableError> {
         let columns = self.names.as_ref().map(Vec::len).or(self.rows.first().map(Vec::len));
         match self.rows.iter().position(|row| Some(row.len()) != columns) {
             None => Ok(self),
             Some(k) => {
                 let (found, wanted) = (self.rows[k].len(), columns.unwrap_or(0));
-                Err(wrong(format!("row {k}"), format!("{found} values, expected {wanted}")))
+                Err(table_error(format!("row {k}"), format!("{found} values, expected {wanted}")))
             }
         }
     }
@@ -204,14 +204,14 @@ fn is_yaml(text: &str) -> bool {
 
 /// Finds the first invalid point of a trajectory; `None` if the text is not a trajectory or all points are
 /// valid.
-fn wrong_point(text: &str) -> Option<TableError> {
+fn first_invalid_point(text: &str) -> Option<TableError> {
     let whole: serde_json::Value = serde_json::from_str(text).ok()?;
     let trajectory = whole.get("joint_trajectory").unwrap_or(&whole);
     let points = trajectory.get("points")?.as_array()?;
-    let wrong_one = |point: &serde_json::Value| Point::deserialize(point).err();
+    let point_error = |point: &serde_json::Value| Point::deserialize(point).err();
     let (k, error) =
-        points.iter().enumerate().find_map(|(k, point)| Some((k, wrong_one(point)?)))?;
-    Some(wrong(format!("points[{k}]"), crate::plain::plain(&error)))
+        points.iter().enumerate().find_map(|(k, point)| Some((k, point_error(point)?)))?;
+    Some(table_error(format!("points[{k}]"), crate::plain::plain(&error)))
 }
 
 #[derive(Deserialize)]
@@ -220,7 +220,7 @@ fn wrong_point(text: &str) -> Option<TableError> {
     expecting = "neither a list of rows nor {\"joint_names\": [..], \"points\": [..]}, alone or as \
                  \"joint_trajectory\""
 )]
-enum Json {
+enum JsonTable {
     Rows(Vec<Vec<f64>>),
     Trajectory(Trajectory),
     Wrapped { joint_trajectory: Trajectory, multi_dof_joint_trajectory: Option<MultiDof> },
@@ -244,13 +244,13 @@ struct Point {
     velocities: Option<Vec<f64>>,
     accelerations: Option<Vec<f64>>,
     effort: Option<Vec<f64>>,
-    time_from_start: Option<Duration>,
+    time_from_start: Option<RosTime>,
 }
 
 /// A time: a number of seconds, or seconds and nanoseconds as ROS writes them.
 #[derive(Deserialize, Clone, Copy)]
 #[serde(untagged)]
-enum Duration {
+enum RosTime {
     Seconds(f64),
     Two {
         #[serde(alias = "sec")]
@@ -260,7 +260,7 @@ enum Duration {
     },
 }
 
-impl Duration {
+impl RosTime {
     fn seconds(self) -> f64 {
         match self {
             Self::Seconds(seconds) => seconds,
@@ -274,7 +274,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_are_read() {
+    fn csv_and_json_rows_are_read() {
         let plain = Table::parse("0, 1\n# a comment\n\n2,3 # two\n").unwrap();
         assert_eq!(plain, Table { rows: vec![vec![0.0, 1.0], vec![2.0, 3.0]], ..Table::default() });
         let named = Table::parse("time,a,b\n0,1,2\n0.5,3,4\n").unwrap();
@@ -303,17 +303,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
-        let told = |text: &str| Table::parse(text).unwrap_err().to_string();
-        assert_eq!(told("a,b\n1,2\n1\n"), "line 3: 1 values, expected 2 as in the lines above");
-        assert_eq!(told("1,2\n1,x\n"), "line 2: `1,x` has a value that is not a finite number");
-        assert_eq!(told("a,b\n"), "end of file: no rows; expected at least one");
-        assert_eq!(told("1,inf\n"), "line 1: `1,inf` has a value that is not a finite number");
-        assert_eq!(told("[[1, 2], [1]]"), "row 1: 1 values, expected 2");
-        assert!(told("{\"points\": []}").contains("neither a list of rows nor"));
-        assert!(told("[[1, 2").contains("line 1"));
+    fn invalid_tables_report_place_and_reason() {
+        let error_text = |text: &str| Table::parse(text).unwrap_err().to_string();
+        assert_eq!(error_text("a,b\n1,2\n1\n"), "line 3: 1 values, expected 2 as in the lines above");
+        assert_eq!(error_text("1,2\n1,x\n"), "line 2: `1,x` has a value that is not a finite number");
+        assert_eq!(error_text("a,b\n"), "end of file: no rows; expected at least one");
+        assert_eq!(error_text("1,inf\n"), "line 1: `1,inf` has a value that is not a finite number");
+        assert_eq!(error_text("[[1, 2], [1]]"), "row 1: 1 values, expected 2");
+        assert!(error_text("{\"points\": []}").contains("neither a list of rows nor"));
+        assert!(error_text("[[1, 2").contains("line 1"));
         let point = |point: &str| {
-            told(&format!(r#"{{"joint_names": ["a"], "points": [{{"positions": [1]}}, {point}]}}"#))
+            error_text(&format!(r#"{{"joint_names": ["a"], "points": [{{"positions": [1]}}, {point}]}}"#))
         };
         let text = point(r#"{"positions": ["x"]}"#);
         assert!(text.starts_with("points[1]: ") && text.contains('x'), "{text}");
@@ -322,15 +322,15 @@ mod tests {
         let floating = r#"{"joint_trajectory": {"joint_names": ["a"], "points": [{"positions": [1]}]},
             "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": [{"transforms": [{}]}]}}"#;
         assert!(
-            told(floating).starts_with("multi_dof_joint_trajectory: joints with several degrees")
+            error_text(floating).starts_with("multi_dof_joint_trajectory: joints with several degrees")
         );
         let mixed = r#"{"joint_names": ["a"], "points": [
             {"positions": [1], "time_from_start": 1}, {"positions": [2]}]}"#;
-        assert!(told(mixed).starts_with("points[1]: missing time_from_start"), "{}", told(mixed));
+        assert!(error_text(mixed).starts_with("points[1]: missing time_from_start"), "{}", error_text(mixed));
         let short = point(r#"{"positions": [1, 2]}"#);
         assert_eq!(short, "points[1]: 2 positions, expected 1, one for each of joint_names");
         for yaml in ["---\njoint_names:\n- a\n", "header:\n  stamp: 0\n", "# ROS\npoints: []\n"] {
-            assert!(told(yaml).starts_with("file: found YAML"), "{}", told(yaml));
+            assert!(error_text(yaml).starts_with("file: found YAML"), "{}", error_text(yaml));
         }
     }
 }

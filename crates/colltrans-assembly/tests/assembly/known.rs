@@ -727,7 +727,7 @@ fn surfaces_that_enclose_nothing_are_mended_or_refused() {
         let refused =
             read(&source, &ReadOptions::default().with_as_is(true)).unwrap_err().to_string();
         assert!(
-            refused.contains(&format!("part {mended}: it would have to be mended")),
+            refused.contains(&format!("part {mended}: the mesh needs repair")),
             "{refused}"
         );
         assert!(refused.contains(&said), "{refused}");

@@ -316,8 +316,8 @@ fn gltf_files_whose_numbers_do_not_fit_are_refused() {
         let message = read(positions, indices).unwrap_err();
         assert!(message.contains("node 0, mesh 0") && message.contains(words), "{message}");
     };
-    refused(1_000_000, 3, "positions lie beyond");
-    refused(3, 1_000_000, "indices lie beyond");
+    refused(1_000_000, 3, "positions extend beyond");
+    refused(3, 1_000_000, "indices extend beyond");
     refused(3, 8, "8 indices are not a multiple of 3");
 }
 

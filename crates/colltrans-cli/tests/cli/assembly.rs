@@ -381,7 +381,7 @@ fn pipes_and_devices_are_never_opened() {
     ] {
         let output = colltrans(place).args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(3), "{arguments:?}");
-        assert!(stderr(&output).contains("not an ordinary file"), "{}", stderr(&output));
+        assert!(stderr(&output).contains("not a regular file"), "{}", stderr(&output));
     }
 }
 

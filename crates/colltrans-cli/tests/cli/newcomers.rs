@@ -330,7 +330,7 @@ fn contents_that_belie_the_name_are_named() {
     let path = folder.path();
     std::fs::copy(path.join("cube.off"), path.join("cube.stl")).unwrap();
     let arguments = ["cast", "cube.stl", "cube.off", "--direction", "x"];
-    refused(path, &arguments, 3, &["cube.stl: holds an OFF file, not STL as its name says"]);
+    refused(path, &arguments, 3, &["cube.stl: contains an OFF file, but its extension stands for STL"]);
     refused(path, &["info", "cube.stl"], 3, &["holds an OFF file"]);
 }
 

@@ -1,9 +1,9 @@
-//! By how much a convex hull exceeds the part that it was taken of.
+//! Measures the difference between a mesh and its convex hull.
 //!
-//! Depth of a point of the part: its distance from the nearest face plane of the hull, which is
-//! its distance from the hull's surface. It is looked at where the library looks when it judges
-//! convexity, at the corners, the middles of the edges and the centres of all faces: for curved
-//! surfaces that is all there is, in a large flat face some other point may lie a little deeper.
+//! The depth of a point of the part is its distance from the nearest face plane of the hull, which is its
+//! distance from the hull's surface. The depth is sampled where the library judges convexity: at the corners,
+//! the edge midpoints and the centres of all faces. Between the samples of a large flat face, a point may be
+//! slightly deeper.
 
 use colltrans::ConvexPolyhedron;
 use colltrans_kernel::plane_tree::PlaneTree;
@@ -11,32 +11,32 @@ use glam::DVec3;
 
 use crate::Mesh;
 
-/// Whether depths are looked at; volumes are in any case.
+/// Whether depths are computed. Volumes are always computed.
 const DEEP: bool = cfg!(feature = "depth");
 
-/// Planes and nodes that are looked at before the search for the deepest point is given up: some seconds.
+/// Maximum number of planes and nodes visited in the search for the deepest point, which takes some seconds.
 const MOST_LOOKS: usize = 1_000_000_000;
 
-/// What a hull has and its part has not.
+/// The difference between a convex hull and its part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Excess {
-    /// Volume of the hull.
+    /// The volume of the hull.
     pub hull_volume: f64,
-    /// Volume of the part; `None` if its surface is open or oriented inwards.
+    /// The volume of the part; `None` if its surface is open or oriented inwards.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub part_volume: Option<f64>,
     /// Whether the part's surface is closed.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub is_closed: bool,
-    /// How deep the part's surface lies below the hull's; `None` without a surface, if there is more of
-    /// it than can be looked at, and without the feature `depth`.
+    /// The largest depth of the part's surface below the hull's. `None` if the mesh has no faces, the search
+    /// exceeds its limit, or the feature `depth` is off.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub depth: Option<f64>,
 }
 
 impl Excess {
-    /// By how much the convex hull of a mesh exceeds it.
+    /// Measures the difference between a mesh and its convex hull.
     pub fn of(mesh: &Mesh, hull: &ConvexPolyhedron) -> Self {
         let volume = mesh.signed_volume();
         let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
@@ -48,23 +48,23 @@ impl Excess {
         }
     }
 
-    /// Whether the part is its hull to within a depth below it, as it would be taken for convex
-    /// without asking for the hull: what is said of one holds for the other.
+    /// Checks whether the part equals its hull up to the given depth below it. Then the part counts as convex,
+    /// and results for one hold for the other.
     pub fn is_within(&self, tolerance: f64, extent: f64) -> bool {
-        // A box with sides of this extent has six faces.
+        // A cube with edges of this extent has six faces.
         let most = 6.0 * tolerance * extent * extent;
         let is_filled = self.part_volume.is_some_and(|volume| self.hull_volume - volume <= most);
         is_filled && self.depth.map_or(!DEEP, |depth| depth <= tolerance)
     }
 }
 
-/// Depth of the deepest point of the faces of a mesh below a hull.
+/// Returns the depth of the deepest sample of a mesh below a hull; `None` if the search exceeds its limit.
 fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
     let mut looks = 0;
     depth_counted(mesh, hull, &mut looks)
 }
 
-/// [`depth`], and how many planes and nodes were looked at.
+/// Computes [`depth`], and adds the number of visited planes and nodes to `looks`.
 fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut usize) -> Option<f64> {
     if hull.dimension() < 3 {
         return Some(0.0);
@@ -77,10 +77,10 @@ fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut usize) -> Opt
         (normal, heights.fold(f64::NEG_INFINITY, f64::max))
     };
     let planes = PlaneTree::new(&around, (0..hull.face_count() as u32).map(plane).collect());
-    // Less than this is rounding.
+    // Smaller depths are rounding errors.
     let noise = 1e-13 * mesh.extent();
     let mut deepest = noise;
-    // Points in the order of the mesh are near each other, and mostly below the same face.
+    // Consecutive points of the mesh are near each other, and mostly below the same face.
     let mut near = 0;
     for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
         deepest = deepest.max(planes.least_depth(p - centre, deepest, &mut near, looks));
@@ -91,7 +91,7 @@ fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut usize) -> Opt
     Some(if deepest == noise { 0.0 } else { deepest })
 }
 
-/// The corners of a face, the middles of its edges and its centre.
+/// Returns the corners of a face, the midpoints of its edges and its centre.
 fn samples<'a>(mesh: &'a Mesh, face: &'a [u32]) -> impl Iterator<Item = DVec3> + 'a {
     let at = |v: &u32| mesh.vertices[*v as usize];
     let centre = face.iter().map(at).sum::<DVec3>() / face.len() as f64;
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use colltrans_testkit::random::Random;
 
-    /// A square tube along x: 3 x 3 outside, 1 x 1 inside, 4 long.
+    /// A square tube along x: 3 x 3 outside, 1 x 1 inside, length 4.
     fn tube() -> Mesh {
         let square = |half: f64| [[-half, -half], [half, -half], [half, half], [-half, half]];
         let mut vertices = Vec::new();
@@ -145,7 +145,8 @@ mod tests {
         assert_eq!(Excess::of(&mesh, &hull).depth, None, "points have no surface");
     }
 
-    /// The prism over a regular polygon, which is its own hull, and a ring of teeth within such a polygon.
+    /// A prism over a regular polygon, which is its own hull (`teeth` is 0), or over a ring of teeth within
+    /// that polygon.
     fn wheel(corners: u32, teeth: f64) -> Mesh {
         let outline = |z: f64| {
             (0..corners).map(move |k| {
@@ -160,7 +161,7 @@ mod tests {
         Mesh::new(outline(0.0).chain(outline(1.0)).collect(), faces)
     }
 
-    /// Faces with many corners have as many neighbours, and none of their points looks at all of them.
+    /// Faces with many corners have as many neighbours. The search must not visit all of them for each point.
     #[test]
     fn planes_looked_at_grow_little_faster_than_the_mesh() {
         for teeth in [0.0, 1e-3, 0.1] {
@@ -172,12 +173,12 @@ mod tests {
                 assert!((deep > 0.0) == (teeth > 0.0), "{teeth}: {deep}");
                 looks
             });
-            // Eight times the corners: 64 times the looks would be quadratic.
+            // With eight times the corners, quadratic growth would be a factor of 64.
             assert!(looks[1] < 24 * looks[0] && looks[0] < 500_000, "{teeth}: {looks:?}");
         }
     }
 
-    /// Against all planes for all points.
+    /// Compares with all planes for all points.
     #[test]
     fn the_deepest_point_is_the_deepest() {
         let mut random = Random::new(3);

@@ -1,16 +1,17 @@
-//! Surfaces that enclose nothing as their file has them, mended where it is plain how.
+//! Repairs surfaces that are not closed or not consistently oriented, where the repair is unambiguous.
 //!
-//! A *patch* is what hangs together over edges of two facets, a *piece* what hangs together over any
-//! edges; an edge is *free* with one facet and *crowded* with three or more. Steps, in this order:
+//! A *patch* is a set of facets connected over edges with two facets, a *piece* one connected over any edges.
+//! An edge is *free* with one facet, and *crowded* with three or more. Steps, in this order:
 //!
-//! 1. of facets with the same corners one is kept;
-//! 2. *fins*, patches with a free edge that hang on a crowded one, are left out, and what hung on them;
-//! 3. *walls*, patches around which every edge has an odd number of facets, are left out: of those that
-//!    share an edge first what was two facets back to back (a wall between two bodies), then the smallest;
-//! 4. facets that are oriented against their neighbours are turned ([`super::orient`]).
+//! 1. Of facets with the same corners, one is kept.
+//! 2. *Fins* are removed: patches with a free edge that adjoin a crowded edge. The patches that adjoined these
+//!    fins follow.
+//! 3. *Walls* are removed: patches around which each edge has an odd number of facets. Of walls that share an
+//!    edge, those of pairs of opposite facets (a wall between two bodies) come first, then the smallest.
+//! 4. Facets that are oriented against their neighbours are reversed ([`super::orient`]).
 //!
-//! Invariant: a piece from which facets are left out has only edges of an even number of facets then, and what
-//! was left out is less than a hundredth of its area ([`MOST_LEFT_OUT`]). All other pieces stay as they are.
+//! Invariant: a piece from which facets were removed has only edges with an even number of facets, and the
+//! removed area is at most a hundredth ([`MOST_LEFT_OUT`]). Other pieces remain unchanged.
 
 use std::collections::{HashMap, HashSet};
 
@@ -22,26 +23,26 @@ use crate::Mesh;
 use crate::edges::{Use, by_edge, is_flat, normal, uses};
 use crate::sets::Sets;
 
-/// More of a piece than this share of its area is geometry, and stays.
+/// Maximum share of a piece's area to remove. A larger share counts as geometry.
 const MOST_LEFT_OUT: f64 = 0.01;
-/// Rounds in which fins, or walls, are looked for: what hangs on what hangs on something is rare.
+/// Maximum number of rounds in which fins, or walls, are removed.
 const MOST_ROUNDS: usize = 16;
 
-/// What was done to a surface.
+/// Statistics of the repair of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Healed {
-    /// Facets with the corners of another one.
+    /// Facets with the same corners as another one.
     pub(super) doubles: Left,
-    /// Facets that hung on the surface.
+    /// Facets of fins.
     pub(super) fins: Left,
-    /// Facets inside it.
+    /// Facets of walls.
     pub(super) walls: Left,
-    /// Facets that ran against the others.
+    /// Number of facets that were reversed.
     pub(super) turned: usize,
 }
 
 impl Healed {
-    /// What is to be said.
+    /// Returns the notes on the repair.
     pub(super) fn notes(self) -> impl Iterator<Item = Note> {
         let left = |left: Left, note: fn(Left) -> Note| (left.facets > 0).then(|| note(left));
         let turned = (self.turned > 0).then_some(Note::FacesTurned(self.turned));
@@ -55,14 +56,14 @@ impl Healed {
     }
 }
 
-/// Mends a surface. Where it has one side only, nothing is turned.
+/// Repairs a surface. On a one-sided surface no facets are reversed.
 pub(super) fn heal(mesh: &mut Mesh) -> Healed {
     let mut healed = leave_out(mesh);
     healed.turned = consistent(mesh).unwrap_or(0);
     healed
 }
 
-/// Steps 1 to 3.
+/// Performs steps 1 to 3.
 fn leave_out(mesh: &mut Mesh) -> Healed {
     let (vertices, faces) = mesh.welded();
     let mut surface = Surface::new(&vertices, &faces);
@@ -84,38 +85,39 @@ fn leave_out(mesh: &mut Mesh) -> Healed {
     healed
 }
 
-/// What becomes of a facet.
+/// The state of a facet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fate {
     Stays,
-    /// It has fewer than three corners, and is nobody's neighbour.
+    /// It has fewer than three different corners, and does not count as a neighbour.
     Flat,
     Double,
     Fin,
     Wall,
 }
 
-/// A patch.
+/// A patch of the surface.
 #[derive(Debug, Clone, Default)]
 struct Patch {
     facets: Vec<usize>,
     area: f64,
     has_free: bool,
-    /// Crowded edges around it, and whether all of them have an odd number of facets.
+    /// The crowded edges around the patch, and whether all of them have an odd number of facets.
     crowded: Vec<u64>,
     is_odd: bool,
 }
 
-/// A surface some facets of which are left out.
+/// A surface from which facets are being removed.
 struct Surface<'a> {
     faces: &'a [Vec<u32>],
     areas: Vec<f64>,
     fates: Vec<Fate>,
-    /// The piece of each facet, by one of its facets.
+    /// For each facet the representative facet of its piece.
     pieces: Vec<usize>,
 }
 
 impl<'a> Surface<'a> {
+    /// Builds a surface with all facets and finds its pieces.
     fn new(vertices: &[DVec3], faces: &'a [Vec<u32>]) -> Self {
         let areas = faces.iter().map(|face| normal(vertices, face).length() / 2.0).collect();
         let fate = |face: &Vec<u32>| if is_flat(face) { Fate::Flat } else { Fate::Stays };
@@ -130,11 +132,13 @@ impl<'a> Surface<'a> {
         Self { faces, areas, fates, pieces }
     }
 
+    /// Returns the sides of the facets that remain.
     fn uses(&self) -> Vec<Use> {
         uses(self.faces, |k| self.fates[k] == Fate::Stays)
     }
 
-    /// Step 1; of each facet whether as many ran one way as the other.
+    /// Performs step 1. Returns for each facet whether its duplicates (itself included) have both orientations
+    /// equally often.
     fn leave_doubles(&mut self) -> Vec<bool> {
         let mut same: HashMap<Vec<u32>, (usize, i64)> = HashMap::with_capacity(self.faces.len());
         let mut keeps = vec![None; self.faces.len()];
@@ -153,7 +157,7 @@ impl<'a> Surface<'a> {
         keeps.into_iter().map(|sum| sum == Some(0)).collect()
     }
 
-    /// Step 2.
+    /// Performs step 2.
     fn leave_fins(&mut self) {
         for _ in 0..MOST_ROUNDS {
             let patches = self.smaller_patches();
@@ -168,7 +172,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Step 3.
+    /// Performs step 3.
     fn leave_walls(&mut self, back_to_back: &[bool]) {
         for _ in 0..MOST_ROUNDS {
             let mut walls = self.smaller_patches();
@@ -191,7 +195,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// All patches but the largest of each piece.
+    /// Returns all patches except the largest of each piece.
     fn smaller_patches(&self) -> Vec<Patch> {
         let uses = self.uses();
         let mut sets = Sets::new(self.faces.len());
@@ -219,14 +223,14 @@ impl<'a> Surface<'a> {
             }
         }
         let mut patches: Vec<Patch> = patches.into_values().collect();
-        // Those with equal areas in the order of the file.
+        // Patches with equal areas are in the order of the file.
         patches.sort_by(|x, y| y.area.total_cmp(&x.area).then(x.facets.cmp(&y.facets)));
         let mut seen = HashSet::new();
         patches.retain(|patch| !seen.insert(self.pieces[patch.facets[0]]));
         patches
     }
 
-    /// What the invariant asks: pieces that did not become whole, or lost too much, have all facets again.
+    /// Restores the invariant: pieces that are not closed, or lost too much area, get back all facets.
     fn take_back(&mut self) {
         let mut left: HashMap<usize, [f64; 2]> = HashMap::new();
         for (k, fate) in self.fates.iter().enumerate() {
@@ -252,7 +256,8 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// The corners of a facet in an order that is the same for its double, and 1 or -1 by the way it runs.
+/// Returns the corners of a facet in a canonical order, which is the same for its duplicates, and 1 or -1 for
+/// its orientation.
 fn cycle(face: &[u32]) -> (Vec<u32>, i64) {
     let lowest = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
     let at = |k: usize| face[(lowest + k) % face.len()];
@@ -269,7 +274,7 @@ mod tests {
 
     use super::*;
 
-    /// The facets as cycles, whatever their order and their first corners are.
+    /// Returns the facets as canonical cycles, independent of their order and first corners.
     fn told(mesh: &Mesh) -> Vec<(Vec<u32>, i64)> {
         let mut all: Vec<_> = mesh.faces.iter().map(|face| cycle(face)).collect();
         all.sort_unstable();
@@ -280,7 +285,7 @@ mod tests {
         Mesh::new(shape.vertices, shape.faces)
     }
 
-    /// Two spheres and a prism, apart, of triangles and of polygons.
+    /// Two spheres and a prism, disjoint, of triangles or of polygons.
     fn clean(random: &mut Random) -> Mesh {
         let all = ring_sphere(24, 11)
             .joined(&ring_sphere(20, 12).translated(DVec3::X * 4.0))
@@ -288,7 +293,7 @@ mod tests {
         mesh(if random.one_in(2) { all.triangulated() } else { all })
     }
 
-    /// A strip of facets that hangs on an edge, up to so large.
+    /// Adds a strip of facets that adjoins an edge, with distances up to `size`.
     fn add_fin(mesh: &mut Mesh, size: f64, random: &mut Random) {
         let face = mesh.faces[random.index(mesh.faces.len())].clone();
         let (mut a, mut b) = (face[0], face[1]);
@@ -323,7 +328,7 @@ mod tests {
                 }
                 spoilt.faces.push(double);
             }
-            // Facets of the clean one are turned, so that the first of doubles may be a turned one.
+            // Some facets of the clean mesh are reversed, so that the first of two duplicates may be reversed.
             for _ in 0..turned {
                 let facet = random.index(clean.faces.len());
                 spoilt.faces[facet].reverse();
@@ -342,7 +347,7 @@ mod tests {
         }
     }
 
-    /// A square of a side that is also there cut along the other diagonal: two ways to close one hole.
+    /// A square face is present twice, cut along different diagonals: two ways to close one hole.
     #[test]
     fn one_of_two_ways_to_close_a_hole_is_kept() {
         let whole = mesh(prism(60, 0.05));
@@ -358,7 +363,7 @@ mod tests {
         assert!((spoilt.signed_volume() - whole.signed_volume()).abs() < 1e-12);
     }
 
-    /// The wall between two bodies, back to back, goes, and not the lid, which is smaller.
+    /// The wall between two bodies, of opposite facets, is removed, and not the smaller lid.
     #[test]
     fn a_wall_between_two_bodies_goes() {
         let tall = block(DVec3::ZERO, DVec3::new(1.0, 1.0, 80.0));
@@ -366,7 +371,7 @@ mod tests {
         let mut both = mesh(tall.joined(&lid));
         let (vertices, welded) = both.welded();
         let is_wall = |face: &Vec<u32>| face.iter().all(|&v| vertices[v as usize].z == 80.0);
-        // A pyramid that points down: larger than the lid.
+        // A pyramid that points down, larger than the lid.
         let apex = vertices.len() as u32;
         let mut faces = Vec::new();
         for face in welded {
@@ -384,7 +389,8 @@ mod tests {
         assert!((both.signed_volume() - 80.01).abs() < 1e-9);
     }
 
-    /// What is large is geometry: a sail on a pole, a book of three pages, a box without a lid with a sheet in it.
+    /// Large parts are geometry: a sail on a pole, a book of three pages, a box without a lid with a sheet in
+    /// it.
     #[test]
     fn what_is_large_stays() {
         let mut sail = mesh(prism(60, 1.0));

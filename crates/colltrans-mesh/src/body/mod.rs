@@ -1,9 +1,9 @@
-//! From a mesh to a body: what the command line, the page, assemblies and Python have in common.
+//! Builds bodies from meshes, for the command line, the page, assemblies and Python.
 //!
-//! [`convex`] and [`solid`] make a body of a mesh, [`load_convex`] and [`load_solid`] of a file. A body
-//! comes with what was mended for it ([`Note`]) and with the precision of its coordinates, from which
-//! [`between`] takes the tolerance of a query where nobody gives one. So every front end answers the
-//! same for the same files.
+//! [`convex`] and [`solid`] build a body from a mesh, [`load_convex`] and [`load_solid`] from a file. A body is
+//! accompanied by notes on repairs ([`Note`]) and by the precision of its coordinates. [`between`] computes the
+//! default tolerance of a query from these precisions. Therefore all front ends return the same results for the
+//! same files.
 
 mod excess;
 mod heal;
@@ -27,28 +27,28 @@ pub use note::{Left, Note, report_notes};
 use crate::words::counted;
 use crate::{Error, Mesh, ReadOptions, read_with};
 
-/// How deep a face may lie below the hull by default, as a part of the extent of what faces use: a hundred
-/// times what single precision makes of it, and what six printed digits make of it.
+/// Default maximum depth of a face below the hull, relative to the extent of the used vertices. It is a hundred
+/// times the effect of single precision, or of six printed digits.
 const CONVEX_TOLERANCE: f64 = 1e-5;
-/// Default tolerance between solids, in multiples of the precisions of both together: both ends of a
-/// fit are off by less than one of them, and a slanting facet makes more of it.
+/// Default tolerance between solids, as a multiple of the sum of their precisions. Both sides of a fit may be
+/// off by up to one precision, and an inclined facet increases the error.
 const PRECISIONS: f64 = 2.0;
 
-/// How a mesh becomes a body.
+/// Options for building a body from a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BodyOptions {
-    /// Lengths are multiplied by this, after the tolerances below, which are in the file's unit.
+    /// The factor of all lengths. The tolerances below are in the unit of the file, before scaling.
     pub scale: f64,
-    /// As [`ReadOptions::merge_tolerance`], where a file is read.
+    /// The merge tolerance for reading a file, see [`ReadOptions::merge_tolerance`].
     pub merge_tolerance: Option<f64>,
-    /// How deep a face of a convex body may lie below the hull; `None` is 1e-5 of [`Mesh::extent`].
+    /// The maximum depth of a face of a convex body below the hull; `None` is 1e-5 of [`Mesh::extent`].
     pub convex_tolerance: Option<f64>,
-    /// Of a convex body: the convex [`hull`] is taken, whatever the faces are.
+    /// For convex bodies: whether the convex [`hull`] is used, regardless of the faces.
     pub hull: bool,
-    /// Of a solid: shells may be open, and block from both sides then.
+    /// For solids: whether shells may be open. Open shells block from both sides.
     pub open: bool,
-    /// Of a solid: a surface that has to be mended is refused.
+    /// For solids: whether a surface that needs repair is rejected.
     pub as_is: bool,
 }
 
@@ -66,47 +66,48 @@ impl Default for BodyOptions {
 }
 
 impl BodyOptions {
-    /// The same with another [`scale`](Self::scale).
+    /// Sets [`scale`](Self::scale).
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
         Self { scale, ..self }
     }
 
-    /// The same with another [`merge_tolerance`](Self::merge_tolerance).
+    /// Sets [`merge_tolerance`](Self::merge_tolerance).
     #[must_use]
     pub fn with_merge_tolerance(self, merge_tolerance: Option<f64>) -> Self {
         Self { merge_tolerance, ..self }
     }
 
-    /// The same with another [`convex_tolerance`](Self::convex_tolerance).
+    /// Sets [`convex_tolerance`](Self::convex_tolerance).
     #[must_use]
     pub fn with_convex_tolerance(self, convex_tolerance: Option<f64>) -> Self {
         Self { convex_tolerance, ..self }
     }
 
-    /// The same with another [`hull`](Self::hull).
+    /// Sets [`hull`](Self::hull).
     #[must_use]
     pub fn with_hull(self, hull: bool) -> Self {
         Self { hull, ..self }
     }
 
-    /// The same with another [`open`](Self::open).
+    /// Sets [`open`](Self::open).
     #[must_use]
     pub fn with_open(self, open: bool) -> Self {
         Self { open, ..self }
     }
 
-    /// The same with another [`as_is`](Self::as_is).
+    /// Sets [`as_is`](Self::as_is).
     #[must_use]
     pub fn with_as_is(self, as_is: bool) -> Self {
         Self { as_is, ..self }
     }
 
-    /// How deep a face of this mesh may lie below the hull, in the file's unit.
+    /// Returns the maximum depth of a face of this mesh below the hull, in the unit of the file.
     pub fn convex_tolerance_of(&self, mesh: &Mesh) -> f64 {
         self.convex_tolerance.unwrap_or_else(|| CONVEX_TOLERANCE * mesh.extent())
     }
 
+    /// Returns the mesh scaled by [`Self::scale`].
     fn scaled<'m>(&self, mesh: &'m Mesh) -> Cow<'m, Mesh> {
         if self.scale == 1.0 {
             return Cow::Borrowed(mesh);
@@ -117,20 +118,20 @@ impl BodyOptions {
     }
 }
 
-/// A body made of a mesh.
+/// A body built from a mesh.
 #[derive(Debug, Clone)]
 pub struct Loaded<B> {
     /// The body.
     pub body: B,
-    /// [`Mesh::precision`], in the unit of the body.
+    /// [`Mesh::precision`] in the unit of the body.
     pub precision: f64,
-    /// What was mended, or is not as it is in the file.
+    /// Repairs, and other differences from the file.
     pub notes: Vec<Note>,
 }
 
 impl<B> Loaded<B> {
     /// Returns the depth of the mesh's surface below its hull if the mesh is convex only to within the
-    /// tolerance; `None` where rounding or the precision of the file explains this depth.
+    /// tolerance. `None` if rounding or the precision of the file explains this depth.
     pub fn dent(&self) -> Option<f64> {
         self.notes.iter().find_map(|note| match note {
             Note::Dented(depth) => Some(*depth),
@@ -139,35 +140,35 @@ impl<B> Loaded<B> {
     }
 }
 
-/// What a mesh can be taken as.
+/// The kind of body into which a mesh can be converted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Take {
-    /// A convex body, which its faces must be.
+    /// A convex body. The faces of the mesh must be convex.
     Convex,
-    /// The convex hull of the vertices that its faces use ([`BodyOptions::hull`]).
+    /// The convex hull of the used vertices ([`BodyOptions::hull`]).
     Hull,
-    /// A solid, closed.
+    /// A closed solid.
     Solid,
-    /// A solid, shells of which may be open ([`BodyOptions::open`]).
+    /// A solid that may have open shells ([`BodyOptions::open`]).
     Open,
 }
 
-/// Why a mesh is no body of the kind asked for.
+/// The reason why a mesh is not a body of the requested kind.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Refused {
-    /// It is no convex body.
+    /// The mesh is not a convex body.
     #[error(transparent)]
     Convex(#[from] BuildError),
-    /// It is no solid.
+    /// The mesh is not a solid.
     #[error("{}", of_solid(.0))]
     Solid(#[from] SolidError),
-    /// It has to be mended, and is to be taken as it is; what would be done.
-    #[error("it would have to be mended, and is to be taken as it is: {}", listed(.0))]
+    /// The mesh needs repair, which is disabled. The notes describe the repairs.
+    #[error("the mesh needs repair, which is disabled: {}", listed(.0))]
     Mended(Vec<Note>),
 }
 
 impl Refused {
-    /// What the same mesh could be taken as instead.
+    /// Returns the kinds of body that may be possible for the same mesh.
     pub fn instead(&self) -> &'static [Take] {
         match self {
             Self::Convex(BuildError::Topology(TopologyError::OpenEdge { .. })) => {
@@ -185,10 +186,12 @@ impl Refused {
     }
 }
 
+/// Joins notes to one text.
 fn listed(notes: &[Note]) -> String {
     notes.iter().map(Note::to_string).collect::<Vec<_>>().join("; ")
 }
 
+/// Returns the message of an error about a solid, in terms of the file.
 fn of_solid(error: &SolidError) -> String {
     match error {
         SolidError::Open { count, from, to, facet } => format!(
@@ -196,31 +199,32 @@ fn of_solid(error: &SolidError) -> String {
              {from} to vertex {to} of face {facet}",
             counted(*count, "edge has", "edges have")
         ),
-        SolidError::Empty => "holds no faces with an area".into(),
+        SolidError::Empty => "the mesh has no faces with an area".into(),
         other => other.to_string(),
     }
 }
 
-/// Why no body was made of a file. Every message names it.
+/// The reason why no body was built from a file. Every message names the file.
 #[derive(Debug, Error)]
 pub enum LoadError {
-    /// It is no mesh.
+    /// The file has no valid mesh.
     #[error(transparent)]
     Mesh(#[from] Error),
-    /// Its mesh is no body of the kind asked for.
+    /// The mesh is not a body of the requested kind.
     #[error("{}: {source}", path.display())]
     Body {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         source: Refused,
     },
 }
 
-/// A convex body of a mesh: its surface must be closed and convex, unless the hull is asked for.
+/// Builds a convex body from a mesh. The surface must be closed and convex, unless [`BodyOptions::hull`] is
+/// set.
 ///
 /// # Errors
-/// What is wrong with the surface, and where.
+/// [`Refused`] with the defect of the surface and its place.
 pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhedron>, Refused> {
     let tolerance = options.convex_tolerance_of(mesh) * options.scale;
     let precision = mesh.precision * options.scale;
@@ -242,21 +246,22 @@ pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhed
     Ok(Loaded { body, precision, notes })
 }
 
-/// Returns the convex hull of the vertices that the faces of a mesh use, of all vertices if it has no faces.
-/// Features of answers name vertices by their indices in the mesh.
+/// Builds the convex hull of the vertices that the faces of a mesh use, or of all vertices if it has no faces.
+/// Features of answers refer to vertices by their indices in the mesh.
 ///
 /// # Errors
-/// What is wrong with these vertices.
+/// [`BuildError`] if these vertices have no hull.
 pub fn hull(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
     let numbered = |v: usize| (InputVertex(v as u32), mesh.vertices[v]);
     ConvexPolyhedron::from_numbered_points(mesh.indices_in_use().map(numbered))
 }
 
-/// A solid of a mesh, mended where it is plain how (`docs/reference/files.md`): what was done is in its notes.
+/// Builds a solid from a mesh. Repairs the mesh where that is unambiguous (`docs/reference/files.md`), and
+/// reports repairs as notes.
 ///
 /// # Errors
-/// What is wrong with the surface, and where; that it is open, unless it may be; that it was mended, if it
-/// must not be.
+/// [`Refused`] with the defect of the surface and its place. Open surfaces and repairs are errors unless the
+/// options allow them.
 pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
     let precision = mesh.precision * options.scale;
     let mut mesh = options.scaled(mesh);
@@ -264,20 +269,21 @@ pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refuse
     Ok(Loaded { body, precision, notes })
 }
 
-/// A mesh in pieces.
+/// The bodies of a mesh.
 #[derive(Debug, Clone)]
 pub struct Apart {
-    /// The bodies, each with vertices of its own, in the order of their first faces.
+    /// The bodies, each with its own vertices, in the order of their first faces.
     pub meshes: Vec<Mesh>,
-    /// What was mended before.
+    /// The repairs that preceded the split.
     pub notes: Vec<Note>,
 }
 
-/// The bodies that a mesh consists of: each closed shell with the cavities in it, and each open one. `None` if it is one.
-/// It is [mended](solid) first, and what was done is said of all together; faces without an area are left out.
+/// Splits a mesh into its bodies: closed shells with their cavities, and open shells. `None` if there is only
+/// one. The mesh is [repaired](solid) first, and the notes apply to all bodies together. Faces without area are
+/// left out.
 ///
 /// # Errors
-/// As of [`solid`], with open shells allowed.
+/// The errors of [`solid`] with open shells allowed.
 pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refused> {
     let mut mesh = options.scaled(mesh);
     let (solid, mut notes) = mended(&mut mesh, &options.with_open(true))?;
@@ -290,12 +296,12 @@ pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refus
     for (facet, body) in solid.facet_indices().iter().zip(of_triangle) {
         of_face[facet.index()] = body;
     }
-    // What is true of shells is said of each.
+    // Notes on single shells are reported for each body later.
     notes.retain(Note::is_of_file);
     Ok(Some(Apart { meshes: mesh.picked(&of_face, count), notes }))
 }
 
-/// A solid of a mesh that is mended if it has to be, and what is to be said of it.
+/// Builds a solid from a mesh, with repairs if needed. Returns it with the notes.
 fn mended(mesh: &mut Cow<Mesh>, options: &BodyOptions) -> Result<(Solid, Vec<Note>), Refused> {
     let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
     let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
@@ -322,7 +328,7 @@ fn mended(mesh: &mut Cow<Mesh>, options: &BodyOptions) -> Result<(Solid, Vec<Not
 /// Reads a file as a [`convex`] body.
 ///
 /// # Errors
-/// As of [`read`](crate::read) and [`convex`].
+/// The errors of [`read`](crate::read) and [`convex`].
 pub fn load_convex(
     path: impl AsRef<Path>,
     options: &BodyOptions,
@@ -333,7 +339,7 @@ pub fn load_convex(
 /// Reads a file as a [`solid`].
 ///
 /// # Errors
-/// As of [`read`](crate::read) and [`solid`].
+/// The errors of [`read`](crate::read) and [`solid`].
 pub fn load_solid(
     path: impl AsRef<Path>,
     options: &BodyOptions,
@@ -341,10 +347,10 @@ pub fn load_solid(
     load(path, options, |mesh, options| solid(&mesh, options))
 }
 
-/// Reads a file and makes something of its mesh.
+/// Reads a file and converts its mesh with `take`.
 ///
 /// # Errors
-/// As of [`read`](crate::read), and of what is made.
+/// The errors of [`read`](crate::read) and of `take`.
 pub fn load<T>(
     path: impl AsRef<Path>,
     options: &BodyOptions,
@@ -356,13 +362,13 @@ pub fn load<T>(
     take(mesh, options).map_err(|source| LoadError::Body { path: path.to_owned(), source })
 }
 
-/// A query between solids of these precisions (lengths, see [`Loaded::precision`]).
+/// Builds a cast of solids with given precisions (lengths, see [`Loaded::precision`]).
 ///
-/// Without a tolerance it is what the files ask for, twice their precisions together, and no less than
-/// what turned poses need.
+/// Without a tolerance, it is twice the sum of the precisions, but at least the tolerance that rotated poses
+/// need.
 ///
 /// # Errors
-/// As of [`Cast::new`] and of its options.
+/// The errors of [`Cast::new`] and of its options.
 pub fn between<'a>(
     moving: Placed<'a, Solid>,
     fixed: Placed<'a, Solid>,
@@ -379,10 +385,10 @@ pub fn between<'a>(
     )
 }
 
-/// The same of solids that turn.
+/// Builds a cast of moving solids with given precisions, with the default tolerance of [`between`].
 ///
 /// # Errors
-/// As of [`MotionCast::new`] and of its tolerance.
+/// The errors of [`MotionCast::new`] and of its tolerance.
 pub fn between_motions<'a>(
     moving: Moving<'a, Solid>,
     fixed: Moving<'a, Solid>,

@@ -1,4 +1,4 @@
-//! What is to be said about a body made of a mesh.
+//! Notes about a body built from a mesh.
 
 use std::fmt;
 
@@ -8,57 +8,58 @@ use super::Excess;
 use crate::words::{about, counted, six_digits};
 use crate::{Merged, Mesh};
 
-/// What was mended when a body was made of a mesh, or is not as it is in the file. `Display` says it in
-/// words, without the file's name.
+/// A repair of the mesh, or another difference between the body and the file. `Display` writes a text without
+/// the name of the file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
     /// Vertices on open edges were merged.
     Merged(Merged),
-    /// Faces with the corners of another one were left out.
+    /// Faces with the same corners as another one were removed.
     Doubles(Left),
-    /// Faces that hung on the surface by a few edges were left out.
+    /// Fins, which adjoin the surface at a few edges, were removed.
     Fins(Left),
-    /// Faces inside the surface were left out: walls between bodies, or the second of two ways to close it.
+    /// Faces inside the surface were removed: walls between bodies, or the second of two ways to close a hole.
     Walls(Left),
-    /// So many faces ran against the others of their shell, and were turned.
+    /// Number of faces that were oriented against the others of their shell, and were reversed.
     FacesTurned(usize),
-    /// So many shells were inside out, and were turned.
+    /// Number of shells that were inside out, and were reversed.
     ShellsTurned(usize),
-    /// So many faces without an area were left out.
+    /// Number of faces without area that were left out.
     WithoutArea(usize),
-    /// So many slits without an area were closed.
+    /// Number of slits without area that were closed.
     SlitsClosed(usize),
-    /// At so many edges more than two faces meet.
+    /// Number of edges at which more than two faces meet.
     Crowded(usize),
     /// Some shells are open.
     Surface {
-        /// Edges with a face on one side only.
+        /// Number of edges with a face on one side only.
         open_edges: usize,
-        /// The first of them: its vertices and its face.
+        /// The first of them: its two vertices and its face.
         first: Option<[usize; 3]>,
-        /// What the body is taken for, in words.
+        /// A description of the body.
         what: String,
     },
-    /// This many vertices are in no face, and not in the hull.
+    /// Number of vertices without a face, which are not in the hull.
     Stray(usize),
-    /// The hull has what its part has not.
+    /// The hull exceeds the part.
     Exceeds(Excess),
-    /// The mesh is convex only to within the tolerance: its surface lies up to this depth below its hull, which
-    /// is more than the precision of the file explains.
+    /// The mesh is convex only to within the tolerance. The value is the depth of its surface below its hull,
+    /// which exceeds the precision of the file.
     Dented(f64),
 }
 
-/// Faces that were left out.
+/// Faces that were removed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Left {
-    /// How many.
+    /// Number of faces.
     pub facets: usize,
-    /// Their area, in square units.
+    /// The area, in square units.
     pub area: f64,
 }
 
 impl Left {
+    /// Adds a facet.
     pub(super) fn count(&mut self, area: f64) {
         self.facets += 1;
         self.area += area;
@@ -66,7 +67,7 @@ impl Left {
 }
 
 impl Note {
-    /// Whether faces of the file were merged, left out or turned.
+    /// Checks whether faces of the file were merged, removed or reversed.
     const fn changes_faces(&self) -> bool {
         matches!(
             self,
@@ -78,29 +79,31 @@ impl Note {
         )
     }
 
-    /// Whether the surface is another one than that of the file: what was merged, left out or turned.
+    /// Checks whether the surface differs from that of the file, because faces were merged, removed or
+    /// reversed.
     pub const fn is_mended(&self) -> bool {
         self.changes_faces() || matches!(self, Self::ShellsTurned(_))
     }
 
-    /// Whether it is of the file as a whole, no matter which of its shells are taken together.
+    /// Checks whether the note applies to the file as a whole, independent of how its shells are grouped.
     pub(super) const fn is_of_file(&self) -> bool {
         self.changes_faces() || matches!(self, Self::WithoutArea(_))
     }
 
-    /// Returns the note about the vertices that a mesh's hull leaves out, if there are any.
+    /// Returns the note on the vertices that are not in the hull because no face uses them; `None` if there are
+    /// none.
     pub(super) fn stray(mesh: &Mesh) -> Option<Self> {
         let stray = mesh.stray_vertices();
         (stray > 0).then_some(Self::Stray(stray))
     }
 
-    /// What was merged when a mesh was read, if anything was.
+    /// Returns the note on merged vertices; `None` if none were merged.
     pub fn merged(mesh: &Mesh) -> Option<Self> {
         (mesh.merged.vertices > 0).then_some(Self::Merged(mesh.merged))
     }
 }
 
-/// What was done to make a solid of a surface; `first` is the first open edge, where it is known.
+/// Returns the notes on how a solid was built from a surface. `first` is the first open edge, if known.
 pub fn report_notes(report: &SolidReport, first: Option<[usize; 3]>) -> Vec<Note> {
     let some = |count: usize, note: fn(usize) -> Note| (count > 0).then(|| note(count));
     let mended = [
@@ -125,7 +128,7 @@ impl fmt::Display for Note {
                 return write!(
                     f,
                     "convex only to within the tolerance: the surface lies up to {deep} below its hull, \
-                     which stands for it"
+                     which replaces it"
                 );
             }
             Self::Surface { open_edges, first, what } => {
@@ -160,12 +163,14 @@ impl fmt::Display for Note {
 }
 
 impl Left {
+    /// Writes the note on these faces.
     fn told(&self, f: &mut fmt::Formatter<'_>, which: &str) -> fmt::Result {
         let faces = counted(self.facets, "face", "faces");
         write!(f, "{faces} {which} left out (area {})", six_digits(self.area))
     }
 }
 
+/// Writes the note on an open surface.
 fn surface(
     f: &mut fmt::Formatter<'_>,
     open_edges: usize,
@@ -194,7 +199,7 @@ impl fmt::Display for Merged {
         }
         if self.ambiguous > 0 {
             let which = counted(self.ambiguous, "vertex", "vertices");
-            write!(f, "; {which} had more than one to choose from: the tolerance is large")?;
+            write!(f, "; {which} had several candidates: the tolerance is large")?;
         }
         Ok(())
     }

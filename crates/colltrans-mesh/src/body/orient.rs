@@ -1,10 +1,12 @@
-//! Facets that are oriented against their neighbours, turned: some exporters leave single ones so.
+//! Reverses facets that are oriented against their neighbours, which some exporters write.
 //!
-//! Facets that share an edge must run along it in opposite directions. From one facet of each
-//! connected part that is carried on to all, over edges of two facets; the smaller set is turned. Then parts are
-//! held against each other at crowded edges: where as many facets run one way as the other, they stay as they are;
-//! elsewhere inside and outside take turns around the edge, so each facet runs against the next one. Which
-//! side is outside is not decided here.
+//! 1. Facets that share an edge must run along it in opposite directions. This relation is propagated from
+//!    facet to facet over edges with two facets. In each connected part, the smaller set of facets is reversed.
+//! 2. The parts are then compared at crowded edges. If both directions occur equally often at an edge, they
+//!    remain. Otherwise inside and outside alternate around the edge, so each facet must run against the next
+//!    one.
+//!
+//! This module does not determine which side is outside.
 
 use glam::DVec3;
 
@@ -12,7 +14,8 @@ use crate::Mesh;
 use crate::edges::{Use, by_edge, is_flat, normal, uses};
 use crate::sets::Sets;
 
-/// Turns facets until neighbours agree; how many. `None` if they cannot, on a one-sided surface.
+/// Reverses facets until neighbours agree, and returns their number. `None` if that is impossible, as on a
+/// one-sided surface.
 pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {
     let (vertices, mut faces) = mesh.welded();
     let counts: Vec<bool> = faces.iter().map(|face| !is_flat(face)).collect();
@@ -27,7 +30,7 @@ pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {
         }
     }
     turn_smaller(&mut sets, &mut faces, &mut turned);
-    // Within a part all agree now.
+    // The facets within a part agree now.
     let after = uses(&faces, |k| counts[k]);
     let crowded = || by_edge(&after).filter(|edge| edge.len() > 2);
     let is_balanced =
@@ -42,7 +45,7 @@ pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {
     for edge in crowded().filter(|edge| edge.len() % 2 == 0 && !is_balanced(edge)) {
         let around = around(&vertices, &faces, edge);
         for pair in around.windows(2) {
-            // What another edge has settled stays.
+            // Relations set by an earlier edge have priority.
             sets.join(pair[0].face, pair[1].face, pair[0].backward == pair[1].backward);
         }
     }
@@ -53,8 +56,8 @@ pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {
     Some(turned.iter().filter(|turned| **turned).count())
 }
 
-/// Of each set those that are one way round, or the other, whichever are fewer; of as many those that are not as
-/// the first one.
+/// Reverses the minority of each set. If both orientations occur equally often, those that differ from the
+/// first member are reversed.
 fn turn_smaller(sets: &mut Sets, faces: &mut [Vec<u32>], turned: &mut [bool]) {
     let mut counts = vec![[0_usize; 2]; faces.len()];
     for k in 0..faces.len() {
@@ -71,11 +74,11 @@ fn turn_smaller(sets: &mut Sets, faces: &mut [Vec<u32>], turned: &mut [bool]) {
     }
 }
 
-/// The facets at an edge in the order of their angles around it.
+/// Returns the facets at an edge in the order of their angles around it.
 fn around(vertices: &[DVec3], faces: &[Vec<u32>], edge: &[Use]) -> Vec<Use> {
     let [low, high] = edge[0].ends().map(|v| vertices[v as usize]);
     let axis = high - low;
-    // From the edge into the facet, whichever way that runs.
+    // Points from the edge into the facet, independent of its orientation.
     let inwards = |used: &Use| {
         let into = normal(vertices, &faces[used.face]).cross(axis);
         if used.backward { -into } else { into }
@@ -116,14 +119,14 @@ mod tests {
             assert_eq!(consistent(&mut mended), Some(turned));
             assert_eq!(mended.faces, mesh.faces);
         }
-        // Moebius' band.
+        // A Moebius strip.
         let band: Vec<DVec3> =
             (0..6).map(|k| DVec3::new(f64::from(k), f64::from(k * k), 1.0)).collect();
         let faces: Vec<Vec<u32>> = vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
         assert_eq!(consistent(&mut Mesh::new(band, faces)), None);
     }
 
-    /// Four pyramids on one square: two bodies that touch all along its sides, one pyramid inside out.
+    /// Four pyramids on one square form two bodies that touch along its sides. One pyramid is inside out.
     #[test]
     fn patches_that_share_an_edge_take_turns() {
         let corners = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];

@@ -1,17 +1,18 @@
-//! Explains why the parser has refused a header or a row of text: in words, with the line. It tells less
-//! itself, and in terms of its grammar.
+//! Explains errors in the header or a text row of a PLY file, with the line. The messages of the parser are
+//! shorter and use the terms of its grammar.
 
 use ply_rs_bw::ply::{ElementDef, PropertyType, ScalarType};
 
 use crate::error::{Fault, Place};
 use crate::text::{lines, quoted};
 
+/// The names of the types of PLY.
 const TYPES: [&str; 16] = [
     "char", "uchar", "short", "ushort", "int", "uint", "float", "double", "int8", "uint8", "int16",
     "uint16", "int32", "uint32", "float32", "float64",
 ];
 
-/// What is wrong with a header; `None` if nothing that is known here.
+/// Finds the error in a header; `None` if this module does not recognise it.
 pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
     if bytes.is_empty() {
         return None;
@@ -24,10 +25,10 @@ pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
         let refused = match words[..] {
             ["ply"] if k == 0 => None,
             _ if k == 0 => {
-                Some(format!("the first line of a PLY file is `ply`, not {}", quoted(line)))
+                Some(format!("the first line of a PLY file must be `ply`, found {}", quoted(line)))
             }
             ["end_header"] if has_format => return None,
-            ["end_header"] => Some("the header ends without a line `format`".into()),
+            ["end_header"] => Some("the header has no line `format`".into()),
             ["format", ..] => {
                 has_format = true;
                 format(&words)
@@ -38,7 +39,7 @@ pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
                 element(&words)
             }
             ["property", ..] if !has_element => {
-                Some("a property before the first `element`".into())
+                Some("`property` before the first `element`".into())
             }
             ["property", ..] => property(&words),
             _ => Some(no_keyword(line)),
@@ -52,51 +53,55 @@ pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
     Some(Fault::new(Place::Line(last + 1), what))
 }
 
+/// Checks a line `format`. Returns a message if it is invalid.
 fn format(words: &[&str]) -> Option<String> {
     let known = ["ascii", "binary_little_endian", "binary_big_endian"];
     match words {
         [_, kind, _] if known.contains(kind) => None,
         [_, kind, _] => {
-            Some(format!("the format {} is none of {}", quoted(kind), known.join(", ")))
+            Some(format!("unknown format {}; accepted: {}", quoted(kind), known.join(", ")))
         }
-        _ => Some("not the name of a format and its version, as in `format ascii 1.0`".into()),
+        _ => Some("expected the name of a format and its version, as in `format ascii 1.0`".into()),
     }
 }
 
+/// Checks a line `element`. Returns a message if it is invalid.
 fn element(words: &[&str]) -> Option<String> {
     match words {
         [_, _, count] if count.parse::<usize>().is_ok() => None,
         [_, name, count] => {
-            Some(format!("{} is not a number of elements {}", quoted(count), quoted(name)))
+            Some(format!("{} is not a valid number of elements {}", quoted(count), quoted(name)))
         }
-        _ => Some("not the name of an element and their number, as in `element vertex 8`".into()),
+        _ => Some("expected the name and the number of elements, as in `element vertex 8`".into()),
     }
 }
 
+/// Checks a line `property`. Returns a message if it is invalid.
 fn property(words: &[&str]) -> Option<String> {
     let types = match words {
         [_, "list", count, value, _] => &[*count, *value][..],
         [_, kind, _] if *kind != "list" => &[*kind][..],
         _ => {
-            let text = "not the type of a property and its name, as in `property float x` or `property \
+            let text = "expected the type and the name of a property, as in `property float x` or `property \
                         list uchar int vertex_indices`";
             return Some(text.into());
         }
     };
     let unknown = types.iter().find(|kind| !TYPES.contains(kind))?;
-    Some(format!("the type {} is none of {}", quoted(unknown), TYPES[..8].join(", ")))
+    Some(format!("unknown type {}; accepted: {}", quoted(unknown), TYPES[..8].join(", ")))
 }
 
+/// Builds the message for a line with an unknown keyword.
 fn no_keyword(line: &str) -> String {
     let first = line.split_ascii_whitespace().next().unwrap_or_default();
     if first.parse::<f64>().is_ok() {
-        return "a row of numbers within the header: `end_header` is missing before it".into();
+        return "a row of numbers in the header; `end_header` is missing before it".into();
     }
     let known = "format, comment, obj_info, element, property, end_header";
-    format!("{} is not a word that a header's line begins with: {known}", quoted(first))
+    format!("unknown keyword {}; accepted: {known}", quoted(first))
 }
 
-/// What is wrong with a row of an element; `None` if nothing that is known here.
+/// Finds the error in a row of an element; `None` if this module does not recognise it.
 pub(super) fn row(line: &str, element: &ElementDef) -> Option<String> {
     let mut words = line.split_ascii_whitespace();
     for (name, property) in &element.properties {
@@ -121,7 +126,7 @@ pub(super) fn row(line: &str, element: &ElementDef) -> Option<String> {
     None
 }
 
-/// The least and the largest whole number of a type; `None` of numbers with fractions.
+/// Returns the smallest and the largest value of an integer type; `None` for other types.
 fn range(kind: &ScalarType) -> Option<[i64; 2]> {
     match kind {
         ScalarType::Char => Some([i8::MIN.into(), i8::MAX.into()]),
@@ -134,6 +139,7 @@ fn range(kind: &ScalarType) -> Option<[i64; 2]> {
     }
 }
 
+/// Checks whether a word is a value of this type.
 fn is_number(word: &str, kind: &ScalarType) -> bool {
     match range(kind) {
         None => word.parse::<f64>().is_ok(),
@@ -141,9 +147,10 @@ fn is_number(word: &str, kind: &ScalarType) -> bool {
     }
 }
 
+/// Builds the message for a word that is not a value of this type.
 fn no_number(word: &str, kind: &ScalarType) -> String {
     match range(kind) {
         None => format!("{} is not a number", quoted(word)),
-        Some([low, high]) => format!("{} is not a whole number from {low} to {high}", quoted(word)),
+        Some([low, high]) => format!("{} is not an integer from {low} to {high}", quoted(word)),
     }
 }

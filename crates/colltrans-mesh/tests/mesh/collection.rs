@@ -1,7 +1,7 @@
-//! A collection of real and broken mesh files, where it is there: each is read or refused with a
-//! typed error, and what is known about some of them holds.
+//! Reads a collection of real and broken mesh files, if it is available. Each file must be read or rejected
+//! with a typed error, and known properties of some files are checked.
 //!
-//! The folder is `COLLTRANS_DATA`, or `../shared/data` beside the workspace.
+//! The folder is `COLLTRANS_DATA`, or `../shared/data` next to the workspace.
 
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ fn every_file_is_read_or_refused() {
     }
 }
 
-/// Closed parts whose corners are written in more than one way.
+/// Closed parts with corners that are written with different rounding.
 #[test]
 fn closed_parts_are_closed() {
     let Some(folder) = collection() else { return };
@@ -55,7 +55,8 @@ fn closed_parts_are_closed() {
         assert_eq!(mesh.open_edges().len(), 0, "{name}");
         assert_eq!(mesh.merged.vertices, merged, "{name}");
         assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0), "{name}");
-        // Roundings of double precision, also in the file that was then written in single.
+        // The differences are roundings of double precision, also in the file that was then written in single
+        // precision.
         let rounding = 2.0_f64.powi(-48) * mesh.extent();
         assert!(mesh.merged.largest_distance <= rounding, "{name}");
         let equal_only = ReadOptions::default().with_merge_tolerance(Some(0.0));
@@ -63,7 +64,7 @@ fn closed_parts_are_closed() {
     }
 }
 
-/// What each of the bad files holds: how many open edges its surface has.
+/// For each broken file, the number of open edges of its surface.
 #[test]
 fn what_is_bad_about_the_bad_ones() {
     let Some(folder) = collection() else { return };

@@ -1,4 +1,4 @@
-//! Every format: what is read, and what is said about files that cannot be.
+//! Tests each format: valid files, and the errors of invalid ones.
 
 use std::path::Path;
 
@@ -23,7 +23,10 @@ fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
 #[test]
 fn words_in_a_ply_file_are_told_as_such() {
     let error = read(Format::Ply, "ply-like words\n").unwrap_err().to_string();
-    assert_eq!(error, "part: line 1: the first line of a PLY file is `ply`, not `ply-like words`");
+    assert_eq!(
+        error,
+        "part: line 1: the first line of a PLY file must be `ply`, found `ply-like words`"
+    );
 }
 
 fn tetrahedron() -> Mesh {
@@ -53,7 +56,7 @@ fn binary_stl_returns_single_precision() {
     let bytes = to_stl(&mesh).unwrap();
     assert_eq!(bytes.len(), 84 + 50 * 4);
     let read_back = read(Format::Stl, &bytes).unwrap();
-    // Welded in the order of the faces: 0 2 1, then 3.
+    // Vertices are welded in the order of the faces: 0 2 1, then 3.
     let rounded = |v: usize| mesh.vertices[v].as_vec3().as_dvec3();
     assert_eq!(read_back.vertices, [rounded(0), rounded(2), rounded(1), rounded(3)]);
     assert_eq!(read_back.faces, [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 3, 1]]);
@@ -116,7 +119,7 @@ fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
     }
     let inside = text.replacen("0.1", "0\0.1", 1);
     assert_eq!(place(Format::Stl, inside), Place::Line(5));
-    // What a comment hides is missing.
+    // A line that is commented out is missing.
     assert_eq!(place(Format::Stl, text.replacen("outer", "; outer", 1)), Place::Line(4));
 }
 
@@ -132,14 +135,14 @@ fn text_that_is_no_text_stl_is_refused_as_text() {
     ] {
         let said = message(input.clone().into_bytes());
         assert!(said.contains(line), "{input}: {said}");
-        assert!(said.contains("text STL begins with `solid`, not with `"), "{input}: {said}");
+        assert!(said.contains("text STL must begin with `solid`, found `"), "{input}: {said}");
     }
     let said = message(b"# a comment\n\n".to_vec());
-    assert!(said.contains("a text without the line `solid`"), "{said}");
+    assert!(said.contains("text without the line `solid`"), "{said}");
     for more in ["0123456789", "\nsolid y\n", "x\r\n\0"] {
         let said = message(format!("{text}\u{1a}{more}").into_bytes());
         let count = more.trim_end_matches(['\0', '\r', '\n']).len();
-        let told = format!("Ctrl-Z ends the text, but {count} bytes follow it; delete them");
+        let told = format!("{count} bytes follow Ctrl-Z, which ends the text; delete them");
         assert!(said.contains(&told), "{said}");
     }
 }
@@ -224,7 +227,7 @@ const PLY: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\npro
     property list uchar int vertex_indices\nproperty float quality\nend_header\n\
     0.1 0 0 1\n1 0 0 2\n0 1e-17 0 3\n3 0 1 2 0.5\n";
 
-/// The same in binary, of either byte order.
+/// Returns the same file in binary, in either byte order.
 fn binary_ply(little: bool) -> Vec<u8> {
     let header = PLY.split_inclusive("end_header\n").next().unwrap();
     let format = if little { "binary_little_endian" } else { "binary_big_endian" };
@@ -279,50 +282,50 @@ fn broken_ply_files_are_told_in_plain_words() {
     assert!(read(Format::Ply, good).is_ok());
     let types = "char, uchar, short, ushort, int, uint, float, double";
     for (from, to, told) in [
-        ("ply\n", "plx\n", "line 1: the first line of a PLY file is `ply`, not `plx`"),
+        ("ply\n", "plx\n", "line 1: the first line of a PLY file must be `ply`, found `plx`"),
         (
             "element face",
             "elephant face",
-            "line 7: `elephant` is not a word that a header's line begins \
-            with: format, comment, obj_info, element, property, end_header",
+            "line 7: unknown keyword `elephant`; accepted: \
+            format, comment, obj_info, element, property, end_header",
         ),
-        ("float y", "flot y", &format!("line 5: the type `flot` is none of {types}")),
-        ("uchar int", "uchar integer", &format!("line 8: the type `integer` is none of {types}")),
+        ("float y", "flot y", &format!("line 5: unknown type `flot`; accepted: {types}")),
+        (
+            "uchar int",
+            "uchar integer",
+            &format!("line 8: unknown type `integer`; accepted: {types}"),
+        ),
         (
             "float z",
             "float",
-            "line 6: not the type of a property and its name, as in `property float \
+            "line 6: expected the type and the name of a property, as in `property float \
             x` or `property list uchar int vertex_indices`",
         ),
-        ("vertex 3", "vertex three", "line 3: `three` is not a number of elements `vertex`"),
-        ("element vertex 3\n", "", "line 3: a property before the first `element`"),
+        ("vertex 3", "vertex three", "line 3: `three` is not a valid number of elements `vertex`"),
+        ("element vertex 3\n", "", "line 3: `property` before the first `element`"),
         (
             "end_header\n",
             "",
-            "line 9: a row of numbers within the header: `end_header` is missing \
+            "line 9: a row of numbers in the header; `end_header` is missing \
             before it",
         ),
         (
             "ascii 1.0",
             "asci 1.0",
-            "line 2: the format `asci` is none of ascii, binary_little_endian, \
+            "line 2: unknown format `asci`; accepted: ascii, binary_little_endian, \
             binary_big_endian",
         ),
         (
             "ascii 1.0",
             "ascii",
-            "line 2: not the name of a format and its version, as in `format ascii \
+            "line 2: expected the name of a format and its version, as in `format ascii \
             1.0`",
         ),
-        ("format ascii 1.0\n", "", "line 8: the header ends without a line `format`"),
+        ("format ascii 1.0\n", "", "line 8: the header has no line `format`"),
         ("\n1 0 0", "\n1 zero 0", "line 11: `zero` is not a number"),
         ("\n0 1 0", "\n0 1", "line 12: the line ends before the number of `z`"),
-        (
-            "3 0 1 2",
-            "3 0 one 2",
-            "line 13: `one` is not a whole number from -2147483648 to 2147483647",
-        ),
-        ("3 0 1 2", "-3 0 1 2", "line 13: `-3` is not a whole number from 0 to 255"),
+        ("3 0 1 2", "3 0 one 2", "line 13: `one` is not an integer from -2147483648 to 2147483647"),
+        ("3 0 1 2", "-3 0 1 2", "line 13: `-3` is not an integer from 0 to 255"),
         (
             "3 0 1 2",
             "30 0 1 2",
@@ -377,7 +380,7 @@ fn the_extension_tells_the_format() {
     assert!(message.starts_with("not/there.obj: cannot be read"), "{message}");
 }
 
-/// No prefix and no single changed byte of a file makes a reader panic.
+/// No prefix and no single changed byte of a file causes a panic in a reader.
 #[test]
 fn mutilated_files_get_answers() {
     let files = [
@@ -404,7 +407,7 @@ fn mutilated_files_get_answers() {
     }
 }
 
-/// The names of the groups, each with the number of its faces.
+/// Returns the names of the groups with the number of their faces.
 fn groups(mesh: &Mesh) -> Vec<(&str, usize)> {
     let Groups { names, of_face } = &mesh.groups;
     assert!(of_face.is_empty() || of_face.len() == mesh.faces.len());
@@ -418,12 +421,12 @@ fn objects_and_groups_of_obj_are_told() {
     let cases: [(&str, &[(&str, usize)]); 7] = [
         ("f 1 2 3\nf 1 3 4\n", &[]),
         ("o a b\nf 1 2 3\ng x\nf 1 3 4\no c\ng\nf 2 3 4\n", &[("a b", 2), ("c", 1)]),
-        // Groups where there is one object, and one that is gone on with.
+        // Groups of a single object, and a group that is continued later.
         ("o a\ng x\nf 1 2 3\ng y\nf 1 3 4\nf 1 2\nf 1\ng x\nf 2 3 4\n", &[("x", 2), ("y", 1)]),
-        // What has no faces, and what stands before the first name.
+        // Objects without faces, and faces before the first name.
         ("f 1 2 3\no none\no a\nf 1 3 4\no last\n", &[("", 1), ("a", 1)]),
         ("o a\nf 1 2 3\no a\nf 1 3 4\n", &[]),
-        // A face without an area is dropped.
+        // A face without area is removed.
         ("o a\nf 1 2 1\nf 1 2 3\no b\nf 2 2 3\nf 1 3 4\n", &[("a", 1), ("b", 1)]),
         ("o a # not b\nf 1 2 3\no c\nf 1 3 \\\n4\n", &[("a", 1), ("c", 1)]),
     ];
@@ -445,7 +448,7 @@ fn solids_of_stl_are_told() {
     assert_eq!(groups(&mesh), []);
 }
 
-/// A COLLADA file of a square pyramid (five corners), shown by these nodes.
+/// Returns a COLLADA file of a square pyramid (five corners), placed by these nodes.
 fn dae(asset: &str, faces: &str, nodes: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n\
@@ -462,7 +465,8 @@ fn dae(asset: &str, faces: &str, nodes: &str) -> String {
 
 const VERTEX: &str = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
 
-/// All five faces, in two ways, with an index for normals beside that of vertices.
+/// Returns all five faces, in two kinds of elements, with indices for normals in addition to those for
+/// vertices.
 fn pyramid() -> String {
     let normal = "<input semantic=\"NORMAL\" source=\"#p\" offset=\"1\"/>";
     format!(
@@ -486,10 +490,10 @@ fn nodes_of_collada_are_placed_and_named() {
     assert_eq!((mesh.unit, mesh.up), (Some(0.01), Some(DVec3::Z)));
     assert_eq!(groups(&mesh), [("a", 5), ("n", 5)]);
     assert!(mesh.open_edges().is_empty());
-    // Mirrored, and turned back; twice as large.
+    // Mirrored twice, and scaled by 2.
     assert!((mesh.signed_volume() - 3.0).abs() < 1e-12);
     let [_, apex] = [4, 9].map(|k| mesh.vertices[k]);
-    // (.5 + 3, .5, -1), doubled, turned to (-1, 7), lifted by 5.
+    // (.5 + 3, .5, -1), scaled by 2, rotated to (-1, 7), raised by 5.
     assert!((apex - DVec3::new(-1.0, 7.0, 3.0)).length() < 1e-12, "{apex}");
     let bare =
         read(Format::Dae, dae("", &pyramid(), "<node><instance_geometry url=\"#g\"/></node>"))
@@ -522,11 +526,11 @@ fn faults_of_collada_name_their_line() {
     };
     let doubling = (0..20).map(twice).collect::<Vec<String>>().concat();
     let cases = [
-        (triangles("0 1"), "2 corners do not make triangles"),
-        (triangles("0 1 5"), "names vertex 5 of 5"),
+        (triangles("0 1"), "2 corners are not a multiple of 3"),
+        (triangles("0 1 5"), "vertex index 5 is out of range"),
         (triangles("0 1 x"), "`x` in <p>"),
         (triangles("0 1 -2"), "`-2` in <p>"),
-        (triangles("0 1 2 2 3 0"), "1 faces are promised, and 2 are there"),
+        (triangles("0 1 2 2 3 0"), "count is 1, but there are 2 faces"),
         (list("<triangles count=\"0\"><p/></triangles>"), "no input VERTEX"),
         (list(&format!("<polylist count=\"1\">{VERTEX}<p>0 1 2</p></polylist>")), "no vcount"),
         (
@@ -536,24 +540,27 @@ fn faults_of_collada_name_their_line() {
             "more corners",
         ),
         (list(&format!("<polygons count=\"1\">{VERTEX}<ph><p>0 1 2</p></ph></polygons>")), "holes"),
-        (list(&pyramid()).replace("count=\"5\"", "count=\"6\""), "lie beyond the 15 numbers"),
+        (list(&pyramid()).replace("count=\"5\"", "count=\"6\""), "extend beyond the 15 numbers"),
         (
             list(&pyramid()).replace("count=\"5\"", "count=\"99999999999999999999\""),
-            "no whole number",
+            "expected a non-negative integer",
         ),
-        (list(&pyramid()).replace("url=\"#g\"", "url=\"#h\""), "there is no `#h`"),
-        (list(&pyramid()).replace("url=\"#g\"", "url=\"b.dae#g\""), "in another file"),
-        (dae("<unit meter=\"0\"/>", &pyramid(), node), "no length"),
-        (dae("<up_axis>W</up_axis>", &pyramid(), node), "`W` is no axis"),
+        (list(&pyramid()).replace("url=\"#g\"", "url=\"#h\""), "unknown id `#h`"),
+        (list(&pyramid()).replace("url=\"#g\"", "url=\"b.dae#g\""), "refers to another file"),
+        (dae("<unit meter=\"0\"/>", &pyramid(), node), "invalid unit"),
+        (dae("<up_axis>W</up_axis>", &pyramid(), node), "unknown axis `W`"),
         (
             dae("", &pyramid(), "<node><lookat>0 0 0 1 1 1 0 0 1</lookat></node>"),
-            "<lookat> is not read",
+            "<lookat> is not supported",
         ),
-        (dae("", &pyramid(), "<node><scale>1 2</scale></node>"), "<scale> has 2 numbers, not 3"),
-        (dae("", &pyramid(), ring), "in a ring"),
-        (dae("", &pyramid(), &format!("{doubling}<node id=\"d20\"/>")), "too many"),
+        (
+            dae("", &pyramid(), "<node><scale>1 2</scale></node>"),
+            "<scale> has 2 numbers, expected 3",
+        ),
+        (dae("", &pyramid(), ring), "form a cycle"),
+        (dae("", &pyramid(), &format!("{doubling}<node id=\"d20\"/>")), "more than 65536"),
         ("<?xml version=\"1.0\"?><COLLADA><a></b></COLLADA>".into(), ""),
-        ("<?xml version=\"1.0\"?><COLLADA>".into(), "not ended"),
+        ("<?xml version=\"1.0\"?><COLLADA>".into(), "not closed"),
         ("<?xml version=\"1.0\"?><COLLADA/>".into(), "no scene"),
     ];
     for (text, wanted) in cases {
@@ -562,8 +569,11 @@ fn faults_of_collada_name_their_line() {
         assert!(error.to_string().contains(wanted), "{error}, not {wanted}");
     }
     let other = read(Format::Dae, "<?xml version=\"1.0\"?><robot/>").unwrap_err().to_string();
-    assert_eq!(other, "part: holds an XML file, not DAE as its name says");
-    // Every part of a file is an answer.
+    assert_eq!(
+        other,
+        "part: contains an XML file, but its extension stands for DAE; rename or convert the file"
+    );
+    // Each prefix of a file is read, or rejected with an error.
     let whole = dae("<unit meter=\"1\"/>", &pyramid(), node);
     for end in 0..whole.len() {
         if let Ok(mesh) = read(Format::Dae, &whole[..end]) {
@@ -594,6 +604,6 @@ fn strides_and_counts_of_collada_that_overflow_are_refused() {
             "<accessor source=\"{source}\" count=\"{count}\" stride=\"{stride}\" offset=\"{offset}\">"
         );
         let error = read(Format::Dae, file.replacen(accessor, &wild, 1)).unwrap_err().to_string();
-        assert!(error.contains("lie beyond"), "{error}");
+        assert!(error.contains("extend beyond"), "{error}");
     }
 }

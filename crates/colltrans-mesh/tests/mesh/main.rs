@@ -1,4 +1,4 @@
-//! Mesh files, in one program: each is linked for itself.
+//! Tests of mesh files, in one program, because each test program is linked separately.
 
 mod collection;
 mod formats;

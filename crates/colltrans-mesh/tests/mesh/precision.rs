@@ -1,4 +1,4 @@
-//! Default tolerances: what they depend on, and that they follow the digits that a text prints.
+//! Tests the default tolerances: their dependencies, and that they follow the printed digits of a text.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,7 +10,7 @@ use colltrans_mesh::body::{BodyOptions, Note, between, convex, solid};
 use colltrans_mesh::{Format, Mesh, NumberFormat, parse};
 use colltrans_testkit::random::Random;
 
-/// The prism over a polygon in the xy plane, counter-clockwise, from one height to another.
+/// Returns the prism over a counter-clockwise polygon in the xy plane, between two heights.
 fn prism(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
     let n = outline.len() as u32;
     let at = |z: f64| outline.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
@@ -19,7 +19,7 @@ fn prism(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
     Mesh::new(at(low).chain(at(high)).collect(), faces)
 }
 
-/// The same with the outline as a hole, in a frame that is twice as wide.
+/// Returns a frame with the polygon as its hole and an outer boundary of twice the size.
 fn frame(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
     let n = outline.len() as u32;
     let ring = |z: f64, by: f64| outline.iter().map(move |[x, y]| DVec3::new(x * by, y * by, z));
@@ -45,7 +45,7 @@ fn moved(mut mesh: Mesh, by: impl Fn(DVec3) -> DVec3) -> Mesh {
     mesh
 }
 
-/// A mesh as a file of a format, its coordinates as `print` writes them.
+/// Writes a mesh in a format, with coordinates printed by `print`, and reads it again.
 fn written(mesh: &Mesh, format: Format, print: &dyn Fn(f64) -> String) -> Mesh {
     let row = |v: DVec3| v.to_array().map(print).join(" ");
     let mut text = String::new();
@@ -90,7 +90,7 @@ fn written(mesh: &Mesh, format: Format, print: &dyn Fn(f64) -> String) -> Mesh {
     parse(format, text.into_bytes(), Path::new("part")).unwrap()
 }
 
-/// A mesh of triangles as a binary STL file.
+/// Writes a mesh as a binary STL file and reads it again.
 fn binary(mesh: &Mesh) -> Mesh {
     let triangles: Vec<[u32; 3]> = (mesh.faces.iter())
         .flat_map(|face| (1..face.len() - 1).map(move |k| [face[0], face[k], face[k + 1]]))
@@ -108,7 +108,7 @@ fn binary(mesh: &Mesh) -> Mesh {
     parse(Format::Stl, bytes, Path::new("part.stl")).unwrap()
 }
 
-/// As `%.6g` prints.
+/// Prints a number like `%.6g`.
 fn six_digits(x: f64) -> String {
     format!("{x:.5e}").parse::<f64>().unwrap().to_string()
 }
@@ -117,7 +117,7 @@ fn six_decimals(x: f64) -> String {
     format!("{x:.6}")
 }
 
-/// Whether a moving part goes all the way along a direction, with the default tolerance of the files.
+/// Checks whether a moving part is free along a direction, with the default tolerance of the files.
 fn goes_through(parts: &[Mesh; 2], direction: DVec3) -> bool {
     let loaded = parts.each_ref().map(|mesh| solid(mesh, &BodyOptions::default()).unwrap());
     let [moving, fixed] = loaded.each_ref().map(|part| part.body.at(Pose::IDENTITY));
@@ -127,13 +127,13 @@ fn goes_through(parts: &[Mesh; 2], direction: DVec3) -> bool {
     cast.clearance().unwrap().is_free()
 }
 
-/// A peg with the outline of its hole, above it, in any place: files that round it make the two overlap.
+/// A peg has the outline of the hole below it, in random poses. Rounded files make the two overlap.
 #[test]
 fn a_peg_that_fills_its_hole_comes_through_as_text_of_six_digits() {
     let mut random = Random::new(11);
     let mut stuck = 0;
     for _ in 0..12 {
-        // Six corners of a convex outline; caps of triangles are flat in a file of any precision.
+        // A convex outline with six corners. Caps of triangles are flat in a file of any precision.
         let outline: Vec<[f64; 2]> = (0..6)
             .map(|k| {
                 let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
@@ -152,7 +152,7 @@ fn a_peg_that_fills_its_hole_comes_through_as_text_of_six_digits() {
             };
             assert!(through(text(&six_decimals)), "{format} with six decimals");
             assert!(through(text(&six_digits)), "{format} with six digits");
-            // Without a tolerance the rounding of the same files is in the way.
+            // Without a tolerance, the rounding of the same files blocks the peg.
             let exact = text(&six_digits).map(|mut mesh| {
                 mesh.precision = 0.0;
                 mesh
@@ -194,7 +194,7 @@ fn the_format_of_numbers_is_told() {
             assert_eq!(found, NumberFormat::Single, "{format}");
             assert!((precision * f64::from(1 << 22) / largest - 1.0).abs() < 1e-6, "{precision}");
         }
-        // A drawing's numbers are exact, however they are padded.
+        // The numbers of a drawing are exact, with or without padding.
         for size in [DVec3::new(12.5, 7.25, 1000.0), DVec3::new(104.775, 25.4, 0.1)] {
             let drawn = box_of(size);
             let doubles = (NumberFormat::Double, size.max_element() / (1_u64 << 48) as f64);
@@ -205,12 +205,12 @@ fn the_format_of_numbers_is_told() {
     assert_eq!(binary(&turned).format, NumberFormat::Single);
 }
 
-/// As `%.6g` prints numbers of a million and more.
+/// Prints a number of a million or more like `%.6g`.
 fn six_digits_with_exponent(x: f64) -> String {
     format!("{x:.5e}").replace('e', "e+0")
 }
 
-/// Numbers whose value alone does not show that they are rounded: `4.23511e+07`, `0.300`.
+/// Numbers whose values do not show that they are rounded: `4.23511e+07`, `0.300`.
 #[test]
 fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
     let mut random = Random::new(5);
@@ -239,7 +239,7 @@ fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
     }
 }
 
-/// Coordinates that a PLY file declares as `float`, after another property, in four digits.
+/// Coordinates that a PLY file declares as `float`, after another property, with four digits.
 #[test]
 fn digits_of_ply_in_single_precision_are_those_of_the_text() {
     let mut random = Random::new(3);
@@ -256,7 +256,7 @@ fn digits_of_ply_in_single_precision_are_those_of_the_text() {
     assert_eq!(mesh.precision, 0.02);
 }
 
-/// Nodes of COLLADA move and scale what they show: its digits are no more those of the file.
+/// The nodes of COLLADA transform and scale their geometry, so that its digits are no longer those of the file.
 #[test]
 fn nodes_of_collada_keep_the_precision_of_their_text() {
     let turn = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.7, 0.1);
@@ -273,7 +273,7 @@ fn nodes_of_collada_keep_the_precision_of_their_text() {
     }
 }
 
-/// A mesh as a COLLADA file whose only node enlarges it tenfold.
+/// Writes a mesh as a COLLADA file whose only node scales it by 10, and reads it again.
 fn collada(mesh: &Mesh, print: &dyn Fn(f64) -> String) -> Mesh {
     let numbers: Vec<String> = mesh.vertices.iter().flat_map(DVec3::to_array).map(print).collect();
     let list =
@@ -296,13 +296,13 @@ fn collada(mesh: &Mesh, print: &dyn Fn(f64) -> String) -> Mesh {
     parse(Format::Dae, text.into_bytes(), Path::new("part.dae")).unwrap()
 }
 
-/// An L of 40 in a place of the UTM grid.
+/// Returns an L of size 40 at coordinates of the UTM grid.
 fn angle() -> Mesh {
     let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 10.0], [10.0, 10.0], [10.0, 40.0], [0.0, 40.0]];
     moved(prism(&outline, [0.0, 10.0]), |v| v + DVec3::new(500_000.0, 4_649_776.0, 0.0))
 }
 
-/// The same mesh with a vertex that no face uses.
+/// Returns the mesh with an additional vertex that no face uses.
 fn with_stray(mesh: &Mesh, at: DVec3) -> Mesh {
     let mut mesh = mesh.clone();
     mesh.vertices.insert(0, at);
@@ -341,19 +341,19 @@ fn a_hull_leaves_out_what_no_face_uses() {
             assert_eq!(loaded.body.vertices(), plain.body.vertices(), "{format}");
             assert!(loaded.notes.contains(&Note::Stray(1)), "{:?}", loaded.notes);
             assert!(!plain.notes.contains(&Note::Stray(1)));
-            // Features name the vertices of the file.
+            // Features refer to the vertices of the file.
             for (vertex, number) in loaded.body.vertices().iter().zip(loaded.body.input_indices()) {
                 assert_eq!(mesh.vertices[number.index()], *vertex, "{format}");
             }
         }
     }
     assert_eq!(Note::Stray(2).to_string(), "2 vertices that no face uses are not in the hull");
-    // A cloud of points has no faces that could use them.
+    // A point cloud has no faces.
     let cloud = Mesh::new(angle.vertices.clone(), Vec::new());
     let loaded = convex(&cloud, &options).unwrap();
     assert_eq!(loaded.body.vertices(), plain.body.vertices());
     assert!(!loaded.notes.iter().any(|note| matches!(note, Note::Stray(_))));
-    // A vertex that is no number is no matter if no face uses it.
+    // A vertex that is NaN is ignored if no face uses it.
     let mut unknown = with_stray(&angle, DVec3::NAN);
     assert_eq!(convex(&unknown, &options).unwrap().body.vertices(), plain.body.vertices());
     unknown.vertices[3] = DVec3::NAN;
@@ -373,7 +373,7 @@ fn a_body_that_is_convex_by_tolerance_tells_its_dent() {
         said.contains("convex only to within the tolerance") && said.contains("0.0001"),
         "{said}"
     );
-    // What the digits of the file explain is no dent.
+    // A depth that the digits of the file explain is not reported.
     let mut coarse = dented.clone();
     coarse.precision = 1e-3;
     assert!(convex(&coarse, &BodyOptions::default()).unwrap().notes.is_empty());

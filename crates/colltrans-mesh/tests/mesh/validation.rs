@@ -1,5 +1,5 @@
-//! Files as people have them: marks, line ends and names that mislead, files that are cut short,
-//! corners that are written in more than one way.
+//! Tests files as they occur in practice: byte-order marks, line ends, misleading names, truncated files, and
+//! corners with different rounding.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -18,14 +18,14 @@ fn message(format: Format, bytes: impl AsRef<[u8]>) -> String {
     read(format, bytes).unwrap_err().to_string()
 }
 
-/// A cube of triangles or of squares.
+/// Returns a cube of triangles or of squares.
 fn cube(triangles: bool) -> Mesh {
     let cube = block(DVec3::ZERO, DVec3::ONE);
     let cube = if triangles { cube.triangulated() } else { cube };
     Mesh::new(cube.vertices, cube.faces)
 }
 
-/// The cube as text STL; `corner` may write each corner of each facet in its own way.
+/// Returns the cube as text STL, with the corners of facets printed by `corner`.
 fn text_stl(mut corner: impl FnMut(DVec3) -> String) -> String {
     let mesh = cube(true);
     let mut text = String::from("solid part\n");
@@ -60,7 +60,7 @@ fn ply(mesh: &Mesh) -> String {
     text
 }
 
-/// The same cube in every format that is text.
+/// Returns the cube in each text format.
 fn texts() -> [(Format, String); 4] {
     let mesh = cube(false);
     [
@@ -108,7 +108,7 @@ fn sixteen_bits_a_character_are_refused() {
     }
 }
 
-/// In a binary PLY file the header may end in a lone CR, and what follows may look like LF.
+/// In a binary PLY file the header may end in a lone CR, and the data may begin with the byte of LF.
 #[test]
 fn a_binary_ply_may_have_any_header() {
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n\
@@ -143,7 +143,9 @@ fn contents_are_held_against_the_name() {
             if *is == format {
                 assert!(read(format, bytes).is_ok(), "{name}");
             } else {
-                let expected = format!("part: holds {name}, not {format} as its name says");
+                let expected = format!(
+                    "part: contains {name}, but its extension stands for {format}; rename or convert the file"
+                );
                 assert_eq!(message(format, bytes), expected);
             }
         }
@@ -180,40 +182,40 @@ fn a_binary_stl_that_begins_with_solid_is_measured_too() {
     assert_eq!(read(Format::Stl, &bytes).unwrap().faces.len(), 12);
     for end in [length - 1, length - 50, length - 51, 84 + 50, 90, 84, 83, 80] {
         let message = message(Format::Stl, &bytes[..end]);
-        let said = message.contains("cut short: its header promises 12 triangles")
+        let said = message.contains("truncated: 12 triangles in its header need")
             || end < 84 && message.contains("end of file");
         assert!(said, "{end}: {message}");
     }
-    // A little padding, or zeros, say nothing; whole triangles do.
+    // Zeros, or fewer bytes than a triangle, are accepted as padding; other bytes are not.
     for padding in [vec![0; 2000], vec![b' '; 49], vec![0x1a]] {
         assert_eq!(read(Format::Stl, [bytes.clone(), padding].concat()).unwrap().faces.len(), 12);
     }
     let more = message(Format::Stl, [bytes.clone(), vec![1; 50]].concat());
-    assert!(more.contains("50 bytes follow the 12 triangles"), "{more}");
+    assert!(more.contains("50 unexpected bytes after the 12 triangles"), "{more}");
 }
 
 #[test]
 fn a_text_stl_is_whole_or_refused() {
     let text = text_stl(plain);
-    // Wherever it is cut, except in the name after the last word.
+    // Each truncation is rejected, except inside the name after the last keyword.
     for end in 0..text.find("endsolid").unwrap() + "endsolid".len() {
         assert!(read(Format::Stl, &text[..end]).is_err(), "{:?}", &text[..end]);
     }
     let line = text.find("endsolid").unwrap();
     let cut = message(Format::Stl, &text[..line]);
-    assert!(cut.contains("the last solid is not ended; the file is cut short"), "{cut}");
+    assert!(cut.contains("the last solid is not closed; the file is truncated"), "{cut}");
     let odd = message(Format::Stl, text.replacen("endloop\n", "", 1));
-    assert!(odd.contains("line 7: `endfacet` inside a loop that was not ended"), "{odd}");
+    assert!(odd.contains("line 7: `endfacet` inside a loop that is not closed"), "{odd}");
 }
 
 #[test]
 fn what_follows_the_last_element_is_refused() {
     let mesh = cube(true);
     let more = message(Format::Off, to_off(&mesh) + "\n# blank and comment\n3 0 1 2\n");
-    assert!(more.contains("line 25: more follows the 8 vertices and 12 faces"), "{more}");
+    assert!(more.contains("line 25: unexpected text after the 8 vertices and 12 faces"), "{more}");
     assert!(read(Format::Off, to_off(&mesh) + "\n\n# the end\n").is_ok());
     let more = message(Format::Ply, ply(&mesh) + "3 0 1 2\n");
-    assert!(more.contains("8 bytes follow"), "{more}");
+    assert!(more.contains("8 unexpected bytes"), "{more}");
     assert!(read(Format::Ply, ply(&mesh) + "\n \n").is_ok());
 }
 
@@ -226,11 +228,11 @@ fn faces_of_a_ply_file_are_not_missed() {
     assert!(strips.contains("triangle strips"), "{strips}");
     for list in ["list float int", "list uchar float"] {
         let odd = message(Format::Ply, text.replace("list uchar int", list));
-        assert!(odd.contains("not a list of integers, counted by an integer"), "{odd}");
+        assert!(odd.contains("must be a list of integers"), "{odd}");
     }
 }
 
-/// Zeros that are rounding errors, as computed corners have them.
+/// Zeros with rounding errors, as in computed corners.
 #[test]
 fn twins_are_merged_and_counted() {
     let mut written = 0;
@@ -251,7 +253,7 @@ fn twins_are_merged_and_counted() {
     assert!(!open.open_edges().is_empty());
 }
 
-/// In formats with numbered vertices the numbers stay, so that answers name those of the file.
+/// In formats with numbered vertices the numbers remain, so that answers refer to those of the file.
 #[test]
 fn numbered_vertices_keep_their_numbers() {
     let square = cube(false);
@@ -279,7 +281,7 @@ fn numbered_vertices_keep_their_numbers() {
 
 #[test]
 fn slivers_between_twins_are_dropped_and_counted() {
-    // A tetrahedron with its edge 0-1 doubled: a sliver 0 1 4 lies between them, open at one side.
+    // A tetrahedron with a doubled edge 0-1: between the two copies is a sliver 0 1 4, open at one side.
     let (a, b, c, d) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
     let twin = DVec3::new(1.0, 1e-16, 0.0);
     let faces = vec![vec![0, 2, 1], vec![0, 4, 3], vec![0, 1, 4], vec![1, 2, 3], vec![0, 3, 2]];
@@ -290,7 +292,7 @@ fn slivers_between_twins_are_dropped_and_counted() {
 
 #[test]
 fn the_tolerance_follows_the_precision_of_the_numbers() {
-    // One unit in the last place of single precision apart.
+    // The distance is one unit in the last place of single precision.
     let ulp = f64::from(f32::EPSILON);
     let mut written = 0;
     let mut shifted = |v: DVec3| {
@@ -319,7 +321,7 @@ fn the_tolerance_follows_the_precision_of_the_numbers() {
     }
 }
 
-/// A torus of single triangles, every corner of every one rounded in its own way.
+/// Returns a torus of separate triangles, with random rounding of each corner of each triangle.
 fn torus(around: usize, along: usize) -> Mesh {
     let angle = |i: usize, n: usize| std::f64::consts::TAU * (i % n) as f64 / n as f64;
     let at = |i: usize, j: usize| {
@@ -359,7 +361,7 @@ fn a_million_facets() {
     assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0));
 }
 
-/// What is promised of every mesh: indices exist, and faces are cycles of three corners and more.
+/// Checks the invariants of a mesh: indices are valid, and faces are cycles of at least three corners.
 fn assert_sound(mesh: &Mesh) {
     let count = mesh.vertices.len();
     for face in &mesh.faces {
@@ -371,7 +373,7 @@ fn assert_sound(mesh: &Mesh) {
     assert!(merged.largest_distance <= merged.tolerance, "{merged:?}");
 }
 
-/// Pieces cut out, doubled, moved and overwritten: a mesh that keeps its promises, or an error.
+/// Parts of files are cut out, duplicated, moved and overwritten. The result must be a valid mesh or an error.
 #[test]
 fn mangled_files_give_sound_meshes_or_errors() {
     let mut files: Vec<(Format, Vec<u8>)> =
@@ -413,5 +415,5 @@ fn files_that_hold_nothing_are_named_as_such() {
         assert!(message(format, Vec::new()).ends_with("end of file: the file is empty"));
     }
     let header = message(Format::Ply, b"ply\nformat ascii 1.0\nend_header\n");
-    assert!(header.ends_with("header: there is no element `vertex`"), "{header}");
+    assert!(header.ends_with("header: the element `vertex` is missing"), "{header}");
 }

@@ -1,11 +1,11 @@
-//! Edges of triangles.
+//! Finds the edges of triangles.
 
 use std::collections::HashMap;
 
-/// Two ends, the lower first, and the faces at the edge.
+/// The two vertices of an edge, the lower index first, and the faces at the edge.
 pub type Edge = ([u32; 2], Vec<u32>);
 
-/// All edges, in the order of their first appearance.
+/// Returns all edges, in the order of their first occurrence.
 pub fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     let mut place = HashMap::with_capacity(triangles.len() * 3 / 2);
     let mut edges: Vec<Edge> = Vec::new();

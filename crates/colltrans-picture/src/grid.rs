@@ -1,33 +1,34 @@
-//! Samples over a page, and those that a triangle covers.
+//! A grid of samples over a page, and the samples that a triangle covers.
 //!
-//! Notation. A point of the page is (x, y) in pixels and a depth, which grows towards the viewer: planes
-//! of the scene are planes there. A *sample* is the centre of a cell of `1 / fine` pixels.
+//! Notation. A point of the page has coordinates (x, y) in pixels, and a depth that increases towards the
+//! viewer. Planes of the scene are planes in these coordinates. A *sample* is the centre of a cell of `1 /
+//! fine` pixels.
 
 use glam::{DVec2, DVec3};
 
 use crate::Frame;
 
-/// What depths are.
+/// The meaning of depths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
-    /// Lengths along the view, whose rays are parallel.
+    /// Lengths along the viewing direction, in an orthographic view.
     Length,
-    /// Inverses of the distance along the view, whose rays come together in an eye.
+    /// Inverse distances along the viewing direction, in a perspective view.
     Inverse,
 }
 
 impl Depth {
-    /// The depth of what is nearer by a length.
+    /// Returns the depth of a point that is nearer by the length `by`.
     pub(crate) fn nearer(self, depth: f64, by: f64) -> f64 {
         match self {
             Self::Length => depth + by,
-            // What would be behind the eye is as near as can be.
+            // A point that would be behind the viewer has the largest depth.
             Self::Inverse if depth * by >= 1.0 => f64::INFINITY,
             Self::Inverse => depth / (1.0 - depth * by),
         }
     }
 
-    /// By which length the first is farther than the second.
+    /// Returns the length by which the first depth is farther from the viewer than the second.
     pub(crate) fn apart(self, far: f64, near: f64) -> f64 {
         match self {
             Self::Length => near - far,
@@ -36,7 +37,7 @@ impl Depth {
     }
 }
 
-/// Where samples are.
+/// The positions of the samples.
 pub(crate) struct Grid {
     pub(crate) width: usize,
     pub(crate) height: usize,
@@ -44,23 +45,24 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Over a window that begins at (0, 0).
+    /// Builds the grid over a window that begins at (0, 0).
     pub(crate) fn new(window: Frame, fine: usize) -> Self {
         let [width, height] = window.high.to_array().map(|side| side.ceil() as usize * fine);
         Self { width, height, fine }
     }
 
+    /// Returns the number of cells.
     pub(crate) fn len(&self) -> usize {
         self.width * self.height
     }
 
-    /// Whether a point is on the page.
+    /// Checks whether a point is on the page.
     pub(crate) fn has(&self, at: DVec2) -> bool {
         let at = at * self.fine as f64;
         at.cmpge(DVec2::ZERO).all() && at.x < self.width as f64 && at.y < self.height as f64
     }
 
-    /// The numbers of the cell that has a point and of those around it, as far as they are on the page.
+    /// Returns the indices of the cell of a point and of its neighbours, without cells outside of the page.
     pub(crate) fn around(&self, at: DVec2) -> impl Iterator<Item = usize> + use<'_> {
         let [x, y] = (at * self.fine as f64).to_array().map(|c| c.floor() as isize);
         let cells = |c: isize, count: usize| {
@@ -72,8 +74,8 @@ impl Grid {
         cells(y, self.height).flat_map(move |y| columns.clone().map(move |x| y * self.width + x))
     }
 
-    /// Calls for every sample that a triangle covers, its rim included, with the cell's number and the depth
-    /// there. Triangles that are seen from their edge, or with coordinates that are not finite, cover none.
+    /// Calls `visit` for each sample that a triangle covers, its boundary included, with the index of the cell
+    /// and the depth. Triangles that are seen edge-on or have coordinates that are not finite cover no samples.
     pub(crate) fn cover(&self, corners: [DVec3; 3], mut visit: impl FnMut(usize, f64)) {
         let [a, b, c] = corners.map(|p| (p.truncate() * self.fine as f64 - 0.5).extend(p.z));
         let (u, v) = (b - a, c - a);
@@ -88,20 +90,21 @@ impl Grid {
             let [left, right] = crossed([a, b, c], y as f64);
             for x in cells(left, right, self.width) {
                 let depth = a.z + slope_x * (x as f64 - a.x) + slope_y * (y as f64 - a.y);
-                // Of a triangle seen nearly from its edge the plane is steep: rounding would leave it.
+                // The plane of a triangle that is nearly edge-on is steep. Without the limits, rounding would
+                // leave the triangle's depths.
                 visit(y * self.width + x, depth.clamp(low.z, high.z));
             }
         }
     }
 }
 
-/// Whole numbers of a range, of those below `count`.
+/// Returns the integers of a range that are below `count`.
 fn cells(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
     let from = low.ceil().clamp(0.0, count as f64) as usize;
     from..((high.floor() + 1.0).clamp(0.0, count as f64) as usize).max(from)
 }
 
-/// Between which x a triangle crosses a row.
+/// Returns the range of x in which a triangle crosses a row.
 fn crossed([a, b, c]: [DVec3; 3], row: f64) -> [f64; 2] {
     let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
     for [p, q] in [[a, b], [b, c], [c, a]] {
@@ -124,7 +127,7 @@ pub(crate) mod tests {
 
     pub(crate) const WINDOW: Frame = Frame { low: DVec2::ZERO, high: DVec2::new(60.0, 40.0) };
 
-    /// Of a random triangle, partly beside the page.
+    /// Returns the corners of a random triangle, partly outside of the page.
     pub(crate) fn corners(random: &mut Random) -> [DVec3; 3] {
         std::array::from_fn(|_| {
             let (x, y) = (random.range(-10.0, 70.0), random.range(-10.0, 50.0));
@@ -132,7 +135,7 @@ pub(crate) mod tests {
         })
     }
 
-    /// The depth of a triangle where it covers a point.
+    /// Returns the depth of a triangle at a point; `None` if it does not cover the point.
     pub(crate) fn depth_at(at: DVec2, [a, b, c]: [DVec3; 3]) -> Option<f64> {
         let area = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
         let [p, q, r] = [a, b, c].map(DVec3::truncate);
@@ -141,7 +144,7 @@ pub(crate) mod tests {
         shares.iter().all(|&w| w >= 0.0).then_some(depth)
     }
 
-    /// The centre of a cell.
+    /// Returns the centre of a cell.
     pub(crate) fn sample(cell: usize, grid: &Grid) -> DVec2 {
         let (x, y) = (cell % grid.width, cell / grid.width);
         DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / grid.fine as f64
@@ -191,7 +194,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Depths of a steep one stay between those of its corners.
+    /// The depths of a steep triangle are between those of its corners.
     #[test]
     fn a_steep_triangle_is_nowhere_nearer_than_its_corners() {
         let grid = Grid::new(WINDOW, 2);

@@ -1,8 +1,8 @@
-//! Line drawings of bodies as SVG, for the command line and for reports.
+//! Draws bodies and answers as SVG, for the command line and for reports.
 //!
-//! [`View`] projects the scene; a [`Raster`] of depths tells which surfaces are seen, and which pieces of
-//! which [`edges`]; [`ordered`] facets can be painted one over the other; [`Page`] writes areas, lines and
-//! text. [`Paint`] has the colours of the moving and of the fixed body.
+//! [`View`] projects the scene. A [`Raster`] of depths determines the visible surfaces, and the visible parts
+//! of [`edges`]. [`ordered`] sorts facets so that they can be painted back to front. [`Page`] writes areas,
+//! lines and text. [`Paint`] has the colours of the moving and of the fixed body.
 
 mod edges;
 mod grid;

@@ -1,11 +1,11 @@
-//! In which order facets are painted so that the nearer cover the farther.
+//! Sorts facets back to front for painting (painter's algorithm).
 //!
-//! At each sample of the page the facets that cover it tell who is to be painted before whom; facets that
-//! are seen at none are left out. Facets that go in a circle, as those of bodies that stand in each
-//! other, are cut in four until they do not; the last circles are pixels wide and are cut open where the
-//! farthest is. Facets of one style are painted one after the other where they can be.
+//! At each sample of the page, the covering facets determine which facet must be painted before another. Facets
+//! that are visible at no sample are removed. Facets in a cycle, such as those of intersecting bodies, are cut
+//! into four until no cycle remains. The remaining cycles are pixels wide, and are broken at the farthest
+//! facet. Facets of the same style are painted consecutively where possible.
 //!
-//! Source: the sort of Newell, Newell and Sancha (1972), its questions being asked of samples.
+//! Source: the sort of Newell, Newell and Sancha (1972), with its tests evaluated at samples.
 
 use std::collections::BTreeMap;
 
@@ -14,26 +14,26 @@ use glam::{DVec2, DVec3};
 use crate::Frame;
 use crate::grid::{Depth, Grid};
 
-/// A triangle to be painted.
+/// A triangle to paint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facet {
-    /// x and y on the page, z the depth.
+    /// The corners: x and y on the page, and the depth as z.
     pub corners: [DVec3; 3],
-    /// What it looks like: a number.
+    /// The index of its style.
     pub style: u32,
     /// Whether it hides what is behind it.
     pub opaque: bool,
 }
 
-/// How often facets are cut.
+/// Maximum number of rounds in which facets are cut.
 const ROUNDS: usize = 8;
-/// Facets of a smaller area are not cut: pixels.
+/// Minimum area of facets that are cut, in square pixels.
 const SMALL: f64 = 2.0;
-/// Points at which a side is looked at, at most.
+/// Maximum number of points at which a side is sampled.
 const MOST_POINTS: f64 = 1e4;
 
-/// Facets on a window that begins at (0, 0), those first that are to be painted first, without those that are
-/// seen nowhere on it. `slack`: lengths along the view that are no difference.
+/// Sorts facets back to front. The window begins at (0, 0); facets that are not visible in it are removed.
+/// Differences of depth up to the length `slack` are ignored.
 pub fn ordered(mut facets: Vec<Facet>, window: Frame, depth: Depth, slack: f64) -> Vec<Facet> {
     let grid = Grid::new(window, 1);
     facets.retain(|facet| facet.corners.iter().all(|corner| corner.is_finite()));
@@ -61,12 +61,13 @@ pub fn ordered(mut facets: Vec<Facet>, window: Frame, depth: Depth, slack: f64) 
 }
 
 impl Facet {
-    /// Pixels.
+    /// Returns the area in square pixels.
     fn area(&self) -> f64 {
         let [a, b, c] = self.corners.map(DVec3::truncate);
         (b - a).perp_dot(c - a).abs() / 2.0
     }
 
+    /// Cuts the facet into four at the midpoints of its sides.
     fn quarters(self) -> [Self; 4] {
         let [a, b, c] = self.corners;
         let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
@@ -74,7 +75,7 @@ impl Facet {
             .map(|corners| Self { corners, ..self })
     }
 
-    /// Points along its longest side, a pixel apart; none of its ends.
+    /// Returns points along its longest side, one pixel apart, without the ends.
     fn longest_side(&self) -> impl Iterator<Item = DVec3> + use<> {
         let [a, b, c] = self.corners;
         let length = |[p, q]: [DVec3; 2]| p.truncate().distance(q.truncate());
@@ -88,7 +89,7 @@ impl Facet {
         (0..count as usize).map(move |k| side[0].lerp(side[1], (k as f64 + 0.5) / count))
     }
 
-    /// Its depth at a point of the page that is inside it, by more than rounding.
+    /// Returns its depth at a point of the page; `None` unless the point is inside by more than rounding.
     fn depth_inside(&self, at: DVec2) -> Option<f64> {
         let [a, b, c] = self.corners;
         let [p, q, r] = self.corners.map(DVec3::truncate);
@@ -99,20 +100,21 @@ impl Facet {
     }
 }
 
-/// What covers a sample.
+/// A facet at a sample, with its depth there.
 #[derive(Clone, Copy, Default)]
 struct Layer {
     facet: u32,
     depth: f64,
 }
 
-/// The layers of all cells, one cell after the other, the farthest first.
+/// The layers of all cells, one cell after the other, each from back to front.
 struct Layers {
     starts: Vec<usize>,
     all: Vec<Layer>,
 }
 
 impl Layers {
+    /// Finds the facets that cover each sample.
     fn new(facets: &[Facet], grid: &Grid) -> Self {
         let mut starts = vec![0; grid.len() + 1];
         for facet in facets {
@@ -135,23 +137,25 @@ impl Layers {
         Self { starts, all }
     }
 
+    /// Returns the layers of a cell.
     fn of(&self, cell: usize) -> &[Layer] {
         &self.all[self.starts[cell]..self.starts[cell + 1]]
     }
 }
 
-/// The place of the nearest opaque layer.
+/// Returns the index of the nearest opaque layer; `None` if there is none.
 fn front(layers: &[Layer], facets: &[Facet]) -> Option<usize> {
     layers.iter().rposition(|layer| facets[layer.facet as usize].opaque)
 }
 
-/// Who is seen somewhere, and who of them is painted before whom.
+/// The visible facets, and pairs of facets of which the first must be painted before the second.
 struct Rules {
     seen: Vec<bool>,
     before: Pairs,
 }
 
 impl Rules {
+    /// Evaluates all samples, and the longest sides of all facets.
     fn new(facets: &[Facet], grid: &Grid, depth: Depth, slack: f64) -> Self {
         let layers = Layers::new(facets, grid);
         let mut rules = Self { seen: vec![false; facets.len()], before: Pairs::default() };
@@ -163,11 +167,12 @@ impl Rules {
             rules.add_side(k as u32, facet.longest_side(), &layers, (facets, grid), farther);
         }
         let Self { seen, before } = &mut rules;
-        // Rules with those that are left out are none.
+        // Pairs with a facet that is not visible are removed.
         before.tidy(|[first, then]| seen[*first as usize] && seen[*then as usize]);
         rules
     }
 
+    /// Adds the pairs of neighbouring layers of a cell, and marks visible facets.
     fn add_cell(&mut self, here: &[Layer], facets: &[Facet], farther: impl Fn(f64, f64) -> bool) {
         let front = front(here, facets);
         for (k, layer) in here.iter().enumerate() {
@@ -177,14 +182,15 @@ impl Rules {
             {
                 self.before.push([layer.facet, then.facet]);
             }
-            // What touches the nearest may be seen beside it.
+            // A layer that touches the nearest one may be visible next to it.
             if hider.is_none_or(|hider| !farther(layer.depth, hider.depth)) {
                 self.seen[layer.facet as usize] = true;
             }
         }
     }
 
-    /// A facet may be too thin for any sample, or stand before others only beside them.
+    /// Adds the pairs along the longest side of a facet. A facet may be too thin for any sample, or in front of
+    /// others only next to them.
     fn add_side(
         &mut self,
         facet: u32,
@@ -199,7 +205,7 @@ impl Rules {
                 continue;
             }
             let mut hidden = false;
-            // What covers the point need not cover its cell's sample.
+            // A facet that covers the point need not cover the sample of its cell.
             for cell in grid.around(at) {
                 let here = layers.of(cell);
                 for layer in &here[front(here, facets).unwrap_or(0)..] {
@@ -215,7 +221,7 @@ impl Rules {
         }
     }
 
-    /// Those that neither come before nor after all circles.
+    /// Returns the facets that are in a cycle, or between cycles.
     fn in_circles(&self) -> Vec<bool> {
         let mut left = self.seen.clone();
         trim(&mut left, &self.before.all);
@@ -225,6 +231,7 @@ impl Rules {
         left
     }
 
+    /// Returns the visible facets in the order of painting.
     fn sorted(&self, facets: &[Facet]) -> Vec<u32> {
         let mut waits = waiting(&self.seen, &self.before.all);
         let near = |k: u32| facets[k as usize].corners.iter().map(|p| p.z).sum::<f64>();
@@ -238,7 +245,7 @@ impl Rules {
         let mut done = Vec::with_capacity(farthest.len());
         let mut painted = vec![false; facets.len()];
         let mut left = farthest.iter();
-        // Without one that is ready those left are in a circle, or after one.
+        // If no facet is ready, the remaining ones are in a cycle or after one.
         while let Some(k) =
             ready.take(near).or_else(|| left.find(|k| !painted[**k as usize]).copied())
         {
@@ -246,7 +253,7 @@ impl Rules {
             done.push(k);
             for &[_, then] in from(&self.before.all, k) {
                 let wait = &mut waits[then as usize];
-                // What was painted to open a circle waits for nothing.
+                // A facet that was painted to break a cycle has no more predecessors.
                 if *wait != u32::MAX {
                     *wait -= 1;
                     if *wait == 0 {
@@ -259,7 +266,7 @@ impl Rules {
     }
 }
 
-/// What can be painted, by its style, the farthest last.
+/// The facets that can be painted next, by style, the farthest last.
 #[derive(Default)]
 struct Ready {
     opaque: BTreeMap<u32, Vec<u32>>,
@@ -268,13 +275,14 @@ struct Ready {
 }
 
 impl Ready {
+    /// Adds a facet.
     fn put(&mut self, k: u32, facet: &Facet) {
         let pool = if facet.opaque { &mut self.opaque } else { &mut self.sheer };
         pool.entry(facet.style).or_default().push(k);
     }
 
-    /// One of the last style, or else of that of which the next one is the farthest. Opaque ones as early
-    /// as can be: their rims are not to be seen on what is translucent.
+    /// Removes a facet of the last style. If there is none, selects the style whose next facet is the farthest.
+    /// Opaque facets come as early as possible, so that their boundaries are not visible on translucent ones.
     fn take(&mut self, near: impl Fn(u32) -> f64) -> Option<u32> {
         let pool = if self.opaque.is_empty() { &mut self.sheer } else { &mut self.opaque };
         if !pool.contains_key(&self.style) {
@@ -290,7 +298,7 @@ impl Ready {
     }
 }
 
-/// Pairs of numbers, each once and in order when they are tidied.
+/// Pairs of numbers. After [`Self::tidy`] they are sorted and unique.
 #[derive(Default)]
 struct Pairs {
     all: Vec<[u32; 2]>,
@@ -298,7 +306,8 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Many are the same, at samples beside each other: they are tidied as often as they have doubled.
+    /// Adds a pair. Because neighbouring samples yield many duplicates, the pairs are tidied whenever their
+    /// number has doubled.
     fn push(&mut self, pair: [u32; 2]) {
         self.all.push(pair);
         if self.all.len() > 2 * self.tidied + (1 << 16) {
@@ -306,6 +315,7 @@ impl Pairs {
         }
     }
 
+    /// Sorts the pairs, removes duplicates, and keeps those that `kept` selects.
     fn tidy(&mut self, kept: impl Fn(&[u32; 2]) -> bool) {
         self.all.sort_unstable();
         self.all.dedup();
@@ -314,14 +324,14 @@ impl Pairs {
     }
 }
 
-/// Of sorted pairs those that begin with a number.
+/// Returns the pairs whose first number is `first`, from sorted pairs.
 fn from(pairs: &[[u32; 2]], first: u32) -> &[[u32; 2]] {
     let start = pairs.partition_point(|pair| pair[0] < first);
     let end = start + pairs[start..].partition_point(|pair| pair[0] == first);
     &pairs[start..end]
 }
 
-/// For how many others each waits, of those that are left.
+/// Returns for each facet the number of its predecessors in `left`.
 fn waiting(left: &[bool], before: &[[u32; 2]]) -> Vec<u32> {
     let mut waits = vec![0; left.len()];
     for [first, then] in before {
@@ -330,7 +340,7 @@ fn waiting(left: &[bool], before: &[[u32; 2]]) -> Vec<u32> {
     waits
 }
 
-/// Takes away those that wait for none, and again, until there are no more.
+/// Repeatedly removes the facets without predecessors.
 fn trim(left: &mut [bool], before: &[[u32; 2]]) {
     let mut waits = waiting(left, before);
     let mut ready: Vec<u32> = (0..left.len() as u32).collect();
@@ -361,7 +371,7 @@ mod tests {
         ordered(facets.to_vec(), WINDOW, Depth::Inverse, 1e-9)
     }
 
-    /// A square of two triangles.
+    /// Returns a square of two triangles.
     fn square(depth: f64, style: u32, opaque: bool, [x, y, s]: [f64; 3]) -> [Facet; 2] {
         let at = |i: f64, j: f64| DVec3::new(x + i * s, y + j * s, depth);
         let halves = [
@@ -375,7 +385,8 @@ mod tests {
         facets.iter().map(|facet| facet.style).collect()
     }
 
-    /// Cells where another style was painted last than that of the nearest, and all that are covered.
+    /// Returns the number of cells in which the style painted last is not that of the nearest facet, and the
+    /// number of covered cells.
     fn wrong(given: &[Facet], painted: &[Facet]) -> [usize; 2] {
         let grid = Grid::new(WINDOW, 1);
         let [mut last, mut nearest] = [(); 2].map(|()| vec![None; grid.len()]);
@@ -391,7 +402,7 @@ mod tests {
         [other, nearest.iter().flatten().count()]
     }
 
-    /// At each sample the nearest is painted last, even where they go through each other.
+    /// At each sample the nearest facet is painted last, also if facets intersect.
     #[test]
     fn the_nearest_is_painted_last() {
         let mut random = Random::new(11);
@@ -403,12 +414,12 @@ mod tests {
             let [a, b] = wrong(&facets, &painted);
             (other, all) = (other + a, all + b);
         }
-        // Circles of facets as small as samples are cut open.
+        // Cycles of facets as small as samples are broken.
         assert!(200 * other < all, "{other} of {all}");
     }
 
-    /// What is translucent is painted after what it is before, and before what hides it; what is hidden
-    /// is not.
+    /// A translucent facet is painted after the facets behind it and before those in front of it. Hidden facets
+    /// are not painted.
     #[test]
     fn the_translucent_is_between_the_far_and_the_near() {
         let facets = [
@@ -420,7 +431,7 @@ mod tests {
         assert_eq!(styles(&order(&facets.concat())), [2, 2, 1, 1, 0, 0]);
     }
 
-    /// Both are kept: either may be seen beside the other.
+    /// Both are kept, because either may be visible next to the other.
     #[test]
     fn what_lies_at_the_same_depth_is_no_circle() {
         let pair = |a, b| {
@@ -434,7 +445,7 @@ mod tests {
         }
     }
 
-    /// Three bars that lie on each other in a circle, and two squares that cross in the middle.
+    /// Three bars that overlap each other cyclically, and two squares that intersect in the middle.
     #[test]
     fn circles_are_cut() {
         let bar = |style: u32, [from, to]: [DVec3; 2]| {
@@ -500,7 +511,7 @@ mod tests {
         assert!(ordered(facets, nowhere, Depth::Inverse, 0.0).is_empty());
     }
 
-    /// Triangles thinner than samples are seen too, by their longest sides.
+    /// Triangles thinner than samples are visible by their longest sides.
     #[test]
     fn a_sliver_is_seen_where_nothing_hides_it() {
         let v = DVec3::new;
@@ -514,7 +525,7 @@ mod tests {
         assert_eq!(styles(&order(&[&[behind], &wall[..]].concat())), [0, 0]);
     }
 
-    /// Sheets one behind the other, in any order, a few styles among them.
+    /// Layers of squares in random order, with several styles.
     #[test]
     fn many_triangles() {
         let mut random = Random::new(5);

@@ -1,34 +1,35 @@
-//! A page of shapes in page coordinates (pixels, y downwards), written as SVG.
+//! Writes a page of shapes in page coordinates (pixels, y downwards) as SVG.
 //!
-//! Everything that can lie far outside the page is cut to a frame around it, because renderers
-//! keep coordinates in few bits.
+//! Shapes that may extend far beyond the page are clipped to a frame around it, because renderers store
+//! coordinates in few bits.
 
 use std::fmt::Write as _;
 
 use glam::DVec2;
 
-/// Line width, colour, dashes.
+/// Colour, width and dashes of a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Stroke {
-    /// As SVG writes it.
+    /// The colour in SVG notation.
     pub colour: &'static str,
-    /// In pixels.
+    /// The width in pixels.
     pub width: f64,
-    /// Lengths of dashes and gaps.
+    /// The lengths of dashes and gaps, in SVG notation.
     pub dashes: Option<&'static str>,
 }
 
 impl Stroke {
-    /// A line without gaps.
+    /// Returns a solid line.
     pub const fn solid(colour: &'static str, width: f64) -> Self {
         Self { colour, width, dashes: None }
     }
 
-    /// A line of dashes.
+    /// Returns a dashed line.
     pub const fn dashed(colour: &'static str, width: f64, dashes: &'static str) -> Self {
         Self { colour, width, dashes: Some(dashes) }
     }
 
+    /// Returns the attributes of SVG.
     fn attributes(self) -> String {
         let Self { colour, width, dashes } = self;
         let dashes = dashes.map(|d| format!(r#" stroke-dasharray="{d}""#)).unwrap_or_default();
@@ -36,17 +37,17 @@ impl Stroke {
     }
 }
 
-/// An axis-parallel rectangle.
+/// An axis-aligned rectangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     /// The smallest coordinates.
     pub low: DVec2,
-    /// The largest.
+    /// The largest coordinates.
     pub high: DVec2,
 }
 
 impl Frame {
-    /// The part of a convex polygon inside the frame.
+    /// Returns the part of a convex polygon inside the frame.
     fn clip(&self, polygon: &[DVec2]) -> Vec<DVec2> {
         let mut kept = polygon.to_vec();
         for side in self.sides() {
@@ -65,7 +66,7 @@ impl Frame {
         kept
     }
 
-    /// The part of a segment inside the frame; none of what is not finite.
+    /// Returns the part of a segment inside the frame; `None` if it is empty, or an end is not finite.
     pub fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
         if !(a.is_finite() && b.is_finite()) {
             return None;
@@ -85,7 +86,7 @@ impl Frame {
         Some([a, b])
     }
 
-    /// For each side, the distance of a point from it, positive inside.
+    /// Returns for each side a function for the distance of a point, positive inside.
     fn sides(&self) -> [impl Fn(DVec2) -> f64; 4] {
         let Self { low, high } = *self;
         let side = |normal: DVec2, offset: f64| move |p: DVec2| p.dot(normal) - offset;
@@ -98,31 +99,32 @@ impl Frame {
     }
 }
 
-/// The body of an SVG file in the making.
+/// The body of an SVG file while it is written.
 pub struct Page {
     body: String,
     frame: Frame,
 }
 
 impl Page {
-    /// A page whose shapes are cut to `frame` and a margin around it.
+    /// Builds a page whose shapes are clipped to `frame` and a margin around it.
     pub fn new(frame: Frame) -> Self {
         let margin = DVec2::splat(20.0);
         let frame = Frame { low: frame.low - margin, high: frame.high + margin };
         Self { body: String::new(), frame }
     }
 
-    /// What follows has these attributes, up to [`Self::close_group`].
+    /// Opens a group with these attributes. It ends with [`Self::close_group`].
     pub fn open_group(&mut self, attributes: &str) {
         let _ = writeln!(self.body, "<g {attributes}>");
     }
 
-    /// Ends what [`Self::open_group`] began.
+    /// Closes the group of [`Self::open_group`].
     pub fn close_group(&mut self) {
         self.body.push_str("</g>\n");
     }
 
-    /// Axis-parallel rectangles of one look, by corners at whole pixels, all within the frame.
+    /// Writes axis-aligned rectangles with the same attributes, given as left, top, right and bottom in whole
+    /// pixels. They must be inside the frame.
     pub fn tiles(&mut self, look: &str, all: &[[usize; 4]]) {
         let mut data = String::new();
         for [x, y, right, bottom] in all {
@@ -132,7 +134,7 @@ impl Page {
         self.path(look, &data);
     }
 
-    /// Convex polygons of one look.
+    /// Writes convex polygons with the same attributes.
     pub fn polygons<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, look: &str, all: I) {
         let mut data = String::new();
         for polygon in all {
@@ -141,12 +143,12 @@ impl Page {
         self.path(look, &data);
     }
 
-    /// Segments of one look.
+    /// Writes segments with the same stroke.
     pub fn segments<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, stroke: Stroke, all: I) {
         self.lines(&stroke.attributes(), all);
     }
 
-    /// Segments of a look that is written out.
+    /// Writes segments with the same attributes.
     pub fn lines<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, look: &str, all: I) {
         let mut data = String::new();
         for segment in all {
@@ -157,7 +159,7 @@ impl Page {
         self.path(&format!(r#"fill="none" {look}"#), &data);
     }
 
-    /// A line through points, in one: dashes go on where it bends.
+    /// Writes a line through points as one path, so that dashes continue at its bends.
     pub fn polyline(&mut self, stroke: Stroke, points: &[DVec2]) {
         let mut pieces: Vec<Vec<DVec2>> = Vec::new();
         for ends in points.windows(2) {
@@ -174,19 +176,20 @@ impl Page {
         self.path(&format!(r#"fill="none" {}"#, stroke.attributes()), &data);
     }
 
+    /// Writes a path, unless it is empty.
     fn path(&mut self, look: &str, data: &str) {
         if !data.is_empty() {
             let _ = writeln!(self.body, r#"<path {look} d="{data}"/>"#);
         }
     }
 
-    /// A line with a white rim that sets it off from what lies below.
+    /// Writes a line with a white halo that separates it from shapes behind it.
     pub fn haloed(&mut self, stroke: Stroke, segment: [DVec2; 2]) {
         self.segments(Stroke::solid("#ffffff", stroke.width + 2.4), [segment]);
         self.segments(stroke, [segment]);
     }
 
-    /// A line with an arrow head at its second end.
+    /// Writes an arrow with its head at the second end.
     pub fn arrow(&mut self, colour: &'static str, width: f64, [tail, tip]: [DVec2; 2]) {
         let along = (tip - tail).normalize_or_zero();
         let across = along.perp();
@@ -198,7 +201,7 @@ impl Page {
         self.polygons(&look, [vec![tip, base + half, base + along * (0.2 * length), base - half]]);
     }
 
-    /// A disc with a rim.
+    /// Writes a filled circle with an outline.
     pub fn dot(&mut self, at: DVec2, radius: f64, fill: &str, rim: &str) {
         let (x, y) = (number(at.x), number(at.y));
         let _ = writeln!(
@@ -207,17 +210,17 @@ impl Page {
         );
     }
 
-    /// Text with a white rim around a point.
+    /// Writes text with a white halo, centred at a point.
     pub fn label(&mut self, centre: DVec2, look: &str, text: &str) {
-        // The base line lies a third of a letter's height below the middle.
+        // The baseline is a third of a letter's height below the centre.
         let at = centre + DVec2::new(0.0, 5.0);
         let rim = r##"stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round""##;
-        // Twice, because not every program knows `paint-order`.
+        // The text is written twice, because some programs do not support `paint-order`.
         self.text(at, "middle", &format!("{look} {rim}"), text);
         self.text(at, "middle", look, text);
     }
 
-    /// Text on a base line; `anchor` is `start`, `middle` or `end`.
+    /// Writes text at a baseline. The `anchor` is `start`, `middle` or `end`.
     pub fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
         let (x, y) = (number(at.x), number(at.y));
         let text = escaped(text);
@@ -227,7 +230,7 @@ impl Page {
         );
     }
 
-    /// A rectangle of this look.
+    /// Writes a rectangle with these attributes.
     pub fn rectangle(&mut self, look: &str, frame: Frame) {
         let size = frame.high - frame.low;
         let _ = writeln!(
@@ -240,18 +243,19 @@ impl Page {
         );
     }
 
-    /// A picture to be put into a page, as wide as there is room, with what is told of it to who does not see it.
+    /// Returns a picture to embed in a web page, as wide as its container. The `label` is its alternative text.
     pub fn inline(self, size: DVec2, label: &str) -> String {
         let told = format!(r#" role="img" aria-label="{}""#, escaped(label));
         self.on_ground(&told, size, "#ffffff")
     }
 
-    /// A picture of its own on a ground of this colour.
+    /// Returns a separate picture with a background of this colour.
     pub fn alone(self, size: DVec2, ground: &str) -> String {
         let DVec2 { x: width, y: height } = size;
         self.on_ground(&format!(r#" width="{width}" height="{height}""#), size, &escaped(ground))
     }
 
+    /// Returns the SVG element with a background.
     fn on_ground(self, extent: &str, DVec2 { x: width, y: height }: DVec2, ground: &str) -> String {
         let ground = format!(r#"<rect width="100%" height="100%" fill="{ground}"/>"#);
         format!(
@@ -261,7 +265,7 @@ impl Page {
         )
     }
 
-    /// The whole file; `window` is what the group with the clip path `window` shows.
+    /// Returns the SVG file. The window is the clip path `window`.
     pub fn finish(self, size: DVec2, window: Frame, title: &str) -> String {
         let DVec2 { x: width, y: height } = size;
         let mut text = String::new();
@@ -280,8 +284,8 @@ impl Page {
     }
 }
 
-/// A text as HTML and XML write it, in elements and in attributes. Characters that XML has no way to
-/// write (XML 1.0, 2.2, *Char*), control codes above all, become the sign for what cannot be shown.
+/// Escapes a text for elements and attributes of HTML and XML. Characters that XML cannot represent (XML 1.0,
+/// 2.2, *Char*), for example control codes, are replaced by U+FFFD.
 pub fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
@@ -299,6 +303,7 @@ pub fn escaped(text: &str) -> String {
     safe
 }
 
+/// Appends a path to the data.
 fn push_path(data: &mut String, points: &[DVec2], closed: bool) {
     let Some((first, rest)) = points.split_first() else { return };
     let _ = write!(data, "M{} {}", number(first.x), number(first.y));
@@ -310,7 +315,7 @@ fn push_path(data: &mut String, points: &[DVec2], closed: bool) {
     }
 }
 
-/// A tenth of a pixel is finer than any line.
+/// Formats a coordinate with a tenth of a pixel, which is finer than any line.
 fn number(value: f64) -> String {
     let text = format!("{value:.1}");
     let text = text.strip_suffix(".0").unwrap_or(&text);
@@ -358,7 +363,7 @@ mod tests {
             page.polyline(Stroke::dashed("red", 1.0, "5 4"), points);
             page.body
         };
-        // Out and in again at the right, 20 beyond the frame.
+        // Leaves the frame at the right, 20 beyond it, and enters it again.
         let bend = [[10.0, 21.0], [90.0, 29.0], [150.0, 35.0], [95.0, 60.0]].map(DVec2::from_array);
         let inside = drawn(&bend[..2]);
         assert!(inside.contains(r#"stroke-dasharray="5 4""#) && inside.matches('M').count() == 1);

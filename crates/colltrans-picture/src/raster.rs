@@ -1,18 +1,17 @@
-//! How near surfaces are to the viewer, sampled over the page.
+//! A depth buffer over the page.
 //!
-//! Notation. A *sample* is the centre of a cell of `1 / FINE` pixels; depths grow towards the viewer.
+//! Notation. A *sample* is the centre of a cell of `1 / FINE` pixels. Depths increase towards the viewer.
 //!
-//! Invariant: each sample holds the nearest of all triangles drawn so far that cover it, and the
-//! tone of that one.
+//! Invariant: each sample has the depth and the tone of the nearest triangle drawn so far that covers it.
 
 use glam::{DVec2, DVec3};
 
 use crate::Frame;
 use crate::grid::{Depth, Grid};
 
-/// Samples to a pixel, along each axis.
+/// Number of samples per pixel, along each axis.
 const FINE: usize = 2;
-/// Nothing is there.
+/// The tone of a sample without a triangle.
 const EMPTY: u32 = u32::MAX;
 
 /// Depths and tones over a window.
@@ -25,21 +24,21 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Over a window that begins at (0, 0), of depths that are lengths.
+    /// Builds an empty raster over a window that begins at (0, 0). Depths are lengths.
     pub fn new(window: Frame) -> Self {
         let grid = Grid::new(window, FINE);
         let (depths, tones) = (vec![f64::NEG_INFINITY; grid.len()], vec![EMPTY; grid.len()]);
         Self { grid, depth: Depth::Length, depths, tones, window }
     }
 
-    /// Depths are of another kind.
+    /// Sets the meaning of depths.
     #[must_use]
     pub fn with_depths(self, depth: Depth) -> Self {
         Self { depth, ..self }
     }
 
-    /// Draws a triangle of a tone, any number but the last: x and y on the page, z the depth. Where depths
-    /// are the same, what was drawn first stays.
+    /// Draws a triangle with a tone, any number except `u32::MAX`. Corners have x and y on the page, and the
+    /// depth as z. At equal depths, the triangle drawn first remains.
     pub fn draw(&mut self, corners: [DVec3; 3], tone: u32) {
         self.grid.cover(corners, |cell, depth| {
             if depth > self.depths[cell] {
@@ -48,21 +47,21 @@ impl Raster {
         });
     }
 
-    /// Whether a point of the page at this depth is in front of a sample around it, or level with it, or
-    /// that is of one of these tones.
+    /// Checks whether a point of the page at this depth is visible: a neighbouring sample is not nearer, or has
+    /// one of the tones `own`.
     fn sees(&self, at: DVec2, depth: f64, own: &[u32]) -> bool {
         let sees = |cell: usize| self.depths[cell] <= depth || own.contains(&self.tones[cell]);
         self.grid.around(at).any(sees)
     }
 
-    /// The parts of a segment that are seen, and those that are hidden; x and y on the page, z the
-    /// depth, which may be less by the length `slack`.
+    /// Splits a segment into its visible and its hidden parts. The ends have x and y on the page, and the depth
+    /// as z. A segment up to the length `slack` behind a surface is visible.
     pub fn split(&self, ends: [DVec3; 2], slack: f64) -> [Vec<[DVec2; 2]>; 2] {
         self.split_edge(ends, slack, &[])
     }
 
-    /// The same of an edge of what was drawn in the tones `own`, which do not hide it, however steep they
-    /// are.
+    /// Splits an edge of shapes with the tones `own` like [`Self::split`]. These shapes do not hide it,
+    /// regardless of their slope.
     pub fn split_edge(&self, [a, b]: [DVec3; 2], slack: f64, own: &[u32]) -> [Vec<[DVec2; 2]>; 2] {
         let mut parts = [Vec::new(), Vec::new()];
         let (from, to) = (a.truncate(), b.truncate());
@@ -87,7 +86,7 @@ impl Raster {
         parts
     }
 
-    /// For each tone its rectangles, in whole pixels: left, top, right, bottom.
+    /// Returns for each tone its rectangles in whole pixels: left, top, right, bottom.
     pub fn tiles(&self) -> Vec<Vec<[usize; 4]>> {
         let tones = self.tones.iter().filter(|tone| **tone != EMPTY).max();
         let mut done = vec![Vec::new(); tones.map_or(0, |last| *last as usize + 1)];
@@ -102,7 +101,7 @@ impl Raster {
                     _ => runs.push((tone, [x, y, x + 1, y + 1])),
                 }
             }
-            // A run just like the one above makes that one longer.
+            // A run equal to the one above extends its rectangle.
             let mut above = std::mem::take(&mut open).into_iter().peekable();
             for (tone, [left, top, right, bottom]) in runs {
                 let mut first = top;
@@ -126,7 +125,8 @@ impl Raster {
         done
     }
 
-    /// What is seen at each sample, row by row: where it is on the page, and its tone.
+    /// Returns for each sample, row by row, its position on the page and its tone. The tone is `None` if the
+    /// sample is not covered.
     pub fn samples(&self) -> impl Iterator<Item = (DVec2, Option<u32>)> {
         let place = |cell: usize| {
             DVec2::new((cell % self.grid.width) as f64, (cell / self.grid.width) as f64)
@@ -137,7 +137,8 @@ impl Raster {
         self.tones.iter().enumerate().map(sample)
     }
 
-    /// Leaves only what is nearer than another raster of the same window, which then hides as well.
+    /// Removes the samples that are behind another raster of the same window. Its surfaces hide later shapes as
+    /// well.
     pub fn keep_before(&mut self, other: &Self) {
         for (cell, &covered) in other.depths.iter().enumerate() {
             if self.depths[cell] < covered {
@@ -154,7 +155,7 @@ mod tests {
     use super::*;
     use crate::grid::tests::{WINDOW, corners, depth_at, sample};
 
-    /// Against each triangle at each sample.
+    /// Compares with each triangle at each sample.
     #[test]
     fn the_nearest_triangle_is_seen() {
         let mut random = Random::new(7);
@@ -215,7 +216,7 @@ mod tests {
         raster.split_edge(ends, slack, own).map(length)
     }
 
-    /// Nor where a valley is steep, whose edge is the farthest of all around it.
+    /// Also in a steep valley, whose edge is farther than its surroundings.
     #[test]
     fn an_edge_is_not_hidden_by_its_own_facets() {
         let v = DVec3::new;
@@ -234,7 +235,7 @@ mod tests {
         assert!(lengths(&valley, across(1.0), 1e-6, &[])[1] > 0.0);
     }
 
-    /// The slack is a length of the scene: 1 behind what is 4 away is at 5.
+    /// The slack is a length of the scene: a point 1 behind a surface at distance 4 is at distance 5.
     #[test]
     fn slack_is_a_length_for_either_kind_of_depths() {
         let v = DVec3::new;

@@ -1,4 +1,4 @@
-//! An orthographic view.
+//! An orthographic projection.
 //!
 //! Notation. `v` is the unit vector towards the viewer.
 
@@ -9,12 +9,13 @@ use glam::{DVec2, DVec3};
 pub struct View {
     right: DVec3,
     up: DVec3,
-    /// Unit vector towards the viewer.
+    /// The unit vector towards the viewer.
     pub toward: DVec3,
 }
 
 impl View {
-    /// From an azimuth and a height above the horizon, in radians; world z points up on the page.
+    /// Builds a view from an azimuth and an elevation above the horizon, in radians. World z points up on the
+    /// page.
     pub fn new(azimuth: f64, elevation: f64) -> Self {
         let (sin_a, cos_a) = libm::sincos(azimuth);
         let (sin_e, cos_e) = libm::sincos(elevation);
@@ -25,14 +26,15 @@ impl View {
         }
     }
 
-    /// From a direction towards the viewer, with what points up on the page; the two are not parallel.
+    /// Builds a view from a direction towards the viewer and the upward direction, which must not be parallel.
     pub fn upright(toward: DVec3, up: DVec3) -> Self {
         let toward = toward.normalize();
         let right = up.cross(toward).normalize();
         Self { right, up: toward.cross(right), toward }
     }
 
-    /// How bright a face with this normal is, from 0 to 1: light from the upper left, before the page.
+    /// Returns the brightness of a face with this normal, from 0 to 1. The light comes from the upper left, in
+    /// front of the page.
     pub fn brightness(&self, normal: DVec3) -> f64 {
         let on_page = self.project(normal);
         let light = DVec3::new(-0.45, 0.65, 0.61);
@@ -40,7 +42,7 @@ impl View {
         (0.22 + 0.78 * lit).clamp(0.0, 1.0)
     }
 
-    /// Right and up on the page.
+    /// Returns the coordinates on the page, to the right and upwards.
     pub fn project(&self, p: DVec3) -> DVec2 {
         DVec2::new(self.right.dot(p), self.up.dot(p))
     }

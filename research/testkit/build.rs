@@ -1,4 +1,4 @@
-//! Notes which compiler builds the crate and how: reports name it, as times depend on it.
+//! Records the compiler and the build settings. Reports contain them, because times depend on them.
 
 use std::env;
 use std::process::Command;

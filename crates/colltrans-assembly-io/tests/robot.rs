@@ -116,13 +116,16 @@ fn rows_are_assigned_by_name_or_by_order() {
     assert!(notes[1].contains(
         "joint reach exceeds its limits, 0 to 0.1 m, in 2 of 3 rows; first: 0.2 in row 1"
     ));
-    let error_text = |text: &str, rest: &BTreeMap<String, f64>| path(text, rest).unwrap_err().to_string();
+    let error_text =
+        |text: &str, rest: &BTreeMap<String, f64>| path(text, rest).unwrap_err().to_string();
     assert!(error_text("elbow,reach\n0,0\n", &none).contains("missing values for joint shoulder"));
     assert!(
         error_text("wrist,elbow\n0,0\n", &none)
             .contains("column wrist does not name an independent joint")
     );
-    assert!(error_text("0,0\n", &none).contains("rows have 2 values, expected 3, one for each joint"));
+    assert!(
+        error_text("0,0\n", &none).contains("rows have 2 values, expected 3, one for each joint")
+    );
     assert!(error_text("0,0,0\n", &rest).contains("rows have 3 values, expected 2"));
     let wrong = BTreeMap::from([("wrist".to_owned(), 0.0)]);
     assert!(error_text("0,0,0\n", &wrong).contains("joint wrist is not an independent joint"));
@@ -137,15 +140,19 @@ fn mimic_joints_follow_and_cycles_are_rejected() {
     let follows = "<axis xyz=\"0 1 0\"/><mimic joint=\"b\" multiplier=\"-2\" offset=\"0.5\"/>";
     let of_b = joint_element("b", "prismatic", ["base", "left"], "<axis xyz=\"0 1 0\"/>");
     let text = cube_link("base") + &cube_link("left") + &cube_link("right");
-    let hand = read_text(&(text.clone() + &of_b + &joint_element("a", "prismatic", ["base", "right"], follows)));
+    let hand = read_text(
+        &(text.clone() + &of_b + &joint_element("a", "prismatic", ["base", "right"], follows)),
+    );
     let hand = hand.expect("a hand");
     let table = Table::parse("0.25\n0.5\n").expect("rows");
     let (path, _) = hand.path(&table, &BTreeMap::new()).expect("a path");
     assert_eq!(path.rows(), [[0.25, 0.0], [0.5, -0.5]]);
     let ring = |of: &str| format!("<mimic joint=\"{of}\"/>");
-    let ring = read_text(&(text
-        + &joint_element("b", "prismatic", ["base", "left"], &ring("a"))
-        + &joint_element("a", "prismatic", ["base", "right"], &ring("b"))));
+    let ring = read_text(
+        &(text
+            + &joint_element("b", "prismatic", ["base", "left"], &ring("a"))
+            + &joint_element("a", "prismatic", ["base", "right"], &ring("b"))),
+    );
     assert!(ring.unwrap_err().to_string().contains("form a cycle"));
 }
 
@@ -167,8 +174,10 @@ fn pairs_exclude_neighbours_or_srdf_pairs() {
     let error_text = disabled(&file).unwrap_err().to_string();
     assert!(error_text.contains("<disable_collisions> has no attribute link2"), "{error_text}");
     // Links that a fixed joint connects never move relative to each other.
-    let held =
-        read_text(&(cube_link("a") + &cube_link("b") + &joint_element("j", "fixed", ["a", "b"], ""))).expect("a robot");
+    let held = read_text(
+        &(cube_link("a") + &cube_link("b") + &joint_element("j", "fixed", ["a", "b"], "")),
+    )
+    .expect("a robot");
     assert_eq!(held.pairs(Some(&[])).expect("pairs"), Vec::<[usize; 2]>::new());
     assert_eq!(held.moving_between(1, None), 0);
 }
@@ -179,7 +188,9 @@ fn unsupported_robots_are_rejected_with_reason() {
     let error_text = |text: String| read_text(&text).unwrap_err().to_string();
     let floating = error_text(two.clone() + &joint_element("j", "floating", ["a", "b"], ""));
     assert!(floating.contains("joint j: unsupported type floating"), "{floating}");
-    let axis = error_text(two.clone() + &joint_element("j", "revolute", ["a", "b"], "<axis xyz=\"0 0 0\"/>"));
+    let axis = error_text(
+        two.clone() + &joint_element("j", "revolute", ["a", "b"], "<axis xyz=\"0 0 0\"/>"),
+    );
     assert!(axis.contains("joint j: invalid axis [0.0, 0.0, 0.0]"), "{axis}");
     let mimic = joint_element("j", "revolute", ["a", "b"], "<mimic joint=\"k\"/>");
     assert!(error_text(two.clone() + &mimic).contains("it mimics k, which is not a moving joint"));
@@ -188,13 +199,17 @@ fn unsupported_robots_are_rejected_with_reason() {
     let capsule = "<link name=\"a\"><collision><geometry><capsule radius=\"1\" length=\"1\"/></geometry>\
                    </collision></link>";
     assert!(error_text(two + capsule).contains("duplicate link name"));
-    assert!(error_text(capsule.to_owned()).contains("replace the capsule by a cylinder and two spheres"));
+    assert!(
+        error_text(capsule.to_owned())
+            .contains("replace the capsule by a cylinder and two spheres")
+    );
 }
 
 #[test]
 fn path_cast_finds_wire_that_all_samples_miss() {
     let arm = read_arm();
-    let table = Table::parse(&std::fs::read_to_string(data_path("arm.csv")).unwrap()).expect("rows");
+    let table =
+        Table::parse(&std::fs::read_to_string(data_path("arm.csv")).unwrap()).expect("rows");
     let (path, _) = arm.path(&table, &BTreeMap::new()).expect("a path");
     let options = BodyOptions::default();
     let wire = load(data_path("wire.obj"), &options, |mesh, options| body_of(&mesh, options));
@@ -220,7 +235,9 @@ fn path_cast_finds_wire_that_all_samples_miss() {
             assert!(matches!(sample, PathOutcome::Free(_)), "{sample:?}");
         }
     }
-    let PathOutcome::Contact(contact) = first_contact_along(&path) else { panic!("the tool passes the wire") };
+    let PathOutcome::Contact(contact) = first_contact_along(&path) else {
+        panic!("the tool passes the wire")
+    };
     assert_eq!(contact.pair, [3, 4]);
     assert!(
         0.603 < contact.lower && contact.upper < 0.604 && contact.upper - contact.lower < 1e-12

@@ -6,7 +6,7 @@
 //! - Triangles, strips, fans, `polylist` and `polygons` are read. Lines, materials, cameras, lights and
 //!   animations are skipped. Skins have their rest shape.
 //! - A few lines can place a shape arbitrarily often. Therefore the placed faces are limited to one per byte of
-//!   the file and [`MOST_REPEATED`] more.
+//!   the file and [`MAX_REPEATED`] more.
 
 use std::collections::HashMap;
 
@@ -19,21 +19,21 @@ use crate::text::{quoted, without_mark};
 use crate::xml::Element;
 
 /// Maximum number of placed faces beyond one per byte.
-const MOST_REPEATED: usize = 1 << 23;
+const MAX_REPEATED: usize = 1 << 23;
 /// Maximum number of placed nodes.
-const MOST_PLACED: usize = 1 << 16;
+const MAX_PLACED: usize = 1 << 16;
 /// Maximum depth of nested nodes. Deeper ones are rejected as a possible cycle.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// Parses a COLLADA file.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn parse_dae(bytes: &[u8]) -> Result<Mesh, Fault> {
     let text = String::from_utf8_lossy(without_mark(bytes)?);
     let root = Element::parse(&text).map_err(|(place, what)| {
         let line = place.strip_prefix("line ").and_then(|line| line.parse().ok());
         Fault::new(line.map_or(Place::End, Place::Line), what)
     })?;
     if root.name != "COLLADA" {
-        return Err(at(
+        return Err(error_at(
             &root,
             format!("the root element is {}, expected COLLADA", quoted(&root.name)),
         ));
@@ -42,41 +42,44 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         ids: HashMap::new(),
         shapes: HashMap::new(),
         placed: 0,
-        left: bytes.len() + MOST_REPEATED,
+        faces_left: bytes.len() + MAX_REPEATED,
     };
-    reader.index(&root);
+    reader.index_ids(&root);
     let mut mesh = Mesh::default();
-    (mesh.unit, mesh.up) = asset(&root)?;
+    (mesh.unit, mesh.up) = unit_and_up(&root)?;
     let scene = root.first("scene").and_then(|scene| scene.first("instance_visual_scene"));
     let scene = if let Some(shown) = scene {
-        reader.named(shown)?
+        reader.referenced(shown)?
     } else {
         let library = root.first("library_visual_scenes");
         let first = library.and_then(|library| library.first("visual_scene"));
-        first.ok_or_else(|| at(&root, "the file has no scene"))?
+        first.ok_or_else(|| error_at(&root, "the file has no scene"))?
     };
     for node in scene.all("node") {
-        reader.node(node, DAffine3::IDENTITY, 0, &mut mesh)?;
+        reader.add_node(node, DAffine3::IDENTITY, 0, &mut mesh)?;
     }
-    mesh.groups = std::mem::take(&mut mesh.groups).several();
+    mesh.groups = std::mem::take(&mut mesh.groups).unless_single();
     Ok(mesh)
 }
 
 /// Builds an error at the line of an element.
-fn at(element: &Element, what: impl Into<String>) -> Fault {
+fn error_at(element: &Element, what: impl Into<String>) -> Fault {
     Fault::new(Place::Line(element.line), what)
 }
 
-/// Returns the unit in metres and the upward axis. Both are `None` without the element `asset`.
-fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
+/// Returns the unit in metres and the upward axis. Both are `None` without the element `unit_and_up`.
+fn unit_and_up(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
     let Some(asset) = root.first("asset") else { return Ok((None, None)) };
     let unit = match asset.first("unit") {
         None => None,
         Some(unit) => {
             let metres =
-                unit.numbers::<1>("meter").map_err(|e| at(unit, e))?.map(|[metres]| metres);
+                unit.numbers::<1>("meter").map_err(|e| error_at(unit, e))?.map(|[metres]| metres);
             if metres.is_some_and(|metres| !(metres.is_finite() && metres > 0.0)) {
-                return Err(at(unit, "invalid unit; accepted: a finite positive number of metres"));
+                return Err(error_at(
+                    unit,
+                    "invalid unit; accepted: a finite positive number of metres",
+                ));
             }
             metres
         }
@@ -86,7 +89,7 @@ fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
         Some((_, "Z_UP")) => DVec3::Z,
         Some((_, "X_UP")) => DVec3::X,
         Some((up, other)) => {
-            return Err(at(
+            return Err(error_at(
                 up,
                 format!("unknown axis {}; accepted: X_UP, Y_UP, Z_UP", quoted(other)),
             ));
@@ -111,25 +114,26 @@ struct Reader<'a> {
     shapes: HashMap<*const Element, Shape>,
     placed: usize,
     /// Number of faces that may still be placed.
-    left: usize,
+    faces_left: usize,
 }
 
 impl<'a> Reader<'a> {
     /// Records the ids of an element and its descendants.
-    fn index(&mut self, element: &'a Element) {
+    fn index_ids(&mut self, element: &'a Element) {
         if let Some(id) = element.get("id") {
             self.ids.entry(id).or_insert(element);
         }
-        element.children.iter().for_each(|child| self.index(child));
+        element.children.iter().for_each(|child| self.index_ids(child));
     }
 
     /// Returns the element to which the attribute `url` or `source` refers.
-    fn named(&self, element: &Element) -> Result<&'a Element, Fault> {
+    fn referenced(&self, element: &Element) -> Result<&'a Element, Fault> {
         let name = element.get("url").or_else(|| element.get("source"));
-        let name = name
-            .ok_or_else(|| at(element, format!("<{}> has neither url nor source", element.name)))?;
+        let name = name.ok_or_else(|| {
+            error_at(element, format!("<{}> has neither url nor source", element.name))
+        })?;
         let Some(id) = name.strip_prefix('#') else {
-            return Err(at(
+            return Err(error_at(
                 element,
                 format!(
                     "{} refers to another file, which is not supported; embed the geometry",
@@ -138,11 +142,11 @@ impl<'a> Reader<'a> {
             ));
         };
         let found = self.ids.get(id).copied();
-        found.ok_or_else(|| at(element, format!("unknown id {}", quoted(name))))
+        found.ok_or_else(|| error_at(element, format!("unknown id {}", quoted(name))))
     }
 
     /// Adds the faces of a node and its descendants.
-    fn node(
+    fn add_node(
         &mut self,
         node: &'a Element,
         above: DAffine3,
@@ -150,42 +154,44 @@ impl<'a> Reader<'a> {
         mesh: &mut Mesh,
     ) -> Result<(), Fault> {
         self.placed += 1;
-        if depth > DEEPEST || self.placed > MOST_PLACED {
-            return Err(at(
+        if depth > MAX_DEPTH || self.placed > MAX_PLACED {
+            return Err(error_at(
                 node,
                 format!(
-                    "nodes are nested deeper than {DEEPEST}, form a cycle, or are more than {MOST_PLACED}"
+                    "nodes are nested deeper than {MAX_DEPTH}, form a cycle, or are more than {MAX_PLACED}"
                 ),
             ));
         }
-        let world = above * transform(node)?;
+        let world = above * node_transform(node)?;
         for child in &node.children {
             match child.name.as_str() {
                 "instance_geometry" => {
-                    let geometry = self.named(child)?;
-                    self.place(geometry, child, world, mesh)?;
+                    let geometry = self.referenced(child)?;
+                    self.add_geometry(geometry, child, world, mesh)?;
                 }
                 "instance_controller" => {
-                    let controller = self.named(child)?;
+                    let controller = self.referenced(child)?;
                     let inner = controller
                         .children
                         .iter()
                         .find(|c| ["skin", "morph"].contains(&c.name.as_str()));
                     let inner = inner.ok_or_else(|| {
-                        at(controller, "the controller has neither skin nor morph")
+                        error_at(controller, "the controller has neither skin nor morph")
                     })?;
-                    self.place(self.named(inner)?, child, world, mesh)?;
+                    self.add_geometry(self.referenced(inner)?, child, world, mesh)?;
                 }
                 _ => {}
             }
         }
         // The node's own geometry forms its group, before the groups of its children begin.
         let name = node.get("name").or_else(|| node.get("id")).unwrap_or_default();
-        mesh.groups.end(name, mesh.faces.len());
+        mesh.groups.end_group(name, mesh.faces.len());
         for child in &node.children {
             match child.name.as_str() {
-                "instance_node" => self.node(self.named(child)?, world, depth + 1, mesh)?,
-                "node" => self.node(child, world, depth + 1, mesh)?,
+                "instance_node" => {
+                    self.add_node(self.referenced(child)?, world, depth + 1, mesh)?
+                }
+                "node" => self.add_node(child, world, depth + 1, mesh)?,
                 _ => {}
             }
         }
@@ -193,7 +199,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the faces of a geometry, transformed by `world`. The element `asked` is the place for errors.
-    fn place(
+    fn add_geometry(
         &mut self,
         geometry: &'a Element,
         asked: &Element,
@@ -203,15 +209,15 @@ impl<'a> Reader<'a> {
         let key: *const Element = geometry;
         if !self.shapes.contains_key(&key) {
             let shape = match geometry.first("mesh") {
-                Some(of) => self.shape(of)?,
+                Some(of) => self.read_shape(of)?,
                 None if geometry.name == "geometry" => {
-                    return Err(at(
+                    return Err(error_at(
                         geometry,
                         "unsupported geometry: not a polygon mesh; export it as polygons",
                     ));
                 }
                 None => {
-                    return Err(at(
+                    return Err(error_at(
                         asked,
                         format!("it refers to {}, expected a geometry", quoted(&geometry.name)),
                     ));
@@ -222,18 +228,18 @@ impl<'a> Reader<'a> {
         let Shape { vertices, faces, format, precision } = &self.shapes[&key];
         let count = faces.len().max(vertices.len());
         let too_many = || {
-            at(
+            error_at(
                 asked,
                 format!(
-                    "too many placed faces or vertices; accepted: one per byte and {MOST_REPEATED} more"
+                    "too many placed faces or vertices; accepted: one per byte and {MAX_REPEATED} more"
                 ),
             )
         };
-        self.left = self.left.checked_sub(count).ok_or_else(too_many)?;
+        self.faces_left = self.faces_left.checked_sub(count).ok_or_else(too_many)?;
         let base = u32::try_from(mesh.vertices.len())
             .ok()
             .and_then(|base| base.checked_add(u32::try_from(vertices.len()).ok()?).map(|_| base));
-        let base = base.ok_or_else(|| at(asked, "more than 4,294,967,295 vertices"))?;
+        let base = base.ok_or_else(|| error_at(asked, "more than 4,294,967,295 vertices"))?;
         let columns = [world.x_axis, world.y_axis, world.z_axis].map(DVec3::length);
         let precision = precision * columns.into_iter().fold(0.0, f64::max);
         if precision > mesh.precision {
@@ -252,7 +258,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the polygons of a mesh.
-    fn shape(&self, mesh: &'a Element) -> Result<Shape, Fault> {
+    fn read_shape(&self, mesh: &'a Element) -> Result<Shape, Fault> {
         let mut shape = Mesh::default();
         let mut bases: HashMap<*const Element, u32> = HashMap::new();
         for of in &mesh.children {
@@ -260,26 +266,29 @@ impl<'a> Reader<'a> {
             if !["triangles", "trifans", "tristrips", "polylist", "polygons"].contains(&kind) {
                 continue;
             }
-            let inputs = Inputs::of(of)?;
+            let inputs = Inputs::parse(of)?;
             let Some(vertex) = inputs.vertex else {
-                return Err(at(of, format!("<{kind}> has no input VERTEX, which is required")));
+                return Err(error_at(
+                    of,
+                    format!("<{kind}> has no input VERTEX, which is required"),
+                ));
             };
-            let source = self.positions(vertex)?;
+            let source = self.position_source(vertex)?;
             let key: *const Element = source;
             let base = if let Some(&base) = bases.get(&key) {
                 base
             } else {
                 let base = shape.vertices.len() as u32;
-                let (vectors, printed) = self.vectors(source)?;
+                let (vectors, printed) = self.source_vectors(source)?;
                 shape.vertices.extend(vectors);
                 shape.printed.extend(printed);
                 bases.insert(key, base);
                 base
             };
             let total = shape.vertices.len() as u32 - base;
-            for corners in inputs.faces(of)? {
+            for corners in inputs.read_faces(of)? {
                 if let Some(beyond) = corners.iter().find(|&&v| v >= total) {
-                    return Err(at(
+                    return Err(error_at(
                         of,
                         format!(
                             "vertex index {beyond} is out of range; there are {total} vertices"
@@ -295,26 +304,29 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns the source of the positions for an input of vertices.
-    fn positions(&self, vertex: &Element) -> Result<&'a Element, Fault> {
-        let vertices = self.named(vertex)?;
+    fn position_source(&self, vertex: &Element) -> Result<&'a Element, Fault> {
+        let vertices = self.referenced(vertex)?;
         let position = vertices.all("input").find(|i| i.get("semantic") == Some("POSITION"));
-        self.named(position.ok_or_else(|| at(vertices, "the vertices have no input POSITION"))?)
+        self.referenced(
+            position.ok_or_else(|| error_at(vertices, "the vertices have no input POSITION"))?,
+        )
     }
 
     /// Returns the vectors of a source, and their printed forms.
-    fn vectors(&self, source: &Element) -> Result<(Vec<DVec3>, Vec<[Printed; 3]>), Fault> {
+    fn source_vectors(&self, source: &Element) -> Result<(Vec<DVec3>, Vec<[Printed; 3]>), Fault> {
         let accessor = source.first("technique_common").and_then(|t| t.first("accessor"));
-        let accessor = accessor.ok_or_else(|| at(source, "the source has no accessor"))?;
-        let array = self.named(accessor)?;
+        let accessor = accessor.ok_or_else(|| error_at(source, "the source has no accessor"))?;
+        let array = self.referenced(accessor)?;
         if array.name != "float_array" {
-            return Err(at(
+            return Err(error_at(
                 array,
                 format!("positions refer to {}, expected a float_array", quoted(&array.name)),
             ));
         }
-        let numbers: Vec<f64> = words(array)?;
-        let printed: Vec<Printed> = array.text.split_whitespace().map(Printed::of).collect();
-        let [count, stride, offset] = ["count", "stride", "offset"].map(|key| whole(accessor, key));
+        let numbers: Vec<f64> = parse_numbers(array)?;
+        let printed: Vec<Printed> = array.text.split_whitespace().map(Printed::from_text).collect();
+        let [count, stride, offset] =
+            ["count", "stride", "offset"].map(|key| parse_integer(accessor, key));
         let (count, stride, offset) =
             (count?.unwrap_or(0), stride?.unwrap_or(1), offset?.unwrap_or(0));
         let named =
@@ -322,14 +334,14 @@ impl<'a> Reader<'a> {
         let places: Vec<usize> =
             accessor.all("param").enumerate().filter_map(named).take(3).collect();
         let [x, y, z] = places[..] else {
-            return Err(at(accessor, "positions need three named coordinates"));
+            return Err(error_at(accessor, "positions need three named coordinates"));
         };
         // An index that overflows is beyond any array.
         let last =
             |count: usize| (count - 1).checked_mul(stride)?.checked_add(offset)?.checked_add(z);
         let fits = count == 0 || last(count).is_some_and(|last| last < numbers.len());
         if x.max(y).max(z) >= stride || !fits {
-            return Err(at(
+            return Err(error_at(
                 accessor,
                 format!(
                     "{count} positions extend beyond the {} numbers of their array",
@@ -357,12 +369,12 @@ struct Inputs<'a> {
 
 impl<'a> Inputs<'a> {
     /// Reads the layout from the elements `input`.
-    fn of(faces: &'a Element) -> Result<Self, Fault> {
+    fn parse(faces: &'a Element) -> Result<Self, Fault> {
         let mut inputs = Self { stride: 1, offset: 0, vertex: None };
         for input in faces.all("input") {
-            let offset = whole(input, "offset")?.unwrap_or(0);
+            let offset = parse_integer(input, "offset")?.unwrap_or(0);
             if offset > 255 {
-                return Err(at(
+                return Err(error_at(
                     input,
                     format!("offset {offset} is out of range; accepted: 0 to 255"),
                 ));
@@ -376,16 +388,16 @@ impl<'a> Inputs<'a> {
     }
 
     /// Returns the vertex indices of each list of corners.
-    fn lists(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
+    fn vertex_lists(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
         let list = |p: &Element| {
-            let indices: Vec<u32> = words(p)?;
+            let indices: Vec<u32> = parse_numbers(p)?;
             if !indices.len().is_multiple_of(self.stride) {
                 let what = format!(
                     "{} indices are not a multiple of {}, the number for each corner",
                     indices.len(),
                     self.stride
                 );
-                return Err(at(p, what));
+                return Err(error_at(p, what));
             }
             Ok(indices.into_iter().skip(self.offset).step_by(self.stride).collect())
         };
@@ -393,14 +405,14 @@ impl<'a> Inputs<'a> {
     }
 
     /// Returns the faces of an element, without those of fewer than three corners.
-    fn faces(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
-        let lists = self.lists(of)?;
+    fn read_faces(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
+        let lists = self.vertex_lists(of)?;
         let mut faces: Vec<Vec<u32>> = Vec::new();
         match of.name.as_str() {
             "triangles" => {
                 for list in lists {
                     if !list.len().is_multiple_of(3) {
-                        return Err(at(
+                        return Err(error_at(
                             of,
                             format!("{} corners are not a multiple of 3", list.len()),
                         ));
@@ -424,17 +436,17 @@ impl<'a> Inputs<'a> {
             "polylist" => {
                 let counts = of
                     .first("vcount")
-                    .ok_or_else(|| at(of, "<polylist> has no vcount, which is required"))?;
+                    .ok_or_else(|| error_at(of, "<polylist> has no vcount, which is required"))?;
                 let corners: Vec<u32> = lists.into_iter().flatten().collect();
                 let mut rest = &corners[..];
-                for count in words::<usize>(counts)? {
-                    let beyond = || at(counts, "vcount has more corners than the lists");
+                for count in parse_numbers::<usize>(counts)? {
+                    let beyond = || error_at(counts, "vcount has more corners than the lists");
                     let (face, others) = rest.split_at_checked(count).ok_or_else(beyond)?;
                     faces.push(face.to_vec());
                     rest = others;
                 }
                 if !rest.is_empty() {
-                    return Err(at(
+                    return Err(error_at(
                         counts,
                         format!("{} corners are not used by vcount", rest.len()),
                     ));
@@ -442,7 +454,7 @@ impl<'a> Inputs<'a> {
             }
             _ => {
                 if let Some(holed) = of.first("ph") {
-                    return Err(at(
+                    return Err(error_at(
                         holed,
                         "polygons with holes are not supported; export triangles",
                     ));
@@ -450,10 +462,13 @@ impl<'a> Inputs<'a> {
                 faces.extend(lists);
             }
         }
-        let promised = whole(of, "count")?;
+        let promised = parse_integer(of, "count")?;
         let is_list = !matches!(of.name.as_str(), "trifans" | "tristrips");
         if let Some(count) = promised.filter(|count| is_list && *count != faces.len()) {
-            return Err(at(of, format!("count is {count}, but there are {} faces", faces.len())));
+            return Err(error_at(
+                of,
+                format!("count is {count}, but there are {} faces", faces.len()),
+            ));
         }
         faces.retain(|face| face.len() > 2);
         Ok(faces)
@@ -461,44 +476,47 @@ impl<'a> Inputs<'a> {
 }
 
 /// Parses the numbers in an element.
-fn words<T: std::str::FromStr>(element: &Element) -> Result<Vec<T>, Fault> {
+fn parse_numbers<T: std::str::FromStr>(element: &Element) -> Result<Vec<T>, Fault> {
     let number = |word: &str| {
         let refused =
-            || at(element, format!("invalid number {} in <{}>", quoted(word), element.name));
+            || error_at(element, format!("invalid number {} in <{}>", quoted(word), element.name));
         word.parse().map_err(|_| refused())
     };
     element.text.split_whitespace().map(number).collect()
 }
 
 /// Parses an integer in an attribute; `None` if the attribute is missing.
-fn whole(element: &Element, key: &str) -> Result<Option<usize>, Fault> {
+fn parse_integer(element: &Element, key: &str) -> Result<Option<usize>, Fault> {
     let parsed = element.get(key).map(|text| text.trim().parse::<usize>());
     let refused = |_| {
-        at(element, format!("invalid {key} of <{}>; expected a non-negative integer", element.name))
+        error_at(
+            element,
+            format!("invalid {key} of <{}>; expected a non-negative integer", element.name),
+        )
     };
     parsed.transpose().map_err(refused)
 }
 
 /// Returns the product of the transforms of a node.
-fn transform(node: &Element) -> Result<DAffine3, Fault> {
+fn node_transform(node: &Element) -> Result<DAffine3, Fault> {
     let mut all = DAffine3::IDENTITY;
     for child in &node.children {
         let own = match child.name.as_str() {
             "matrix" => {
-                let [a, b, c, _] = rows(&numbers::<16>(child)?);
+                let [a, b, c, _] = matrix_rows(&exact_exact_numbers::<16>(child)?);
                 let matrix = DMat3::from_cols(a.truncate(), b.truncate(), c.truncate()).transpose();
                 DAffine3::from_mat3_translation(matrix, DVec3::new(a.w, b.w, c.w))
             }
-            "translate" => DAffine3::from_translation(DVec3::from_array(numbers(child)?)),
-            "scale" => DAffine3::from_scale(DVec3::from_array(numbers(child)?)),
+            "translate" => DAffine3::from_translation(DVec3::from_array(exact_numbers(child)?)),
+            "scale" => DAffine3::from_scale(DVec3::from_array(exact_numbers(child)?)),
             "rotate" => {
-                let [x, y, z, degrees] = numbers(child)?;
+                let [x, y, z, degrees] = exact_numbers(child)?;
                 let axis = DVec3::new(x, y, z).try_normalize();
-                let axis = axis.ok_or_else(|| at(child, "the axis of a rotation is zero"))?;
+                let axis = axis.ok_or_else(|| error_at(child, "the axis of a rotation is zero"))?;
                 DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
             }
             "lookat" | "skew" => {
-                return Err(at(
+                return Err(error_at(
                     child,
                     format!("<{}> is not supported; export a matrix", child.name),
                 ));
@@ -507,19 +525,19 @@ fn transform(node: &Element) -> Result<DAffine3, Fault> {
         };
         all *= own;
     }
-    if all.is_finite() { Ok(all) } else { Err(at(node, "the transform is not finite")) }
+    if all.is_finite() { Ok(all) } else { Err(error_at(node, "the transform is not finite")) }
 }
 
 /// Returns the rows of a matrix.
-fn rows(numbers: &[f64; 16]) -> [glam::DVec4; 4] {
+fn matrix_rows(numbers: &[f64; 16]) -> [glam::DVec4; 4] {
     [0, 1, 2, 3].map(|k| glam::DVec4::from_slice(&numbers[4 * k..]))
 }
 
 /// Parses exactly `N` numbers in an element.
-fn numbers<const N: usize>(element: &Element) -> Result<[f64; N], Fault> {
-    let found: Vec<f64> = words(element)?;
+fn exact_numbers<const N: usize>(element: &Element) -> Result<[f64; N], Fault> {
+    let found: Vec<f64> = parse_numbers(element)?;
     let count = found.len();
-    found
-        .try_into()
-        .map_err(|_| at(element, format!("<{}> has {count} numbers, expected {N}", element.name)))
+    found.try_into().map_err(|_| {
+        error_at(element, format!("<{}> has {count} numbers, expected {N}", element.name))
+    })
 }

@@ -71,9 +71,9 @@ const OUTLIERS: usize = 16;
 /// that chance explains them.
 const SURE: f64 = 20.0;
 /// Maximum evidence of one number, in bits: [`MANY`] of these are sure.
-const MOST_BITS: f64 = SURE / MANY as f64;
+const MAX_BITS: f64 = SURE / MANY as f64;
 /// Maximum number of coordinates that are examined. If there are more, a sample at equal distances is used.
-const LOOKED_AT: usize = 1 << 16;
+const MAX_EXAMINED: usize = 1 << 16;
 
 /// The printed form of a number, as far as its value does not show it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -87,7 +87,7 @@ pub(crate) struct Printed {
 
 impl Printed {
     /// Returns the form of a number's text.
-    pub(crate) fn of(text: &str) -> Self {
+    pub(crate) fn from_text(text: &str) -> Self {
         let text = text.as_bytes();
         let end = text.iter().position(|byte| matches!(byte, b'e' | b'E'));
         let mantissa = &text[..end.unwrap_or(text.len())];
@@ -112,12 +112,12 @@ enum FixedPlaces {
 
 /// Returns the places that nearly all numbers have in common, if these are two decimals or more and some of the
 /// numbers end in zeros. A single decimal shows nothing, because `1.0` is also the shortest text of a number.
-fn fixed_places<'a>(numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedPlaces> {
+fn fixed_places<'a>(finite_numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedPlaces> {
     // For each number of places, without and with an exponent: how many numbers end in another digit than 0, and
     // how many in 0.
     let mut counts = [[[0; 2]; 2]; 256];
     let mut total = 0;
-    for number in numbers {
+    for number in finite_numbers {
         let count = &mut counts[usize::from(number.places)][usize::from(number.has_exponent)];
         count[usize::from(number.is_padded)] += 1;
         total += 1;
@@ -142,20 +142,22 @@ impl NumberFormat {
     /// precision.
     pub(crate) fn of_text(mesh: &Mesh, single: bool) -> Self {
         let different = different_numbers(mesh);
-        let numbers = numbers(&different, single);
+        let numbers = finite_numbers(&different, single);
         let rounded: Vec<Decimal> =
-            numbers.iter().filter(|x| x.may_be_rounded).map(|x| x.decimal).collect();
+            finite_numbers.iter().filter(|x| x.may_be_rounded).map(|x| x.decimal).collect();
         let read_as = if single { Self::Single } else { Self::Double };
         let found = Self::of_rounded(&rounded, different.values()).unwrap_or(read_as);
         let largest = largest_magnitude(mesh.vertices_in_use());
         let is_shortest = || found != Self::Double && are_shortest_singles(&rounded);
         // A few numbers may not show how they are rounded.
-        let [digits, decimals] = [most(&rounded, |x| x.digits), most(&rounded, |x| x.decimals)];
+        let [digits, decimals] =
+            [typical_maximum(&rounded, |x| x.digits), typical_maximum(&rounded, |x| x.decimals)];
         let others = [Self::Digits(digits as u32), Self::Decimals(decimals.max(0) as u32)];
         let is_other = || {
-            found == Self::Double && others.into_iter().any(|format| are_singles(&numbers, format))
+            found == Self::Double
+                && others.into_iter().any(|format| are_singles(&finite_numbers, format))
         };
-        let is_single = || is_shortest() || are_singles(&numbers, found) || is_other();
+        let is_single = || is_shortest() || are_singles(&finite_numbers, found) || is_other();
         if Self::Single.precision(largest) > found.precision(largest) && is_single() {
             Self::Single
         } else {
@@ -171,8 +173,8 @@ impl NumberFormat {
         if !is_nearly_all(count, different.len()) {
             return Self::Double;
         }
-        let numbers = numbers(&different, false);
-        if are_singles(&numbers, Self::Double) { Self::Single } else { Self::Double }
+        let numbers = finite_numbers(&different, false);
+        if are_singles(&finite_numbers, Self::Double) { Self::Single } else { Self::Double }
     }
 
     /// Returns decimals or digits, if numbers that may be rounded show that they are; `None` if they are exact, or
@@ -181,7 +183,8 @@ impl NumberFormat {
         rounded: &[Decimal],
         printed: impl Iterator<Item = &'a Printed>,
     ) -> Option<Self> {
-        let (digits, decimals) = (most(rounded, |x| x.digits), most(rounded, |x| x.decimals));
+        let (digits, decimals) =
+            (typical_maximum(rounded, |x| x.digits), typical_maximum(rounded, |x| x.decimals));
         let is_fixed = || match fixed_places(printed) {
             Some(FixedPlaces::Decimals(fixed)) => fixed == decimals,
             Some(FixedPlaces::Digits(fixed)) => fixed == digits,
@@ -217,7 +220,7 @@ impl NumberFormat {
             Self::Single => largest / (1_u64 << 22) as f64,
             Self::Decimals(decimals) => of_doubles.max(2.0 * power_of_ten(-(decimals as i32))),
             Self::Digits(digits) => {
-                let first = Decimal::of(largest, false, &mut String::new());
+                let first = Decimal::shortest(largest, false, &mut String::new());
                 let exponent = first.map_or(0, |first| first.exponent());
                 of_doubles.max(2.0 * power_of_ten(exponent - digits as i32 + 1))
             }
@@ -235,27 +238,27 @@ struct Number {
 /// Returns the different coordinates of vertices in use without their signs, as bits, and how each is printed.
 fn different_numbers(mesh: &Mesh) -> HashMap<u64, Printed> {
     let used: Vec<usize> = mesh.indices_in_use().collect();
-    let step = used.len().div_ceil(LOOKED_AT / 3).max(1);
-    let looked_at = used.into_iter().step_by(step).flat_map(|v| {
+    let step = used.len().div_ceil(MAX_EXAMINED / 3).max(1);
+    let examined = used.into_iter().step_by(step).flat_map(|v| {
         let printed = mesh.printed.get(v).copied().unwrap_or_default();
         mesh.vertices[v].to_array().into_iter().zip(printed)
     });
-    looked_at.map(|(x, printed)| (x.abs().to_bits(), printed)).collect()
+    examined.map(|(x, printed)| (x.abs().to_bits(), printed)).collect()
 }
 
 /// Returns the numbers that are finite and not 0.
-fn numbers(different: &HashMap<u64, Printed>, single: bool) -> Vec<Number> {
+fn finite_numbers(different: &HashMap<u64, Printed>, single: bool) -> Vec<Number> {
     let mut text = String::new();
     let number = |(bits, printed): (&u64, &Printed)| {
-        let decimal = Decimal::of(f64::from_bits(*bits), single, &mut text)?;
+        let decimal = Decimal::shortest(f64::from_bits(*bits), single, &mut text)?;
         Some(Number { decimal, may_be_rounded: decimal.may_be_rounded(*printed) })
     };
     different.iter().filter_map(number).collect()
 }
 
 /// Returns the largest count, except for those of one number in [`OUTLIERS`].
-fn most(numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
-    let mut counts: Vec<i32> = numbers.iter().map(count).collect();
+fn typical_maximum(finite_numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
+    let mut counts: Vec<i32> = finite_numbers.iter().map(count).collect();
     counts.sort_unstable_by_key(|count| std::cmp::Reverse(*count));
     counts.get(counts.len() / OUTLIERS).copied().unwrap_or(0)
 }
@@ -264,14 +267,14 @@ fn most(numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
 /// digits.
 fn are_shortest_singles(rounded: &[Decimal]) -> bool {
     let count = rounded.iter().filter(|x| x.is_single).count();
-    most(rounded, |x| x.digits) > 7 && is_nearly_all(count, rounded.len())
+    typical_maximum(rounded, |x| x.digits) > 7 && is_nearly_all(count, rounded.len())
 }
 
 /// Checks whether nearly all numbers are numbers in single precision, printed in a format, and not by chance.
-fn are_singles(numbers: &[Number], format: NumberFormat) -> bool {
-    let bits = numbers.iter().filter_map(|number| number.single_bits(format));
+fn are_singles(finite_numbers: &[Number], format: NumberFormat) -> bool {
+    let bits = finite_numbers.iter().filter_map(|number| number.single_bits(format));
     let (count, bits) = bits.fold((0, 0.0), |(count, sum), bits| (count + 1, sum + bits));
-    bits >= SURE && is_nearly_all(count, numbers.len())
+    bits >= SURE && is_nearly_all(count, finite_numbers.len())
 }
 
 /// Checks whether a number is one in single precision.
@@ -281,14 +284,15 @@ fn is_single(x: f64) -> bool {
 
 /// Checks whether all numbers are multiples of a number of more than [`GRID`] units in their last decimal: those of a
 /// drawing on a grid, such as 2.54. Rounded numbers have no such divisor.
-fn is_grid(numbers: &[Decimal]) -> bool {
-    let last = numbers.iter().map(|number| number.decimals).max().unwrap_or(0);
+fn is_grid(finite_numbers: &[Decimal]) -> bool {
+    let last = finite_numbers.iter().map(|number| number.decimals).max().unwrap_or(0);
     let units = |number: &Decimal| {
         let power = 10_u64.checked_pow(u32::try_from(last - number.decimals).ok()?)?;
         number.mantissa.checked_mul(power)
     };
-    let divisor =
-        numbers.iter().try_fold(0, |divisor, number| Some(common_divisor(divisor, units(number)?)));
+    let divisor = finite_numbers
+        .iter()
+        .try_fold(0, |divisor, number| Some(common_divisor(divisor, units(number)?)));
     divisor.is_some_and(|divisor| divisor > GRID)
 }
 
@@ -342,18 +346,18 @@ impl Number {
         }
         if *may_be_rounded {
             let spacing = f64::from(nearest.next_up()) - f64::from(nearest);
-            return Some((spacing / place).log2().clamp(0.0, MOST_BITS));
+            return Some((spacing / place).log2().clamp(0.0, MAX_BITS));
         }
         // Quarters, and binary fractions of few digits, are numbers that people write.
         let unused = (nearest.to_bits() | 1 << (f32::MANTISSA_DIGITS - 1)).trailing_zeros();
-        Some(if decimal.decimals > 2 && unused < 4 { MOST_BITS } else { 0.0 })
+        Some(if decimal.decimals > 2 && unused < 4 { MAX_BITS } else { 0.0 })
     }
 }
 
 impl Decimal {
     /// Returns the shortest decimal of a finite positive number; `None` for other numbers. The buffer `text` is
     /// overwritten.
-    fn of(x: f64, single: bool, text: &mut String) -> Option<Self> {
+    fn shortest(x: f64, single: bool, text: &mut String) -> Option<Self> {
         if !(x.is_finite() && x > 0.0) {
             return None;
         }
@@ -399,24 +403,24 @@ mod tests {
 
     /// Returns the format of numbers that are printed by `print`.
     fn format_of(
-        numbers: impl Iterator<Item = f64>,
+        finite_numbers: impl Iterator<Item = f64>,
         print: impl Fn(f64) -> String,
     ) -> NumberFormat {
-        format_of_words(&numbers.map(print).collect::<Vec<_>>())
+        format_of_words(&finite_numbers.map(print).collect::<Vec<_>>())
     }
 
     fn format_of_words(words: &[String]) -> NumberFormat {
         let mut mesh = Mesh::default();
         for [x, y, z] in words.as_chunks().0 {
-            let numbers = [x, y, z].map(|word| number(word).unwrap());
-            mesh.vertices.push(numbers.map(|(x, _)| x).into());
-            mesh.printed.push(numbers.map(|(_, printed)| printed));
+            let finite_numbers = [x, y, z].map(|word| number(word).unwrap());
+            mesh.vertices.push(finite_numbers.map(|(x, _)| x).into());
+            mesh.printed.push(finite_numbers.map(|(_, printed)| printed));
         }
         NumberFormat::of_text(&mesh, false)
     }
 
     /// Prints a number like `%.{digits}g`.
-    fn general(x: f64, digits: usize) -> String {
+    fn print_general(x: f64, digits: usize) -> String {
         let scientific = format!("{x:.*e}", digits - 1);
         let (mantissa, exponent) = scientific.split_once('e').unwrap();
         let exponent: i32 = exponent.parse().unwrap();
@@ -429,28 +433,29 @@ mod tests {
     }
 
     /// Prints a number like `%.{digits}e`, with one digit fewer after the point.
-    fn significant(x: f64, digits: usize) -> String {
+    fn print_significant(x: f64, digits: usize) -> String {
         format!("{x:.*e}", digits - 1)
     }
 
-    fn random(low: f64, high: f64) -> impl Iterator<Item = f64> {
+    fn random_numbers(low: f64, high: f64) -> impl Iterator<Item = f64> {
         let mut random = Random::new(7);
         (0..300).map(move |_| random.range(low, high))
     }
 
     #[test]
-    fn what_writers_print_is_recognised() {
+    fn printed_formats_are_recognised() {
         for places in 4..=9 {
-            let printed = format_of(random(-300.0, 300.0), |x| format!("{x:.places$}"));
+            let printed = format_of(random_numbers(-300.0, 300.0), |x| format!("{x:.places$}"));
             assert_eq!(printed, NumberFormat::Decimals(places as u32));
         }
         for digits in 5..=15 {
-            let printed = format_of(random(-300.0, 300.0), |x| significant(x, digits));
+            let printed =
+                format_of(random_numbers(-300.0, 300.0), |x| print_significant(x, digits));
             assert_eq!(printed, NumberFormat::Digits(digits as u32));
         }
-        let all = format_of(random(-300.0, 300.0), |x| x.to_string());
+        let all = format_of(random_numbers(-300.0, 300.0), |x| x.to_string());
         assert_eq!(all, NumberFormat::Double);
-        let single = format_of(random(-300.0, 300.0), |x| (x as f32).to_string());
+        let single = format_of(random_numbers(-300.0, 300.0), |x| (x as f32).to_string());
         assert_eq!(single, NumberFormat::Single);
     }
 
@@ -458,26 +463,31 @@ mod tests {
     #[test]
     fn numbers_in_single_precision_are_recognised_in_longer_text() {
         let prints: [fn(f64) -> String; 4] = [
-            |x| general(f64::from(x as f32), 9),
-            |x| significant(f64::from(x as f32), 9),
-            |x| significant(f64::from(x as f32), 12),
+            |x| print_general(f64::from(x as f32), 9),
+            |x| print_significant(f64::from(x as f32), 9),
+            |x| print_significant(f64::from(x as f32), 12),
             |x| f64::from(x as f32).to_string(),
         ];
         for (k, print) in prints.into_iter().enumerate() {
             for size in [1e-3, 1.0, 25.4, 300.0, 5e3, 3e4, 2e5] {
-                let found = format_of(random(-size, size), print);
+                let found = format_of(random_numbers(-size, size), print);
                 assert_eq!(found, NumberFormat::Single, "print {k} of {size}");
                 // A box has few coordinates.
-                let few = format_of(random(-size, size).take(12), print);
+                let few = format_of(random_numbers(-size, size).take(12), print);
                 assert_eq!(few, NumberFormat::Single, "print {k} of few of {size}");
             }
         }
         for size in [3.0, 25.4, 5e3, 2e5] {
             let eight = |x: f64| format!("{:.8}", f64::from(x as f32));
-            assert_eq!(format_of(random(-size, size), eight), NumberFormat::Single, "{size}");
+            assert_eq!(
+                format_of(random_numbers(-size, size), eight),
+                NumberFormat::Single,
+                "{size}"
+            );
         }
         // Eight decimals of small numbers are coarser than single precision.
-        let small = format_of(random(-0.01, 0.01), |x| format!("{:.8}", f64::from(x as f32)));
+        let small =
+            format_of(random_numbers(-0.01, 0.01), |x| format!("{:.8}", f64::from(x as f32)));
         assert_eq!(small, NumberFormat::Decimals(8));
     }
 
@@ -485,25 +495,27 @@ mod tests {
     fn doubles_and_drawings_are_not_in_single_precision() {
         for size in [1e-3, 1.0, 25.4, 300.0, 5e3, 2e5, 1e9] {
             for digits in [8, 9, 10, 15] {
-                let found = format_of(random(-size, size), |x| significant(x, digits));
+                let found =
+                    format_of(random_numbers(-size, size), |x| print_significant(x, digits));
                 assert_eq!(found, NumberFormat::Digits(digits as u32), "{size}");
             }
-            let found = format_of(random(-size, size), |x| x.to_string());
+            let found = format_of(random_numbers(-size, size), |x| x.to_string());
             assert_eq!(found, NumberFormat::Double, "{size}");
         }
         // Coordinates of the UTM grid: integers, halves and quarters use all bits of single precision.
-        let utm = random(0.0, 64.0).map(|x| 4_649_776.0 + x.round() / 4.0);
+        let utm = random_numbers(0.0, 64.0).map(|x| 4_649_776.0 + x.round() / 4.0);
         assert_eq!(format_of(utm, |x| x.to_string()), NumberFormat::Double);
         // Multiples of 1/16 with long integer parts.
-        let inches = random(0.0, 1e3).map(|x| (16.0 * x).round() / 16.0);
+        let inches = random_numbers(0.0, 1e3).map(|x| (16.0 * x).round() / 16.0);
         assert_eq!(format_of(inches, |x| x.to_string()), NumberFormat::Double);
     }
 
     #[test]
     fn doubles_that_were_in_single_precision_are_recognised() {
         let mesh = |round: fn(f64) -> f64| {
-            let numbers: Vec<f64> = random(-20.0, 20.0).map(round).collect();
-            let vertices = numbers.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect();
+            let finite_numbers: Vec<f64> = random_numbers(-20.0, 20.0).map(round).collect();
+            let vertices =
+                finite_numbers.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect();
             NumberFormat::of_doubles(&Mesh::new(vertices, Vec::new()))
         };
         assert_eq!(mesh(|x| f64::from(x as f32)), NumberFormat::Single);
@@ -513,34 +525,41 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_with_exponents_are_rounded() {
+    fn integers_with_exponents_are_rounded() {
         for (low, high) in [(5e5, 2e7), (4.2e6, 4.3e6), (1e50, 9e50)] {
             for digits in 5..=6 {
-                let printed = format_of(random(low, high), |x| general(x, digits));
+                let printed = format_of(random_numbers(low, high), |x| print_general(x, digits));
                 assert_eq!(printed, NumberFormat::Digits(digits as u32), "{low} to {high}");
             }
         }
-        let printed = format_of(random(-5e6, 5e6), |x| significant(x, 7));
+        let printed = format_of(random_numbers(-5e6, 5e6), |x| print_significant(x, 7));
         assert_eq!(printed, NumberFormat::Digits(7));
         assert_eq!(NumberFormat::Digits(7).precision(5e6), 2.0);
         assert_eq!(NumberFormat::Digits(6).precision(1.54245e7), 200.0);
         // Integers without an exponent, and drawings with one.
-        let whole = format_of(random(-5e6, 5e6), |x| format!("{x:.0}"));
+        let whole = format_of(random_numbers(-5e6, 5e6), |x| format!("{x:.0}"));
         assert_eq!(whole, NumberFormat::Double);
         let drawing = [12.5, 1000.0, 7.25, 104.775, 0.5, 25.4, 3.175, 12.7, 0.0];
-        assert_eq!(format_of(drawing.into_iter(), |x| significant(x, 7)), NumberFormat::Double);
+        assert_eq!(
+            format_of(drawing.into_iter(), |x| print_significant(x, 7)),
+            NumberFormat::Double
+        );
     }
 
     #[test]
-    fn few_digits_are_rounded_where_zeros_fill_them_up() {
+    fn few_digits_padded_with_zeros_are_rounded() {
         for (places, size) in [(2, 9.0), (2, 90.0), (3, 1.0), (3, 9.0), (4, 0.9)] {
-            let printed = format_of(random(-size, size), |x| format!("{x:.places$}"));
+            let printed = format_of(random_numbers(-size, size), |x| format!("{x:.places$}"));
             assert_eq!(printed, NumberFormat::Decimals(places as u32), "{places}");
             // The same numbers without these zeros, as in drawings.
             let short = |x: f64| format!("{x:.places$}").parse::<f64>().unwrap().to_string();
-            assert_eq!(format_of(random(-size, size), short), NumberFormat::Double, "{places}");
+            assert_eq!(
+                format_of(random_numbers(-size, size), short),
+                NumberFormat::Double,
+                "{places}"
+            );
         }
-        let printed = format_of(random(-5.0, 5.0), |x| significant(x, 4));
+        let printed = format_of(random_numbers(-5.0, 5.0), |x| print_significant(x, 4));
         assert_eq!(printed, NumberFormat::Digits(4));
         // A drawing padded to more places than it has, and numbers like `1.0`.
         let drawing = [0.5, 1.2, 3.4, 0.1, 2.6, 7.7, 0.0, 1.0, 9.3];
@@ -549,18 +568,20 @@ mod tests {
     }
 
     #[test]
-    fn one_number_with_more_digits_changes_nothing() {
+    fn single_outlier_does_not_change_the_format() {
         let exact = 0.123_456_789_012_345_67;
         for digits in [7, 9, 12, 17] {
-            let mut words: Vec<String> = random(-9.0, 9.0).map(|x| general(x, 6)).collect();
-            words[0] = general(exact, digits);
+            let mut words: Vec<String> =
+                random_numbers(-9.0, 9.0).map(|x| print_general(x, 6)).collect();
+            words[0] = print_general(exact, digits);
             assert_eq!(format_of_words(&words), NumberFormat::Digits(6), "{digits}");
-            let mut words: Vec<String> = random(-9.0, 9.0).map(|x| format!("{x:.3}")).collect();
-            words[0] = general(exact, digits);
+            let mut words: Vec<String> =
+                random_numbers(-9.0, 9.0).map(|x| format!("{x:.3}")).collect();
+            words[0] = print_general(exact, digits);
             assert_eq!(format_of_words(&words), NumberFormat::Decimals(3), "{digits}");
             let mut words: Vec<String> =
-                random(-9.0, 9.0).map(|x| (x as f32).to_string()).collect();
-            words[0] = general(exact, digits);
+                random_numbers(-9.0, 9.0).map(|x| (x as f32).to_string()).collect();
+            words[0] = print_general(exact, digits);
             assert_eq!(format_of_words(&words), NumberFormat::Single, "{digits}");
         }
     }
@@ -574,25 +595,26 @@ mod tests {
             &[104.775, 12.7, 25.4, 50.8, 3.175, 88.9, 0.0, 6.35, 19.05],
             &[1.0 / 256.0, 1.0 / 1024.0, 3.0 + 1.0 / 2048.0, 17.0, 0.125, 5.5],
         ];
-        for numbers in cases {
-            let found = format_of(numbers.iter().copied(), |x| x.to_string());
-            assert_eq!(found, NumberFormat::Double, "{numbers:?}");
+        for finite_numbers in cases {
+            let found = format_of(finite_numbers.iter().copied(), |x| x.to_string());
+            assert_eq!(found, NumberFormat::Double, "{finite_numbers:?}");
         }
     }
 
     #[test]
-    fn numbers_of_a_grid_are_exact() {
+    fn multiples_of_a_step_are_exact() {
         for step in ["2.54", "1.5875", "0.0254", "0.396875"] {
             let step: f64 = step.parse().unwrap();
-            let numbers = random(1.0, 60.0).map(|k| k.round() * step);
-            let found = format_of(numbers, |x| format!("{x:.6}").trim_end_matches('0').to_owned());
+            let finite_numbers = random_numbers(1.0, 60.0).map(|k| k.round() * step);
+            let found =
+                format_of(finite_numbers, |x| format!("{x:.6}").trim_end_matches('0').to_owned());
             assert_eq!(found, NumberFormat::Double, "{step}");
         }
     }
 
     #[test]
-    fn exact_numbers_beside_rounded_ones_change_nothing() {
-        let mixed = random(-3.0, 3.0).chain([0.0, 0.5, 10.0, 1.25, 12.5, 200.0]);
+    fn exact_numbers_do_not_change_the_format() {
+        let mixed = random_numbers(-3.0, 3.0).chain([0.0, 0.5, 10.0, 1.25, 12.5, 200.0]);
         let printed = format_of(mixed, |x| format!("{x:.6}"));
         assert_eq!(printed, NumberFormat::Decimals(6));
         assert_eq!(printed.precision(200.0), 2e-6);

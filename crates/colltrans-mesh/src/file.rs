@@ -11,10 +11,10 @@ use std::path::Path;
 pub fn bytes(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let path = path.as_ref();
     // Opening a pipe would block until it has a writer. Therefore the kind is checked before and after opening.
-    ordinary(&path.metadata()?)?;
+    require_regular_file(&path.metadata()?)?;
     let mut file = File::open(path)?;
     let metadata = file.metadata()?;
-    ordinary(&metadata)?;
+    require_regular_file(&metadata)?;
     let mut bytes = Vec::new();
     // The size that a file reports may exceed the memory.
     bytes.try_reserve_exact(usize::try_from(metadata.len()).unwrap_or(usize::MAX))?;
@@ -45,7 +45,7 @@ pub fn decoded(bytes: Vec<u8>) -> Result<String> {
 }
 
 /// Rejects anything except a regular file.
-fn ordinary(metadata: &Metadata) -> Result<()> {
+fn require_regular_file(metadata: &Metadata) -> Result<()> {
     if metadata.is_file() {
         return Ok(());
     }

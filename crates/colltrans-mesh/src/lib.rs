@@ -5,7 +5,7 @@
 //!
 //! - A reader returns every vertex and face in the order of the file, or an [`Error`] with place and reason.
 //! - A reader allocates at most a small multiple of the file's size, regardless of the counts in its header.
-//! - `sniff` compares the contents with the extension.
+//! - `identify` compares the contents with the extension.
 //! - Every index in [`Mesh::faces`] is less than the number of vertices. A face has at least three corners, and
 //!   consecutive corners differ.
 //! - Nothing else is guaranteed: coordinates may be NaN, a face may contain a vertex twice, and the surface may
@@ -38,8 +38,8 @@ use std::fmt;
 use std::path::Path;
 
 use error::Fault;
-use merge::{Places, Precision};
-use sniff::{Content, sniff};
+use merge::{PlacePolicy, Precision};
+use sniff::{Content, identify};
 
 pub use digits::NumberFormat;
 pub use edges::sides;
@@ -220,20 +220,20 @@ pub fn parse_with(
     if bytes.is_empty() {
         return Err(Fault::new(Place::End, "the file is empty").in_file(path));
     }
-    if let Some(content) = sniff(&bytes).filter(|content| *content != Content::Mesh(format)) {
-        let found = content.name(&bytes);
+    if let Some(content) = identify(&bytes).filter(|content| *content != Content::Mesh(format)) {
+        let found = content.description(&bytes);
         return Err(Error::OtherContent { path: path.to_owned(), format, found });
     }
     let parsed = match format {
-        Format::Stl => stl::parse(bytes),
-        Format::Obj => obj::parse(&bytes).map(|mesh| (mesh, Precision::TEXT)),
-        Format::Ply => ply::parse(&bytes),
-        Format::Off => off::parse(&bytes).map(|mesh| (mesh, Precision::TEXT)),
+        Format::Stl => stl::parse_stl(bytes),
+        Format::Obj => obj::parse_obj(&bytes).map(|mesh| (mesh, Precision::TEXT)),
+        Format::Ply => ply::parse_ply(&bytes),
+        Format::Off => off::parse_off(&bytes).map(|mesh| (mesh, Precision::TEXT)),
         #[cfg(feature = "dae")]
-        Format::Dae => dae::parse(&bytes).map(|mesh| (mesh, Precision::DOUBLE)),
+        Format::Dae => dae::parse_dae(&bytes).map(|mesh| (mesh, Precision::DOUBLE)),
     };
     let (mut mesh, precision) = parsed.map_err(|fault| fault.in_file(path))?;
-    let places = if format == Format::Stl { Places::Closed } else { Places::Kept };
-    mesh.close(options.merge_tolerance, precision, places);
+    let places = if format == Format::Stl { PlacePolicy::Closed } else { PlacePolicy::Kept };
+    mesh.merge_open_edges(options.merge_tolerance, precision, places);
     Ok(mesh)
 }

@@ -54,7 +54,7 @@ impl Precision {
 
 /// The treatment of vertices that were merged into others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Places {
+pub(crate) enum PlacePolicy {
     /// They remain in the list, unused, so that indices are those of the file.
     Kept,
     /// They are removed, because the file does not number its vertices.
@@ -73,12 +73,12 @@ impl Mesh {
         let vertices = kept.iter().map(|&v| self.vertices[v as usize]).collect();
         let printed = kept.iter().filter_map(|&v| self.printed.get(v as usize).copied()).collect();
         let mut mesh = Self { vertices, faces, printed, groups: self.groups.clone(), ..*self };
-        mesh.drop_flat_faces();
+        mesh.remove_flat_faces();
         mesh
     }
 
     /// Returns the different vertices, and all faces over them. No faces are removed.
-    pub(crate) fn welded(&self) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    pub(crate) fn welded_copy(&self) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let (kept, faces) = self.first_of_equal();
         (kept.into_iter().map(|v| self.vertices[v as usize]).collect(), faces)
     }
@@ -91,7 +91,7 @@ impl Mesh {
             .vertices
             .iter()
             .enumerate()
-            .map(|(v, &vertex)| match index_of.entry(key(vertex)) {
+            .map(|(v, &vertex)| match index_of.entry(coordinate_key(vertex)) {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(new) => {
                     let index = kept.len() as u32;
@@ -106,7 +106,12 @@ impl Mesh {
     }
 
     /// Merges duplicate vertices along open edges. `None` selects the default tolerance.
-    pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
+    pub(crate) fn merge_open_edges(
+        &mut self,
+        asked: Option<f64>,
+        precision: Precision,
+        places: PlacePolicy,
+    ) {
         let format = precision.format_of(self);
         let precision = format.precision(largest_magnitude(self.vertices_in_use()));
         self.printed = Vec::new();
@@ -120,18 +125,18 @@ impl Mesh {
             on_border.sort_unstable();
             on_border.dedup();
             let mut names = self.representatives(&on_border);
-            if places == Places::Closed {
-                self.drop_replaced(&mut names);
+            if places == PlacePolicy::Closed {
+                self.remove_replaced(&mut names);
             }
             for corner in self.faces.iter_mut().flatten() {
                 *corner = names[*corner as usize];
             }
         }
-        self.drop_flat_faces();
+        self.remove_flat_faces();
     }
 
     /// Removes the vertices that were replaced, and updates `names` to the new indices.
-    fn drop_replaced(&mut self, names: &mut [u32]) {
+    fn remove_replaced(&mut self, names: &mut [u32]) {
         let mut kept = 0;
         for v in 0..names.len() {
             // A representative precedes the vertices that it replaces.
@@ -170,7 +175,7 @@ impl Mesh {
         let mut grid = Grid::new(self.merged.tolerance, &self.vertices);
         for &v in candidates {
             let position = self.vertices[v as usize];
-            let Some(near) = grid.near(position, &self.vertices) else {
+            let Some(near) = grid.nearest(position, &self.vertices) else {
                 grid.insert(v, position);
                 continue;
             };
@@ -187,11 +192,11 @@ impl Mesh {
     /// Removes steps to a vertex and back from faces, and faces with fewer than three corners left.
     ///
     /// Each removed step consists of opposite uses of one edge, so edges that were closed remain closed.
-    pub(crate) fn drop_flat_faces(&mut self) {
+    pub(crate) fn remove_flat_faces(&mut self) {
         let before = self.faces.len();
         let (mut number, mut dropped) = (0, Vec::new());
         self.faces.retain_mut(|face| {
-            let kept = reduced(face);
+            let kept = reduced_cycle(face);
             if kept.len() < face.len() {
                 *face = kept;
             }
@@ -213,13 +218,13 @@ impl Mesh {
 }
 
 /// Returns a key that is equal exactly for equal coordinates.
-fn key(vertex: DVec3) -> [u64; 3] {
+fn coordinate_key(vertex: DVec3) -> [u64; 3] {
     // Adding 0 converts -0 to 0 and does not change other numbers.
     vertex.to_array().map(|c| (c + 0.0).to_bits())
 }
 
 /// Returns a cycle of corners without consecutive equal corners (`a a`) and without spikes (`a b a`).
-fn reduced(face: &[u32]) -> Vec<u32> {
+fn reduced_cycle(face: &[u32]) -> Vec<u32> {
     let mut kept: Vec<u32> = Vec::with_capacity(face.len());
     for &corner in face {
         if kept.last() == Some(&corner) {
@@ -257,15 +262,15 @@ struct Grid {
     before: Vec<u32>,
 }
 
-/// Returns a key of the same type as those of coordinates ([`key`]), because one instance of the map type
+/// Returns a key of the same type as those of coordinates ([`coordinate_key`]), because one instance of the map type
 /// halves the code.
-fn key_of(cell: [i64; 3]) -> [u64; 3] {
+fn cell_key(cell: [i64; 3]) -> [u64; 3] {
     cell.map(|c| c as u64)
 }
 
 /// The nearest representative, and the number of representatives within the tolerance.
 #[derive(Clone, Copy)]
-struct Near {
+struct NearestFound {
     vertex: u32,
     distance: f64,
     choices: usize,
@@ -275,10 +280,10 @@ struct Near {
 const NONE: u32 = u32::MAX;
 
 /// Width of a cell in tolerances.
-const CELL: f64 = 4.0;
+const CELL_TOLERANCES: f64 = 4.0;
 
 /// Returns the length of a vector, also if its square underflows.
-fn length(v: DVec3) -> f64 {
+fn scaled_scaled_length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest == 0.0 { 0.0 } else { largest * (v / largest).length() }
 }
@@ -289,7 +294,7 @@ impl Grid {
         // Cell indices must fit in 64 bits.
         let smallest =
             largest_magnitude(vertices.iter().copied()) * f64::from_bits((1023 - 60) << 52);
-        let cell = (CELL * tolerance).max(smallest).max(f64::MIN_POSITIVE);
+        let cell = (CELL_TOLERANCES * tolerance).max(smallest).max(f64::MIN_POSITIVE);
         Self { cell, tolerance, last: HashMap::new(), before: vec![NONE; vertices.len()] }
     }
 
@@ -300,23 +305,23 @@ impl Grid {
 
     /// Inserts a representative.
     fn insert(&mut self, vertex: u32, position: DVec3) {
-        let last = self.last.entry(key_of(self.cell_of(position))).or_insert(NONE);
+        let last = self.last.entry(cell_key(self.cell_of(position))).or_insert(NONE);
         self.before[vertex as usize] = *last;
         *last = vertex;
     }
 
     /// Returns the nearest representative within the tolerance of a position; `None` if there is none.
-    fn near(&self, position: DVec3, vertices: &[DVec3]) -> Option<Near> {
+    fn nearest(&self, position: DVec3, vertices: &[DVec3]) -> Option<NearestFound> {
         let low = self.cell_of(position - self.tolerance);
         let high = self.cell_of(position + self.tolerance);
         // At most two cells in each dimension, even if the sum overflows.
         let high: [i64; 3] = std::array::from_fn(|i| high[i].min(low[i].saturating_add(1)));
-        let mut found: Option<Near> = None;
+        let mut found: Option<NearestFound> = None;
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let Some(&last) = self.last.get(&key_of([x, y, z])) else { continue };
-                    found = self.nearer(found, last, position, vertices);
+                    let Some(&last) = self.last.get(&cell_key([x, y, z])) else { continue };
+                    found = self.nearest_with_cell(found, last, position, vertices);
                 }
             }
         }
@@ -325,21 +330,23 @@ impl Grid {
 
     /// Returns the nearest of `found` and the representatives in a cell; if distances are equal, the one with
     /// the smallest index.
-    fn nearer(
+    fn nearest_with_cell(
         &self,
-        mut found: Option<Near>,
+        mut found: Option<NearestFound>,
         last: u32,
         position: DVec3,
         vertices: &[DVec3],
-    ) -> Option<Near> {
+    ) -> Option<NearestFound> {
         let mut vertex = last;
         while vertex != NONE {
-            let distance = length(vertices[vertex as usize] - position);
+            let distance = scaled_length(vertices[vertex as usize] - position);
             if distance <= self.tolerance {
                 let choices = found.map_or(1, |near| near.choices + 1);
                 let best = found.filter(|n| (n.distance, n.vertex) < (distance, vertex));
-                found =
-                    Some(Near { choices, ..best.unwrap_or(Near { vertex, distance, choices }) });
+                found = Some(NearestFound {
+                    choices,
+                    ..best.unwrap_or(NearestFound { vertex, distance, choices })
+                });
             }
             vertex = self.before[vertex as usize];
         }
@@ -354,7 +361,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn welding_merges_signed_zeros_and_drops_faces_without_area() {
+    fn welding_merges_signed_zeros_and_removes_zero_area_faces() {
         let mesh = Mesh::new(
             vec![
                 DVec3::new(0.0, 0.0, 0.0),
@@ -374,7 +381,7 @@ mod tests {
 
     #[test]
     fn faces_lose_repeated_corners_and_spikes() {
-        let reduce = |face: &[u32]| reduced(face);
+        let reduce = |face: &[u32]| reduced_cycle(face);
         assert_eq!(reduce(&[0, 1, 2, 3]), [0, 1, 2, 3]);
         assert_eq!(reduce(&[0, 0, 1, 2, 2]), [0, 1, 2]);
         assert_eq!(reduce(&[0, 1, 2, 0]), [1, 2, 0]);
@@ -387,7 +394,7 @@ mod tests {
     }
 
     /// Points on a line with the spacing `gap`, each of which is a corner of an open triangle of its own.
-    fn chain(count: u32, gap: f64) -> Mesh {
+    fn triangle_chain(count: u32, gap: f64) -> Mesh {
         let mut vertices: Vec<DVec3> = Vec::new();
         for i in 0..count {
             vertices.push(DVec3::X * (f64::from(i) * gap));
@@ -399,44 +406,44 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_is_cut_not_swallowed() {
-        let mut mesh = chain(10, 0.0625);
-        mesh.close(Some(0.1), Precision::DOUBLE, Places::Kept);
+    fn chain_of_near_vertices_is_cut_into_pieces() {
+        let mut mesh = triangle_chain(10, 0.0625);
+        mesh.merge_open_edges(Some(0.1), Precision::DOUBLE, PlacePolicy::Kept);
         let ends: Vec<u32> = mesh.faces.iter().map(|face| face[0]).collect();
         assert_eq!(ends, [0, 0, 6, 6, 12, 12, 18, 18, 24, 24]);
         assert_eq!(mesh.merged.vertices, 5);
         assert_eq!(mesh.merged.largest_distance, 0.0625);
         assert_eq!(mesh.merged.ambiguous, 0);
-        let mut closed = chain(10, 0.0625);
-        closed.close(Some(0.1), Precision::DOUBLE, Places::Closed);
+        let mut closed = triangle_chain(10, 0.0625);
+        closed.merge_open_edges(Some(0.1), Precision::DOUBLE, PlacePolicy::Closed);
         assert_eq!(closed.vertices.len(), 25);
         for (a, b) in closed.faces.iter().flatten().zip(mesh.faces.iter().flatten()) {
             assert_eq!(closed.vertices[*a as usize], mesh.vertices[*b as usize]);
         }
-        let mut mesh = chain(3, 0.0625);
+        let mut mesh = triangle_chain(3, 0.0625);
         mesh.vertices.swap(3, 6);
-        mesh.close(Some(0.1), Precision::DOUBLE, Places::Kept);
+        mesh.merge_open_edges(Some(0.1), Precision::DOUBLE, PlacePolicy::Kept);
         assert_eq!(mesh.merged.ambiguous, 1, "the one in the middle came last");
     }
 
     #[test]
-    fn a_closed_surface_is_left_as_it_is() {
+    fn closed_surface_is_unchanged() {
         let (a, b, c, d) = (DVec3::ZERO, DVec3::X * 1e-3, DVec3::Y, DVec3::Z);
         let faces = vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]];
         let sliver = Mesh::new(vec![a, b, c, d], faces);
         let mut closed = sliver.clone();
-        closed.close(Some(0.01), Precision::DOUBLE, Places::Kept);
+        closed.merge_open_edges(Some(0.01), Precision::DOUBLE, PlacePolicy::Kept);
         assert_eq!(closed.faces, sliver.faces);
         let mut open = sliver;
         open.faces.pop();
         assert_eq!(open.open_edges(), [[0, 2], [3, 0], [2, 3]]);
-        open.close(Some(0.01), Precision::DOUBLE, Places::Kept);
+        open.merge_open_edges(Some(0.01), Precision::DOUBLE, PlacePolicy::Kept);
         assert_eq!(open.merged.vertices, 0, "1 is on no open edge");
     }
 
     /// Compares the grid with all pairs.
     #[test]
-    fn the_grid_finds_what_all_pairs_find() {
+    fn grid_matches_search_over_all_pairs() {
         let mut random = Random::new(1);
         for scale in [1.0, 1e-9, 1e9] {
             let vertices: Vec<DVec3> = (0..600).map(|_| random.vector() * (0.5 * scale)).collect();
@@ -444,10 +451,10 @@ mod tests {
             let mut grid = Grid::new(tolerance, &vertices);
             let mut representatives: Vec<u32> = Vec::new();
             for (v, &position) in vertices.iter().enumerate() {
-                let distance = |&w: &u32| length(vertices[w as usize] - position);
+                let distance = |&w: &u32| scaled_length(vertices[w as usize] - position);
                 let within = representatives.iter().filter(|w| distance(w) <= tolerance);
                 let nearest = within.clone().map(distance).fold(f64::INFINITY, f64::min);
-                if let Some(near) = grid.near(position, &vertices) {
+                if let Some(near) = grid.nearest(position, &vertices) {
                     assert_eq!(near.distance, nearest);
                     assert_eq!(near.choices, within.count());
                 } else {
@@ -461,15 +468,15 @@ mod tests {
     }
 
     #[test]
-    fn tolerances_of_no_size_merge_equal_vertices_only() {
-        let mut mesh = chain(4, 1e-300);
+    fn zero_tolerance_merges_equal_vertices_only() {
+        let mut mesh = triangle_chain(4, 1e-300);
         mesh.vertices[9] = mesh.vertices[0];
-        mesh.close(Some(0.0), Precision::SINGLE, Places::Kept);
+        mesh.merge_open_edges(Some(0.0), Precision::SINGLE, PlacePolicy::Kept);
         assert_eq!(mesh.faces[3][0], 0);
         assert_eq!((mesh.faces[1][0], mesh.merged.vertices), (3, 0));
         mesh.vertices[3] = DVec3::NAN;
         mesh.vertices[6] = DVec3::splat(f64::INFINITY);
-        mesh.close(None, Precision::SINGLE, Places::Kept);
+        mesh.merge_open_edges(None, Precision::SINGLE, PlacePolicy::Kept);
         assert_eq!(mesh.faces[1][0], 3);
         assert!(mesh.merged.tolerance.is_finite());
     }

@@ -41,7 +41,7 @@ pub struct Groups {
 
 impl Groups {
     /// Adds a group with the faces up to `total` that have no group yet. Does nothing if there are none.
-    pub(crate) fn end(&mut self, name: &str, total: usize) {
+    pub(crate) fn end_group(&mut self, name: &str, total: usize) {
         if self.of_face.len() < total {
             self.of_face.resize(total, self.names.len() as u32);
             self.names.push(name.to_owned());
@@ -49,7 +49,7 @@ impl Groups {
     }
 
     /// Returns the groups, or no groups if there are fewer than two.
-    pub(crate) fn several(self) -> Self {
+    pub(crate) fn unless_single(self) -> Self {
         if self.names.len() > 1 { self } else { Self::default() }
     }
 }
@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn volume_of_a_tetrahedron_away_from_the_origin() {
+    fn volume_ignores_origin_and_unused_vertices() {
         let at = DVec3::splat(10.0);
         let mesh = Mesh::new(
             vec![at, at + DVec3::X, at + DVec3::Y, at + DVec3::Z],

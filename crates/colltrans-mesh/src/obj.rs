@@ -1,7 +1,7 @@
 //! Reads OBJ, text, with `tobj`.
 //!
 //! `tobj` renumbers the vertices of each group in the order of their first use, and its errors have no line.
-//! [`Lines`] avoids both: it passes on only positions and faces, and after each position a face of that single
+//! [`CleanLines`] avoids both: it passes on only positions and faces, and after each position a face of that single
 //! vertex. Thus the order of first use is the order in the file. Objects and groups are recorded at the same
 //! time.
 //!
@@ -20,9 +20,9 @@ use crate::mesh::{Groups, Mesh};
 use crate::text::{self, quoted, without_mark};
 
 /// Parses an OBJ file.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn parse_obj(bytes: &[u8]) -> Result<Mesh, Fault> {
     let text = String::from_utf8_lossy(without_mark(bytes)?);
-    let mut lines = Lines::new(&text);
+    let mut lines = CleanLines::new(&text);
     let loaded =
         tobj::load_obj_buf(&mut lines, &LoadOptions::default(), |_| Err(LoadError::OpenFileFailed));
     if let Some(fault) = lines.refused {
@@ -30,8 +30,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     }
     let models = match loaded {
         Ok((models, _)) => models,
-        Err(LoadError::FaceVertexOutOfBounds) => return Err(unknown_vertex(&text)),
-        Err(error) => return Err(lines.fault(error)),
+        Err(LoadError::FaceVertexOutOfBounds) => return Err(find_unknown_vertex(&text)),
+        Err(error) => return Err(lines.error_at_line(error)),
     };
     let mut mesh = Mesh::default();
     // Because no groups are passed on, there is one model.
@@ -48,21 +48,21 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         }
     }
     mesh.printed = lines.printed;
-    mesh.groups = lines.names.groups(mesh.faces.len());
+    mesh.groups = lines.names.into_groups(mesh.faces.len());
     Ok(mesh)
 }
 
 /// The objects and the groups of a file, each with the number of faces before it and its name.
 #[derive(Default)]
-struct Named {
+struct NamedRanges {
     objects: Vec<(usize, String)>,
     groups: Vec<(usize, String)>,
 }
 
-impl Named {
+impl NamedRanges {
     /// Returns the objects if there are several, otherwise the groups. Objects or groups with the same name are
     /// joined.
-    fn groups(self, faces: usize) -> Groups {
+    fn into_groups(self, faces: usize) -> Groups {
         let all = [self.objects, self.groups].map(|begun| {
             let mut groups = Groups::default();
             let mut known: HashMap<String, u32> = HashMap::new();
@@ -73,13 +73,13 @@ impl Named {
                     Some(&group) => groups.of_face.resize(before, group),
                     None if groups.of_face.len() < before => {
                         known.insert(name.clone(), groups.names.len() as u32);
-                        groups.end(&name, before);
+                        groups.end_group(&name, before);
                     }
                     None => {}
                 }
                 name = next;
             }
-            groups.several()
+            groups.unless_single()
         });
         let [objects, groups] = all;
         if objects.names.is_empty() { groups } else { objects }
@@ -87,7 +87,7 @@ impl Named {
 }
 
 /// A reader for `tobj` that passes on the position and face lines of an OBJ file, cleaned, one at a time.
-struct Lines<'a> {
+struct CleanLines<'a> {
     text: std::iter::Enumerate<text::Lines<'a>>,
     /// The number of the line that was read last.
     number: usize,
@@ -97,7 +97,7 @@ struct Lines<'a> {
     original: String,
     /// The error of a keyword that cannot be skipped. Reading ends there.
     refused: Option<Fault>,
-    names: Named,
+    names: NamedRanges,
     /// The printed form of each position that was passed on.
     printed: Vec<[Printed; 3]>,
     /// Number of faces that were passed on.
@@ -135,7 +135,7 @@ const SKIPPED: [&str; 24] = [
 /// Keywords of curved surfaces.
 const CURVED: [&str; 8] = ["surf", "curv", "curv2", "trim", "hole", "scrv", "sp", "con"];
 
-impl<'a> Lines<'a> {
+impl<'a> CleanLines<'a> {
     fn new(text: &'a str) -> Self {
         Self {
             text: text::lines(text).enumerate(),
@@ -144,7 +144,7 @@ impl<'a> Lines<'a> {
             read: 0,
             original: String::new(),
             refused: None,
-            names: Named::default(),
+            names: NamedRanges::default(),
             printed: Vec::new(),
             faces: 0,
         }
@@ -200,7 +200,7 @@ impl<'a> Lines<'a> {
     /// Passes on a position with its weight, without its colour.
     fn pass_position(&mut self, words: &[&str]) {
         let kept = if words.len() == 4 { 4 } else { words.len().min(3) };
-        let form = |k: usize| words.get(k).map(|word| Printed::of(word)).unwrap_or_default();
+        let form = |k: usize| words.get(k).map(|word| Printed::from_text(word)).unwrap_or_default();
         self.printed.push([form(0), form(1), form(2)]);
         self.pending.push(b'v');
         for word in &words[..kept] {
@@ -230,7 +230,7 @@ impl<'a> Lines<'a> {
     }
 
     /// Converts an error of `tobj`, with line and text.
-    fn fault(&self, error: LoadError) -> Fault {
+    fn error_at_line(&self, error: LoadError) -> Fault {
         let what = match error {
             LoadError::PositionParseError => "a vertex needs 3 numbers, and may have a weight",
             LoadError::FaceParseError => "a face needs valid vertex indices",
@@ -241,7 +241,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-impl BufRead for Lines<'_> {
+impl BufRead for CleanLines<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         if self.read == self.pending.len() {
             self.advance();
@@ -254,7 +254,7 @@ impl BufRead for Lines<'_> {
     }
 }
 
-impl Read for Lines<'_> {
+impl Read for CleanLines<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let available = self.fill_buf()?;
         let count = available.len().min(buffer.len());
@@ -265,24 +265,24 @@ impl Read for Lines<'_> {
 }
 
 /// Finds the first face with a vertex index that is out of range.
-fn unknown_vertex(text: &str) -> Fault {
-    let mut lines = Lines::new(text);
+fn find_unknown_vertex(text: &str) -> Fault {
+    let mut lines = CleanLines::new(text);
     let mut total = 0;
     while let Some(line) = lines.next_logical_line() {
         total += i64::from(line.split_whitespace().next() == Some("v"));
     }
-    let mut lines = Lines::new(text);
-    let mut so_far = 0;
+    let mut lines = CleanLines::new(text);
+    let mut vertices_before = 0;
     while let Some(line) = lines.next_logical_line() {
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => so_far += 1,
+            Some("v") => vertices_before += 1,
             Some("f") => {
                 for corner in words {
                     let index = corner.split('/').next().unwrap_or_default();
-                    let known = index
-                        .parse()
-                        .is_ok_and(|i: i64| (1..=total).contains(&i) || (-so_far..0).contains(&i));
+                    let known = index.parse().is_ok_and(|i: i64| {
+                        (1..=total).contains(&i) || (-vertices_before..0).contains(&i)
+                    });
                     if !known {
                         let what = format!(
                             "vertex index {} is out of range; there are {total} vertices",

@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_seen_is_written_out() {
+    fn invisible_characters_are_escaped() {
         let hidden = "a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}";
         assert_eq!(shown(hidden), r"a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}");
         for c in "\0\u{1f}\u{7f}\u{80}\u{9f}\u{61c}\u{200b}\u{200c}\u{200d}\u{200e}\u{200f}\u{2028}\u{202e}\

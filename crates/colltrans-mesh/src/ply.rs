@@ -5,7 +5,7 @@
 //! faces would be lost. Before reading, the counts of the header are compared with the available bytes.
 //! Remaining bytes other than whitespace and zeros are rejected.
 
-mod why;
+mod explain;
 
 use std::borrow::Cow;
 use std::io::ErrorKind;
@@ -23,12 +23,13 @@ use crate::mesh::Mesh;
 use crate::text::{lines, number, quoted, without_mark};
 
 /// Parses a PLY file. Returns the mesh and the precision of its coordinates.
-pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
+pub(crate) fn parse_ply(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let bytes = with_line_feeds(without_mark(bytes)?);
     let bytes = with_readable_comments(bytes);
     let mut reader = Reader::new(&*bytes);
     let header = Parser::<Row>::new().read_header(&mut reader);
-    let header = header.map_err(|e| why::header(&bytes).unwrap_or_else(|| fault(&e, true)))?;
+    let header = header
+        .map_err(|e| explain::header_error(&bytes).unwrap_or_else(|| parser_error(&e, true)))?;
     let text = header.encoding == Encoding::Ascii;
     check_counts(&header, reader.get_ref().len())?;
     let precision = check_properties(&header, text)?;
@@ -41,10 +42,10 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
             let line = e.line().filter(|_| text);
             let told = line.and_then(|line| {
                 let row = bytes.split(|b| *b == b'\n').nth(line - 1)?;
-                let what = why::row(std::str::from_utf8(row).ok()?, element)?;
+                let what = explain::row_error(std::str::from_utf8(row).ok()?, element)?;
                 Some(Fault::new(Place::Line(line), what))
             });
-            told.unwrap_or_else(|| fault(&e, text))
+            told.unwrap_or_else(|| parser_error(&e, text))
         })?;
         match name.as_str() {
             "vertex" => mesh.vertices = rows.into_iter().map(|row| row.point).collect(),
@@ -53,10 +54,10 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
         }
     }
     for (index, face) in faces.into_iter().enumerate() {
-        mesh.faces.push(face.checked(index, mesh.vertices.len())?);
+        mesh.faces.push(face.checked_corners(index, mesh.vertices.len())?);
     }
     if text {
-        mesh.printed = printed(rows, &header, &mesh.vertices).unwrap_or_default();
+        mesh.printed = printed_coordinates(rows, &header, &mesh.vertices).unwrap_or_default();
     }
     let rest = reader.get_ref();
     if rest.iter().all(|b| *b == 0 || b.is_ascii_whitespace()) {
@@ -69,7 +70,11 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
 
 /// Returns the printed forms of the coordinates of each vertex of a text. `None` if the words of the rows are
 /// not the coordinates that the parser found, for example because a list precedes them.
-fn printed(rows: &[u8], header: &Header, vertices: &[DVec3]) -> Option<Vec<[Printed; 3]>> {
+fn printed_coordinates(
+    rows: &[u8],
+    header: &Header,
+    vertices: &[DVec3],
+) -> Option<Vec<[Printed; 3]>> {
     let rows = std::str::from_utf8(rows).ok()?;
     let before = header.elements.iter().take_while(|(name, _)| name.as_str() != "vertex");
     let skipped = before.map(|(_, element)| element.count).sum();
@@ -131,7 +136,7 @@ fn with_readable_comments(bytes: Cow<'_, [u8]>) -> Cow<'_, [u8]> {
 }
 
 /// Converts an error of the parser to one line. For binary files, line numbers are omitted.
-fn fault(error: &ParseError, text: bool) -> Fault {
+fn parser_error(error: &ParseError, text: bool) -> Fault {
     let place = match error.line() {
         Some(line) if text => Place::Line(line),
         _ if error.kind() == ErrorKind::UnexpectedEof => Place::End,
@@ -198,36 +203,40 @@ fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
     let fault = |what: String| Fault::new(Place::Header, what);
     let element = |name: &str| header.elements.iter().find(|(n, _)| n.as_str() == name);
     let (_, vertex) =
-        element("vertex").ok_or_else(|| fault("the element `vertex` is missing".into()))?;
+        element("vertex").ok_or_else(|| parser_error("the element `vertex` is missing".into()))?;
     let mut single = false;
     for coordinate in ["x", "y", "z"] {
         let property = vertex.properties.get(coordinate);
-        let property = property
-            .ok_or_else(|| fault(format!("the element `vertex` has no property `{coordinate}`")))?;
+        let property = property.ok_or_else(|| {
+            parser_error(format!("the element `vertex` has no property `{coordinate}`"))
+        })?;
         match property.data_type {
             PropertyType::Scalar(ScalarType::Float) => single = true,
             PropertyType::Scalar(_) => {}
             PropertyType::List(..) => {
-                return Err(fault(format!(
+                return Err(parser_error(format!(
                     "the property `{coordinate}` of `vertex` is a list; expected a number"
                 )));
             }
         }
     }
     if let Some((_, face)) = element("face") {
-        let mut lists = CORNERS.iter().filter_map(|name| face.properties.get(*name)).peekable();
+        let mut lists =
+            CORNER_PROPERTIES.iter().filter_map(|name| face.properties.get(*name)).peekable();
         if face.count > 0 && lists.peek().is_none() {
-            return Err(fault("the element `face` has no list `vertex_indices`".into()));
+            return Err(parser_error("the element `face` has no list `vertex_indices`".into()));
         }
         if !lists.all(|list| is_list_of_integers(&list.data_type)) {
-            return Err(fault(
+            return Err(parser_error(
                 "the vertex indices of `face` must be a list of integers, with an integer length"
                     .into(),
             ));
         }
     }
     if element("tristrips").is_some() {
-        return Err(fault("triangle strips are not supported; export the mesh as faces".into()));
+        return Err(parser_error(
+            "triangle strips are not supported; export the mesh as faces".into(),
+        ));
     }
     Ok(Precision { single, text })
 }
@@ -239,7 +248,7 @@ fn is_list_of_integers(property: &PropertyType) -> bool {
 }
 
 /// The names of the property with the vertex indices of a face.
-const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+const CORNER_PROPERTIES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// A row of any element. One type for all elements, because the large parser is compiled once for each type.
 struct Row {
@@ -250,7 +259,7 @@ struct Row {
 
 impl Row {
     /// Returns the vertex indices of face `index`, or an error if one is out of range.
-    fn checked(self, index: usize, vertex_count: usize) -> Result<Vec<u32>, Fault> {
+    fn checked_corners(self, index: usize, vertex_count: usize) -> Result<Vec<u32>, Fault> {
         let Some(corners) = self.corners else {
             return Err(Fault::new(Place::Face(index), "negative vertex index"));
         };
@@ -274,7 +283,7 @@ impl PropertyAccess for Row {
             "x" => &mut self.point.x,
             "y" => &mut self.point.y,
             "z" => &mut self.point.z,
-            _ if CORNERS.contains(&name) => {
+            _ if CORNER_PROPERTIES.contains(&name) => {
                 self.corners = value.to_u32_list();
                 return PropertyAccessResult::Set;
             }

@@ -18,7 +18,7 @@ pub(crate) enum Content {
 
 impl Content {
     /// Returns the name for messages, with its article.
-    pub(crate) fn name(self, bytes: &[u8]) -> &'static str {
+    pub(crate) fn description(self, bytes: &[u8]) -> &'static str {
         match self {
             Self::Mesh(Format::Stl) if stl::is_text(bytes) => "a text STL file",
             Self::Mesh(Format::Stl) => "a binary STL file",
@@ -54,10 +54,10 @@ const SIGNATURES: [(&[u8], &str); 18] = [
 const OBJ_WORDS: [&str; 11] = ["v", "vt", "vn", "vp", "f", "o", "g", "s", "mtllib", "usemtl", "mg"];
 
 /// Number of bytes at the start that are searched.
-const LOOKED_AT: usize = 1 << 16;
+const SEARCHED_BYTES: usize = 1 << 16;
 
 /// Identifies the contents; `None` if they are not certain.
-pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
+pub(crate) fn identify(bytes: &[u8]) -> Option<Content> {
     if stl::is_exactly_binary(bytes) {
         return Some(Content::Mesh(Format::Stl));
     }
@@ -67,7 +67,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
     };
     #[cfg(feature = "dae")]
     if is(b"<?xml") || is(b"<COLLADA") {
-        let start = &start[..start.len().min(LOOKED_AT)];
+        let start = &start[..start.len().min(SEARCHED_BYTES)];
         if start.windows(8).any(|word| word == b"<COLLADA") {
             return Some(Content::Mesh(Format::Dae));
         }
@@ -76,7 +76,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
         return Some(Content::Other(name));
     }
     // `solid` does not occur as a word of the other formats, nor do the others.
-    let first = first_words(start)?;
+    let first = first_content_line(start)?;
     let mut words = first.split_whitespace();
     let (word, next) = (words.next()?, words.next());
     let format = match word {
@@ -97,8 +97,8 @@ fn is_off(word: &str) -> bool {
 }
 
 /// Returns the first line of the searched bytes that is neither blank nor a comment.
-fn first_words(start: &[u8]) -> Option<String> {
-    let text = String::from_utf8_lossy(&start[..start.len().min(LOOKED_AT)]);
+fn first_content_line(start: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(&start[..start.len().min(SEARCHED_BYTES)]);
     let mut contents = lines(&text).map(|line| line.split('#').next().unwrap_or_default().trim());
     contents.find(|content| !content.is_empty()).map(str::to_owned)
 }

@@ -5,9 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::edges::{by_edge, uses};
+use crate::edges::{facet_sides, sides_by_edge};
 use crate::mesh::{Groups, Mesh};
-use crate::sets::Sets;
+use crate::sets::OrientedSets;
 
 /// The marker of a vertex that is not in use.
 const NONE: u32 = u32::MAX;
@@ -23,9 +23,9 @@ impl Mesh {
         if of_face.len() != self.faces.len() || of_face.iter().any(|&g| g as usize >= names.len()) {
             return Vec::new();
         }
-        let (_, faces) = self.welded();
-        let mut sets = Sets::new(names.len());
-        for edge in by_edge(&uses(&faces, |_| true)) {
+        let (_, faces) = self.welded_copy();
+        let mut sets = OrientedSets::new(names.len());
+        for edge in sides_by_edge(&facet_sides(&faces, |_| true)) {
             let mut balance: BTreeMap<u32, i64> = BTreeMap::new();
             for side in edge {
                 *balance.entry(of_face[side.face]).or_default() +=
@@ -43,7 +43,7 @@ impl Mesh {
         // The sets are ordered by their first groups, because the root of a set is its smallest member.
         let mut places: BTreeMap<usize, u32> = BTreeMap::new();
         for &group in of_face {
-            places.insert(sets.find(group as usize).0, 0);
+            places.insert(sets.root(group as usize).0, 0);
         }
         if places.len() < 2 {
             return Vec::new();
@@ -51,7 +51,7 @@ impl Mesh {
         for (place, number) in places.values_mut().zip(0..) {
             *place = number;
         }
-        let of_face: Vec<u32> = of_face.iter().map(|&g| places[&sets.find(g as usize).0]).collect();
+        let of_face: Vec<u32> = of_face.iter().map(|&g| places[&sets.root(g as usize).0]).collect();
         let meshes = self.picked(&of_face, places.len());
         places.keys().map(|&group| names[group].clone()).zip(meshes).collect()
     }
@@ -65,15 +65,15 @@ impl Mesh {
                 faces.push(k);
             }
         }
-        let mut names = vec![NONE; self.vertices.len()];
+        let mut new_index = vec![NONE; self.vertices.len()];
         let mut pick = |faces: Vec<usize>| {
             let mut used: Vec<u32> = faces.iter().flat_map(|&k| &self.faces[k]).copied().collect();
             used.sort_unstable();
             used.dedup();
             for (&v, name) in used.iter().zip(0..) {
-                names[v as usize] = name;
+                new_index[v as usize] = name;
             }
-            let renamed = |k: usize| self.faces[k].iter().map(|&v| names[v as usize]).collect();
+            let renamed = |k: usize| self.faces[k].iter().map(|&v| new_index[v as usize]).collect();
             let vertices = used.iter().map(|&v| self.vertices[v as usize]).collect();
             let mesh = Self::new(vertices, faces.into_iter().map(renamed).collect());
             Self {
@@ -101,12 +101,12 @@ mod tests {
             let base = mesh.vertices.len() as u32;
             mesh.vertices.extend(&part.vertices);
             mesh.faces.extend(part.faces.iter().map(|f| f.iter().map(|v| v + base).collect()));
-            groups.end(name, mesh.faces.len());
+            groups.end_group(name, mesh.faces.len());
         }
         Mesh { groups, ..mesh }
     }
 
-    fn names(mesh: &Mesh) -> Vec<(String, usize)> {
+    fn part_names(mesh: &Mesh) -> Vec<(String, usize)> {
         mesh.named().into_iter().map(|(name, mesh)| (name, mesh.faces.len())).collect()
     }
 
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_that_go_on_in_each_other_are_one() {
+    fn groups_joined_at_open_edges_are_one_part() {
         // The sides of one cube as groups of a material, and two cubes that touch, which are two parts.
         let cube = block(DVec3::ZERO, DVec3::ONE);
         let of = |range: std::ops::Range<usize>| {
@@ -137,11 +137,11 @@ mod tests {
         let beside = block(DVec3::X, DVec3::new(2.0, 1.0, 1.0));
         assert!(grouped(&[("front", &front), ("rest", &rest)]).named().is_empty());
         let all = grouped(&[("front", &front), ("beside", &beside), ("rest", &rest)]);
-        assert_eq!(names(&all), [("front".into(), 6), ("beside".into(), 6)]);
+        assert_eq!(part_names(&all), [("front".into(), 6), ("beside".into(), 6)]);
     }
 
     #[test]
-    fn what_does_not_fit_names_nothing() {
+    fn inconsistent_groups_yield_no_parts() {
         let cube = block(DVec3::ZERO, DVec3::ONE);
         let mut mesh = grouped(&[("a", &cube), ("b", &cube)]);
         mesh.faces.pop();

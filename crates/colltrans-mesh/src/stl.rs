@@ -20,12 +20,12 @@ use crate::mesh::Mesh;
 use crate::text::{lines, number, quoted, without_mark};
 
 /// Number of bytes of the header of a binary file, without the count.
-const HEADER: usize = 80;
+const HEADER_BYTES: usize = 80;
 /// Number of bytes of a triangle in a binary file.
-const TRIANGLE: usize = 50;
+const TRIANGLE_BYTES: usize = 50;
 
 /// Parses an STL file. Returns the mesh and the precision of its coordinates.
-pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
+pub(crate) fn parse_stl(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
     if bytes.is_empty() {
         return Err(Fault::new(Place::End, "the file is empty"));
     }
@@ -37,7 +37,7 @@ pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
     }
     if !is_exactly_binary(&bytes) {
         // UTF-16 text is checked first, because it explains the error better.
-        check_is_no_text(without_mark(&bytes)?)?;
+        reject_other_text(without_mark(&bytes)?)?;
         check_size(&bytes)?;
     }
     Ok((parse_binary(bytes)?.weld(), Precision::SINGLE))
@@ -45,7 +45,7 @@ pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
 
 /// Checks whether the size equals that given by the triangle count of a binary file.
 pub(crate) fn is_exactly_binary(bytes: &[u8]) -> bool {
-    promised_size(bytes).is_some_and(|promised| promised == bytes.len() as u64)
+    implied_size(bytes).is_some_and(|implied| implied == bytes.len() as u64)
 }
 
 /// Checks whether the file is text and begins like text STL.
@@ -96,7 +96,7 @@ fn check_end(text: &[u8]) -> Result<(), Fault> {
 }
 
 /// Checks that bytes without the beginning of text STL are not text.
-fn check_is_no_text(bytes: &[u8]) -> Result<(), Fault> {
+fn reject_other_text(bytes: &[u8]) -> Result<(), Fault> {
     let bytes = bytes.strip_suffix(b"\x1a").unwrap_or(bytes);
     if has_control(bytes) {
         return Ok(());
@@ -117,32 +117,32 @@ pub(crate) fn has_control(bytes: &[u8]) -> bool {
 
 /// Returns the size given by the triangle count of a binary file; `None` if the file is shorter than the
 /// header.
-fn promised_size(bytes: &[u8]) -> Option<u64> {
-    let count = bytes.get(HEADER..HEADER + 4)?;
+fn implied_size(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(HEADER_BYTES..HEADER_BYTES + 4)?;
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
-    Some(u64::from(count) * TRIANGLE as u64 + HEADER as u64 + 4)
+    Some(u64::from(count) * TRIANGLE_BYTES as u64 + HEADER_BYTES as u64 + 4)
 }
 
 /// Checks that a binary file has the triangles of its count, followed by zeros or less than one triangle.
 fn check_size(bytes: &[u8]) -> Result<(), Fault> {
     let fault = |what: String| Err(Fault::new(Place::End, what));
-    let Some(promised) = promised_size(bytes) else {
+    let Some(implied) = implied_size(bytes) else {
         return fault(format!(
             "neither text (no `solid` at the start) nor binary ({} bytes; the header has {})",
             bytes.len(),
-            HEADER + 4
+            HEADER_BYTES + 4
         ));
     };
-    let triangles = (promised - HEADER as u64 - 4) / TRIANGLE as u64;
-    if (bytes.len() as u64) < promised {
+    let triangles = (implied - HEADER_BYTES as u64 - 4) / TRIANGLE_BYTES as u64;
+    if (bytes.len() as u64) < implied {
         return fault(format!(
-            "the file is truncated: {triangles} triangles in its header need {promised} bytes, \
+            "the file is truncated: {triangles} triangles in its header need {implied} bytes, \
              found {}",
             bytes.len()
         ));
     }
-    let rest = &bytes[promised as usize..];
-    if rest.len() >= TRIANGLE && rest.iter().any(|&b| b != 0) {
+    let rest = &bytes[implied as usize..];
+    if rest.len() >= TRIANGLE_BYTES && rest.iter().any(|&b| b != 0) {
         return fault(format!(
             "{} unexpected bytes after the {triangles} triangles of the header",
             rest.len()
@@ -154,7 +154,7 @@ fn check_size(bytes: &[u8]) -> Result<(), Fault> {
 /// Parses a binary file.
 fn parse_binary(mut bytes: Vec<u8>) -> Result<Mesh, Fault> {
     // `stl_io` would take a file whose header begins with `solid` for text.
-    bytes[..HEADER].fill(0);
+    bytes[..HEADER_BYTES].fill(0);
     let fault = |e: std::io::Error| Fault::new(Place::End, e.to_string());
     let mut cursor = Cursor::new(bytes);
     let triangles = stl_io::create_stl_reader(&mut cursor).map_err(fault)?;
@@ -182,16 +182,16 @@ fn push_face(mesh: &mut Mesh, corners: &[DVec3]) -> Result<(), Fault> {
 
 /// The innermost element that is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Inside {
+enum OpenElement {
     Nothing,
     Solid,
     Facet,
     Loop,
 }
 
-impl Inside {
+impl OpenElement {
     /// Returns the name of the element for messages.
-    const fn name(self) -> &'static str {
+    const fn element_name(self) -> &'static str {
         match self {
             Self::Nothing => "file",
             Self::Solid => "solid",
@@ -219,7 +219,7 @@ const KEYWORDS: [&str; 7] =
 /// Parses a text file, without merging vertices.
 fn parse_text(text: &str) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
-    let mut inside = Inside::Nothing;
+    let mut inside = OpenElement::Nothing;
     let mut corners: Vec<DVec3> = Vec::new();
     let mut printed: Vec<[Printed; 3]> = Vec::new();
     let mut name = String::new();
@@ -236,8 +236,8 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
         }
         let Some(next) = inside.after(&keyword) else {
             let what = match inside {
-                Inside::Nothing => format!("`{keyword}` outside a solid"),
-                _ => format!("`{keyword}` inside a {} that is not closed", inside.name()),
+                OpenElement::Nothing => format!("`{keyword}` outside a solid"),
+                _ => format!("`{keyword}` inside a {} that is not closed", inside.element_name()),
             };
             return Err(at(what));
         };
@@ -247,7 +247,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
                 printed.clear();
             }
             "vertex" => {
-                let (corner, form) = vertex(words).map_err(at)?;
+                let (corner, form) = parse_vertex(words).map_err(at)?;
                 corners.push(corner);
                 printed.push(form);
             }
@@ -262,21 +262,22 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
                 mesh.printed.extend_from_slice(&printed);
             }
             "solid" => line.trim_start()[keyword.len()..].trim().clone_into(&mut name),
-            "endsolid" => mesh.groups.end(&name, mesh.faces.len()),
+            "endsolid" => mesh.groups.end_group(&name, mesh.faces.len()),
             _ => {}
         }
         inside = next;
     }
-    if inside != Inside::Nothing {
-        let what = format!("the last {} is not closed; the file is truncated", inside.name());
+    if inside != OpenElement::Nothing {
+        let what =
+            format!("the last {} is not closed; the file is truncated", inside.element_name());
         return Err(Fault::new(Place::End, what));
     }
-    mesh.groups = std::mem::take(&mut mesh.groups).several();
+    mesh.groups = std::mem::take(&mut mesh.groups).unless_single();
     Ok(mesh)
 }
 
 /// Parses the coordinates of a vertex, with their printed forms.
-fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<(DVec3, [Printed; 3]), String> {
+fn parse_vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<(DVec3, [Printed; 3]), String> {
     let mut xyz = [0.0; 3];
     let mut printed = [Printed::default(); 3];
     let mut found = 0;

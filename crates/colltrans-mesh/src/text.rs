@@ -49,7 +49,7 @@ impl<'a> Iterator for Lines<'a> {
 
 /// Parses a number. Returns its value and its printed form; `None` if the word is not a number.
 pub(crate) fn number(word: &str) -> Option<(f64, Printed)> {
-    Some((word.parse().ok()?, Printed::of(word)))
+    Some((word.parse().ok()?, Printed::from_text(word)))
 }
 
 /// Quotes a word of the file, truncated to 40 characters, for a message.
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_line_ends_count_alike() {
+    fn all_line_endings_split_lines() {
         for end in ["\n", "\r\n", "\r"] {
             let text = ["a", "", "b c", ""].join(end);
             assert_eq!(lines(&text).collect::<Vec<_>>(), ["a", "", "b c"], "{end:?}");

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_names_are_listed_with_the_number_of_the_others() {
+    fn first_names_are_listed_with_count_of_the_rest() {
         let listed = |names: &[&str]| first_named(names, 2);
         assert_eq!(listed(&[]), "");
         assert_eq!(listed(&["a", "b"]), "a, b");
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_is_never_shown_smaller() {
+    fn errors_are_rounded_up() {
         for (value, shown) in [
             (1.117e-12, "2e-12"),
             (3.87e-13, "4e-13"),
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn only_known_digits_are_shown() {
+    fn numbers_are_rounded_at_their_error() {
         assert_eq!(known(1.0 / 3.0, 7e-15), "0.333333333333333");
         assert_eq!(known(2.000_000_000_000_000_4, 7e-15), "2");
         assert_eq!(known(-1_234.567_891, 0.02), "-1234.57");
@@ -127,12 +127,12 @@ mod tests {
     }
 
     #[test]
-    fn many_zeros_become_an_exponent() {
+    fn extreme_magnitudes_use_an_exponent() {
         assert_eq!([1e-5, 2e16, 1e-4].map(number), ["1e-5", "2e16", "0.0001"]);
     }
 
     #[test]
-    fn zero_is_zero() {
+    fn signed_zeros_print_as_zero() {
         assert_eq!([0.0, -0.0].map(number), ["0", "0"]);
         assert_eq!([0.0, -0.0].map(about), ["0", "0"]);
     }

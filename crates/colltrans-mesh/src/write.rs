@@ -47,8 +47,8 @@ pub fn to_stl(mesh: &Mesh) -> Option<Vec<u8>> {
         let corners = face.map(|v| mesh.vertices[v as usize]);
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
         triangles.push(Triangle {
-            normal: Normal::new(single(normal)),
-            vertices: corners.map(|c| Vertex::new(single(c))),
+            normal: Normal::new(rounded_to_single(normal)),
+            vertices: corners.map(|c| Vertex::new(rounded_to_single(c))),
         });
     }
     let mut bytes = Vec::new();
@@ -57,7 +57,7 @@ pub fn to_stl(mesh: &Mesh) -> Option<Vec<u8>> {
 }
 
 /// Rounds a vector to single precision.
-fn single(v: DVec3) -> [f32; 3] {
+fn rounded_to_single(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }
 

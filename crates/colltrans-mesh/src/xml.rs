@@ -6,7 +6,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::ResolveResult;
 
 /// Maximum depth of nested elements.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// A place, such as a line, and the reason of an error.
 pub type Fault = (String, String);
@@ -43,7 +43,7 @@ impl Element {
                 Event::Start(tag) => (tag, false),
                 Event::Empty(tag) => (tag, true),
                 Event::End(_) => {
-                    close(&mut open);
+                    close_element(&mut open);
                     continue;
                 }
                 Event::Text(text) => {
@@ -62,15 +62,15 @@ impl Element {
                 Event::Eof => break,
                 _ => continue,
             };
-            if open.len() > DEEPEST {
-                let reason = format!("elements are nested deeper than the accepted {DEEPEST}");
+            if open.len() > MAX_DEPTH {
+                let reason = format!("elements are nested deeper than the accepted {MAX_DEPTH}");
                 return Err((place(), reason));
             }
-            let attributes = attributes(tag).map_err(|e| (place(), e))?;
+            let attributes = attributes_by_name(tag).map_err(|e| (place(), e))?;
             let name = tag.name().as_ref().to_owned();
             open.push(Self { name, line, attributes, ..Self::default() });
             if ends {
-                close(&mut open);
+                close_element(&mut open);
             }
         }
         let mut all = open.pop().map(|file| file.children).unwrap_or_default().into_iter();
@@ -121,7 +121,7 @@ impl Element {
 }
 
 /// Closes the last open element.
-fn close(open: &mut Vec<Element>) {
+fn close_element(open: &mut Vec<Element>) {
     // The parser rejects end tags without a start tag.
     if let (Some(done), Some(above)) = (open.pop(), open.last_mut()) {
         above.children.push(done);
@@ -129,7 +129,7 @@ fn close(open: &mut Vec<Element>) {
 }
 
 /// Returns the attributes by their qualified names.
-fn attributes(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
+fn attributes_by_name(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
     let mut all = HashMap::new();
     for attribute in tag.attributes() {
         let attribute = attribute.map_err(|e| e.to_string())?;

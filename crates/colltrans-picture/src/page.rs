@@ -30,7 +30,7 @@ impl Stroke {
     }
 
     /// Returns the attributes of SVG.
-    fn attributes(self) -> String {
+    fn svg_attributes(self) -> String {
         let Self { colour, width, dashes } = self;
         let dashes = dashes.map(|d| format!(r#" stroke-dasharray="{d}""#)).unwrap_or_default();
         format!(r#"stroke="{colour}" stroke-width="{width}"{dashes}"#)
@@ -48,9 +48,9 @@ pub struct Frame {
 
 impl Frame {
     /// Returns the part of a convex polygon inside the frame.
-    fn clip(&self, polygon: &[DVec2]) -> Vec<DVec2> {
+    fn clip_polygon(&self, polygon: &[DVec2]) -> Vec<DVec2> {
         let mut kept = polygon.to_vec();
-        for side in self.sides() {
+        for side in self.side_distances() {
             let inside = std::mem::take(&mut kept);
             for (i, &to) in inside.iter().enumerate() {
                 let from = inside[(i + inside.len() - 1) % inside.len()];
@@ -71,7 +71,7 @@ impl Frame {
         if !(a.is_finite() && b.is_finite()) {
             return None;
         }
-        for side in self.sides() {
+        for side in self.side_distances() {
             let (at_a, at_b) = (side(a), side(b));
             if at_a < 0.0 && at_b < 0.0 {
                 return None;
@@ -87,7 +87,7 @@ impl Frame {
     }
 
     /// Returns for each side a function for the distance of a point, positive inside.
-    fn sides(&self) -> [impl Fn(DVec2) -> f64; 4] {
+    fn side_distances(&self) -> [impl Fn(DVec2) -> f64; 4] {
         let Self { low, high } = *self;
         let side = |normal: DVec2, offset: f64| move |p: DVec2| p.dot(normal) - offset;
         [
@@ -131,21 +131,21 @@ impl Page {
             let (width, height) = (right - x, bottom - y);
             let _ = write!(data, "M{x} {y}h{width}v{height}h-{width}z");
         }
-        self.path(look, &data);
+        self.write_path(look, &data);
     }
 
     /// Writes convex polygons with the same attributes.
     pub fn polygons<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, look: &str, all: I) {
         let mut data = String::new();
         for polygon in all {
-            push_path(&mut data, &self.frame.clip(&polygon), true);
+            push_path(&mut data, &self.frame.clip_polygon(&polygon), true);
         }
-        self.path(look, &data);
+        self.write_path(look, &data);
     }
 
     /// Writes segments with the same stroke.
     pub fn segments<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, stroke: Stroke, all: I) {
-        self.lines(&stroke.attributes(), all);
+        self.lines(&stroke.svg_attributes(), all);
     }
 
     /// Writes segments with the same attributes.
@@ -156,7 +156,7 @@ impl Page {
                 push_path(&mut data, &kept, false);
             }
         }
-        self.path(&format!(r#"fill="none" {look}"#), &data);
+        self.write_path(&format!(r#"fill="none" {look}"#), &data);
     }
 
     /// Writes a line through points as one path, so that dashes continue at its bends.
@@ -173,11 +173,11 @@ impl Page {
         for piece in &pieces {
             push_path(&mut data, piece, false);
         }
-        self.path(&format!(r#"fill="none" {}"#, stroke.attributes()), &data);
+        self.write_path(&format!(r#"fill="none" {}"#, stroke.svg_attributes()), &data);
     }
 
     /// Writes a path, unless it is empty.
-    fn path(&mut self, look: &str, data: &str) {
+    fn write_path(&mut self, look: &str, data: &str) {
         if !data.is_empty() {
             let _ = writeln!(self.body, r#"<path {look} d="{data}"/>"#);
         }
@@ -203,7 +203,7 @@ impl Page {
 
     /// Writes a filled circle with an outline.
     pub fn dot(&mut self, at: DVec2, radius: f64, fill: &str, rim: &str) {
-        let (x, y) = (number(at.x), number(at.y));
+        let (x, y) = (format_coordinate(at.x), format_coordinate(at.y));
         let _ = writeln!(
             self.body,
             r#"<circle cx="{x}" cy="{y}" r="{radius}" fill="{fill}" stroke="{rim}" stroke-width="1.2"/>"#
@@ -222,7 +222,7 @@ impl Page {
 
     /// Writes text at a baseline. The `anchor` is `start`, `middle` or `end`.
     pub fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
-        let (x, y) = (number(at.x), number(at.y));
+        let (x, y) = (format_coordinate(at.x), format_coordinate(at.y));
         let text = escaped(text);
         let _ = writeln!(
             self.body,
@@ -236,27 +236,36 @@ impl Page {
         let _ = writeln!(
             self.body,
             r#"<rect x="{}" y="{}" width="{}" height="{}" {look}/>"#,
-            number(frame.low.x),
-            number(frame.low.y),
-            number(size.x),
-            number(size.y)
+            format_coordinate(frame.low.x),
+            format_coordinate(frame.low.y),
+            format_coordinate(size.x),
+            format_coordinate(size.y)
         );
     }
 
     /// Returns a picture to embed in a web page, as wide as its container. The `label` is its alternative text.
     pub fn inline(self, size: DVec2, label: &str) -> String {
         let told = format!(r#" role="img" aria-label="{}""#, escaped(label));
-        self.on_ground(&told, size, "#ffffff")
+        self.with_background(&told, size, "#ffffff")
     }
 
     /// Returns a separate picture with a background of this colour.
     pub fn alone(self, size: DVec2, ground: &str) -> String {
         let DVec2 { x: width, y: height } = size;
-        self.on_ground(&format!(r#" width="{width}" height="{height}""#), size, &escaped(ground))
+        self.with_background(
+            &format!(r#" width="{width}" height="{height}""#),
+            size,
+            &escaped(ground),
+        )
     }
 
     /// Returns the SVG element with a background.
-    fn on_ground(self, extent: &str, DVec2 { x: width, y: height }: DVec2, ground: &str) -> String {
+    fn with_background(
+        self,
+        extent: &str,
+        DVec2 { x: width, y: height }: DVec2,
+        ground: &str,
+    ) -> String {
         let ground = format!(r#"<rect width="100%" height="100%" fill="{ground}"/>"#);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\"{extent} viewBox=\"0 0 {width} {height}\" \
@@ -306,9 +315,9 @@ pub fn escaped(text: &str) -> String {
 /// Appends a path to the data.
 fn push_path(data: &mut String, points: &[DVec2], closed: bool) {
     let Some((first, rest)) = points.split_first() else { return };
-    let _ = write!(data, "M{} {}", number(first.x), number(first.y));
+    let _ = write!(data, "M{} {}", format_coordinate(first.x), format_coordinate(first.y));
     for point in rest {
-        let _ = write!(data, "L{} {}", number(point.x), number(point.y));
+        let _ = write!(data, "L{} {}", format_coordinate(point.x), format_coordinate(point.y));
     }
     if closed {
         data.push('Z');
@@ -316,7 +325,7 @@ fn push_path(data: &mut String, points: &[DVec2], closed: bool) {
 }
 
 /// Formats a coordinate with a tenth of a pixel, which is finer than any line.
-fn number(value: f64) -> String {
+fn format_coordinate(value: f64) -> String {
     let text = format!("{value:.1}");
     let text = text.strip_suffix(".0").unwrap_or(&text);
     if text == "-0" { "0".into() } else { text.into() }
@@ -327,24 +336,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_ends_its_element_or_its_attribute() {
+    fn hostile_text_is_escaped() {
         let hostile = "</text><script>\"'&\u{1b}[31m\0";
         let text = escaped(hostile);
         assert_eq!(text, "&lt;/text&gt;&lt;script&gt;&quot;'&amp;\u{fffd}[31m\u{fffd}");
     }
 
     #[test]
-    fn clipping_keeps_what_is_inside() {
+    fn clipping_keeps_the_inside() {
         let frame = Frame { low: DVec2::ZERO, high: DVec2::ONE };
         let inside = [DVec2::new(0.2, 0.2), DVec2::new(0.8, 0.2), DVec2::new(0.5, 0.9)];
-        assert_eq!(frame.clip(&inside), inside);
+        assert_eq!(frame.clip_polygon(&inside), inside);
         let around = [DVec2::new(-1e9, -1e9), DVec2::new(3e9, -1e9), DVec2::new(-1e9, 3e9)];
-        let cut = frame.clip(&around);
+        let cut = frame.clip_polygon(&around);
         assert!(cut.iter().all(|p| p.min_element() >= -1e-6 && p.max_element() <= 1.0 + 1e-6));
         let area: f64 =
             cut.iter().zip(cut.iter().cycle().skip(1)).map(|(a, b)| a.perp_dot(*b)).sum::<f64>();
         assert!((area / 2.0 - 1.0).abs() < 1e-6, "the whole frame: {area}");
-        assert!(frame.clip(&inside.map(|p| p + 5.0)).is_empty());
+        assert!(frame.clip_polygon(&inside.map(|p| p + 5.0)).is_empty());
         assert_eq!(
             frame.clip_segment([DVec2::new(-1.0, 0.5), DVec2::new(3.0, 0.5)]),
             Some([DVec2::new(0.0, 0.5), DVec2::new(1.0, 0.5)])
@@ -356,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polyline_is_one_line_where_it_is_not_cut() {
+    fn polyline_is_one_path_unless_clipped() {
         let frame = Frame { low: DVec2::ZERO, high: DVec2::splat(100.0) };
         let drawn = |points: &[DVec2]| {
             let mut page = Page::new(frame);

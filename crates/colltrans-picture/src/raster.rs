@@ -10,7 +10,7 @@ use crate::Frame;
 use crate::grid::{Depth, Grid};
 
 /// Number of samples per pixel, along each axis.
-const FINE: usize = 2;
+const SAMPLES_PER_PIXEL: usize = 2;
 /// The tone of a sample without a triangle.
 const EMPTY: u32 = u32::MAX;
 
@@ -26,7 +26,7 @@ pub struct Raster {
 impl Raster {
     /// Builds an empty raster over a window that begins at (0, 0). Depths are lengths.
     pub fn new(window: Frame) -> Self {
-        let grid = Grid::new(window, FINE);
+        let grid = Grid::new(window, SAMPLES_PER_PIXEL);
         let (depths, tones) = (vec![f64::NEG_INFINITY; grid.len()], vec![EMPTY; grid.len()]);
         Self { grid, depth: Depth::Length, depths, tones, window }
     }
@@ -40,7 +40,7 @@ impl Raster {
     /// Draws a triangle with a tone, any number except `u32::MAX`. Corners have x and y on the page, and the
     /// depth as z. At equal depths, the triangle drawn first remains.
     pub fn draw(&mut self, corners: [DVec3; 3], tone: u32) {
-        self.grid.cover(corners, |cell, depth| {
+        self.grid.visit_covered(corners, |cell, depth| {
             if depth > self.depths[cell] {
                 (self.depths[cell], self.tones[cell]) = (depth, tone);
             }
@@ -49,9 +49,10 @@ impl Raster {
 
     /// Checks whether a point of the page at this depth is visible: a neighbouring sample is not nearer, or has
     /// one of the tones `own`.
-    fn sees(&self, at: DVec2, depth: f64, own: &[u32]) -> bool {
-        let sees = |cell: usize| self.depths[cell] <= depth || own.contains(&self.tones[cell]);
-        self.grid.around(at).any(sees)
+    fn is_visible(&self, at: DVec2, depth: f64, own: &[u32]) -> bool {
+        let is_visible =
+            |cell: usize| self.depths[cell] <= depth || own.contains(&self.tones[cell]);
+        self.grid.cells_around(at).any(is_visible)
     }
 
     /// Splits a segment into its visible and its hidden parts. The ends have x and y on the page, and the depth
@@ -68,11 +69,11 @@ impl Raster {
         let Some([first, last]) = self.window.clip_segment([from, to]) else { return parts };
         let whole = from.distance(to).max(f64::MIN_POSITIVE);
         let [s, t] = [first, last].map(|p| (p.distance(from) / whole).min(1.0));
-        let steps = (first.distance(last) * FINE as f64).ceil().max(1.0) as usize;
+        let steps = (first.distance(last) * SAMPLES_PER_PIXEL as f64).ceil().max(1.0) as usize;
         let at = |i: usize| s + (t - s) * i as f64 / steps as f64;
         let is_seen = |i: usize| {
             let p = a.lerp(b, 0.5 * (at(i) + at(i + 1)));
-            self.sees(p.truncate(), self.depth.nearer(p.z, slack), own)
+            self.is_visible(p.truncate(), self.depth.moved_nearer(p.z, slack), own)
         };
         let (mut start, mut was) = (0, is_seen(0));
         for i in 1..=steps {
@@ -91,10 +92,11 @@ impl Raster {
         let tones = self.tones.iter().filter(|tone| **tone != EMPTY).max();
         let mut done = vec![Vec::new(); tones.map_or(0, |last| *last as usize + 1)];
         let mut open: Vec<(u32, [usize; 4])> = Vec::new();
-        for y in 0..self.grid.height / FINE {
+        for y in 0..self.grid.height / SAMPLES_PER_PIXEL {
             let mut runs: Vec<(u32, [usize; 4])> = Vec::new();
-            for x in 0..self.grid.width / FINE {
-                let tone = self.tones[y * FINE * self.grid.width + x * FINE];
+            for x in 0..self.grid.width / SAMPLES_PER_PIXEL {
+                let tone =
+                    self.tones[y * SAMPLES_PER_PIXEL * self.grid.width + x * SAMPLES_PER_PIXEL];
                 match runs.last_mut() {
                     Some((last, [_, _, right, _])) if *last == tone && *right == x => *right += 1,
                     _ if tone == EMPTY => {}
@@ -132,7 +134,7 @@ impl Raster {
             DVec2::new((cell % self.grid.width) as f64, (cell / self.grid.width) as f64)
         };
         let sample = move |(cell, &tone): (usize, &u32)| {
-            ((place(cell) + 0.5) / FINE as f64, (tone != EMPTY).then_some(tone))
+            ((place(cell) + 0.5) / SAMPLES_PER_PIXEL as f64, (tone != EMPTY).then_some(tone))
         };
         self.tones.iter().enumerate().map(sample)
     }
@@ -153,20 +155,20 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     use super::*;
-    use crate::grid::tests::{WINDOW, corners, depth_at, sample};
+    use crate::grid::tests::{WINDOW, cell_centre, depth_at, random_corners};
 
     /// Compares with each triangle at each sample.
     #[test]
-    fn the_nearest_triangle_is_seen() {
+    fn nearest_triangle_is_visible() {
         let mut random = Random::new(7);
         for _ in 0..20 {
-            let triangles: Vec<[DVec3; 3]> = (0..12).map(|_| corners(&mut random)).collect();
+            let triangles: Vec<[DVec3; 3]> = (0..12).map(|_| random_corners(&mut random)).collect();
             let mut raster = Raster::new(WINDOW);
             for (k, &triangle) in triangles.iter().enumerate() {
                 raster.draw(triangle, k as u32);
             }
             for cell in 0..raster.grid.len() {
-                let at = sample(cell, &raster.grid);
+                let at = cell_centre(cell, &raster.grid);
                 let depths = triangles.iter().enumerate();
                 let depths = depths.filter_map(|(k, t)| Some((depth_at(at, *t)?, k as u32)));
                 let best = depths.max_by(|a, b| a.0.total_cmp(&b.0));
@@ -176,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_cover_what_was_drawn() {
+    fn tiles_cover_drawn_triangles() {
         let mut raster = Raster::new(WINDOW);
         let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
         raster.draw([corner(2.0, 3.0), corner(12.0, 3.0), corner(12.0, 9.0)], 4);
@@ -189,11 +191,14 @@ mod tests {
             assert_eq!(tone, inside.then_some(4), "{at}");
             usize::from(inside)
         };
-        assert_eq!(raster.samples().map(seen).sum::<usize>(), 60 * FINE * FINE);
+        assert_eq!(
+            raster.samples().map(seen).sum::<usize>(),
+            60 * SAMPLES_PER_PIXEL * SAMPLES_PER_PIXEL
+        );
     }
 
     #[test]
-    fn a_segment_is_seen_beside_what_hides_it() {
+    fn segment_is_hidden_only_behind_a_surface() {
         let mut raster = Raster::new(WINDOW);
         let corner = |x: f64, y: f64| DVec3::new(x, y, 1.0);
         raster.draw([corner(10.0, -50.0), corner(20.0, -50.0), corner(20.0, 90.0)], 0);
@@ -218,7 +223,7 @@ mod tests {
 
     /// Also in a steep valley, whose edge is farther than its surroundings.
     #[test]
-    fn an_edge_is_not_hidden_by_its_own_facets() {
+    fn edge_is_not_hidden_by_its_own_facets() {
         let v = DVec3::new;
         let mut raster = Raster::new(WINDOW).with_depths(Depth::Inverse);
         raster.draw([v(20.0, -10.0, 1.0), v(40.0, -10.0, 1.0), v(40.0, 60.0, 1.0)], 0);
@@ -237,7 +242,7 @@ mod tests {
 
     /// The slack is a length of the scene: a point 1 behind a surface at distance 4 is at distance 5.
     #[test]
-    fn slack_is_a_length_for_either_kind_of_depths() {
+    fn slack_is_a_length_for_both_kinds_of_depth() {
         let v = DVec3::new;
         for kind in [Depth::Length, Depth::Inverse] {
             let depth = |away: f64| if kind == Depth::Length { -away } else { 1.0 / away };
@@ -251,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_neither_drawn_nor_seen_nor_hidden_twice() {
+    fn non_finite_triangles_are_not_drawn_and_segments_hidden_once() {
         let v = DVec3::new;
         let mut raster = Raster::new(WINDOW);
         raster.draw([v(f64::NAN, 0.0, 1.0), v(60.0, 0.0, 1.0), v(0.0, 40.0, 1.0)], 0);

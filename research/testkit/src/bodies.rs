@@ -1,4 +1,5 @@
-//! Bodies and poses of tests, from the meshes and points of [`shapes`]. All functions panic where the library refuses a body.
+//! Builds bodies and poses of tests from the meshes and points of [`shapes`]. All functions panic if the
+//! library rejects a body.
 
 use colltrans::{ConvexPolyhedron, Pose, Solid};
 use glam::{DQuat, DVec3};
@@ -9,12 +10,12 @@ use crate::shapes::{self, Mesh};
 /// Returns the hull of points.
 ///
 /// # Panics
-/// If they have none.
+/// If there are no points.
 pub fn body(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("a body")
 }
 
-/// Returns the hull of so many random points on the unit sphere.
+/// Returns the hull of `n` random points on the unit sphere.
 pub fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
     body(&shapes::random_hull(n, random).vertices)
 }
@@ -32,7 +33,7 @@ pub fn block(low: impl Into<DVec3>, high: impl Into<DVec3>) -> ConvexPolyhedron 
     ConvexPolyhedron::cuboid(low.into(), high.into()).expect("a box")
 }
 
-/// Returns the convex box about the origin with these half sides.
+/// Returns the convex box, centred at the origin, with these half extents.
 pub fn centered(half: impl Into<DVec3>) -> ConvexPolyhedron {
     let half = half.into();
     block(-half, half)
@@ -66,23 +67,23 @@ pub fn floor_with_wall() -> Solid {
     Solid::from_pieces([&floor, &wall]).expect("pieces")
 }
 
-/// Returns a place without a rotation.
+/// Returns a pose without rotation.
 ///
 /// # Panics
-/// If it is out of range.
+/// If the translation is out of range.
 pub fn at(translation: impl Into<DVec3>) -> Pose {
     Pose::from_translation(translation.into()).expect("in range")
 }
 
-/// Returns a place without a rotation, by its coordinates.
+/// Returns a pose without rotation, given by its coordinates.
 pub fn at_xyz(x: f64, y: f64, z: f64) -> Pose {
     at([x, y, z])
 }
 
-/// Returns a place in the plane, turned about z by an angle in radians.
+/// Returns a pose with a translation in the xy plane, and a rotation about z by an angle in radians.
 ///
 /// # Panics
-/// If it is out of range.
+/// If the translation is out of range.
 pub fn turned(x: f64, y: f64, angle: f64) -> Pose {
     Pose::new(DQuat::from_rotation_z(angle), DVec3::new(x, y, 0.0)).expect("in range")
 }

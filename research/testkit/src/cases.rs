@@ -1,15 +1,15 @@
-//! Number of random cases of a test.
+//! The number of random cases of a test.
 
 use std::env;
 use std::ops::Div;
 
 /// Environment variable that selects the number of random cases.
 const VARIABLE: &str = "COLLTRANS_CASES";
-/// Factor by which a usual run has fewer cases than a full one.
+/// Factor by which a normal run has fewer cases than a full run.
 const FEWER: u8 = 4;
 
-/// Returns the number of random cases that a test runs: all of them if the environment variable `COLLTRANS_CASES` is
-/// `full`, as CI sets it, else a quarter, rounded down.
+/// Returns the number of random cases that a test runs. It is `full` if the environment variable
+/// `COLLTRANS_CASES` is `full`, as in CI, and otherwise a quarter, rounded down.
 ///
 /// A test that counts kinds of cases expects `cases(n)` of them, too.
 ///

@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{env, fs, process};
 
-/// An empty folder for temporary files, removed with its contents when this value is dropped.
+/// An empty folder for temporary files. It is removed with its contents when this value is dropped.
 ///
-/// It takes the place of the crate `tempfile`, which turns on features of what the program depends on: `cargo test`
-/// and `cargo run` would then compile the same libraries twice.
+/// It replaces the crate `tempfile`, which enables features of dependencies of the program. `cargo test` and
+/// `cargo run` would then compile the same libraries twice.
 #[derive(Debug)]
 pub struct TemporaryFolder(PathBuf);
 
 impl TemporaryFolder {
-    /// Creates a folder that no other value of this type, process or earlier run has.
+    /// Creates a folder that differs from those of other values, processes and earlier runs.
     ///
     /// # Panics
     ///
-    /// If the system's folder for temporary files does not allow it.
+    /// If the folder for temporary files of the system is not writable.
     #[expect(clippy::new_without_default, reason = "a default value would write to the disk")]
     pub fn new() -> Self {
         static CREATED: AtomicU64 = AtomicU64::new(0);
@@ -26,7 +26,7 @@ impl TemporaryFolder {
             let folder = env::temp_dir().join(name);
             match fs::create_dir(&folder) {
                 Ok(()) => return Self(folder),
-                // An earlier process of this number was killed before it removed the folder.
+                // An earlier process with the same id was killed before it removed the folder.
                 Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
                 Err(error) => panic!("cannot create {}: {error}", folder.display()),
             }
@@ -41,7 +41,7 @@ impl TemporaryFolder {
 
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        // A folder that cannot be removed does not make the test fail.
+        // An error in removing the folder does not fail the test.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

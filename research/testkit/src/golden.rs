@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// The hash of Fowler, Noll and Vo with 64 bits, variant 1a.
+/// The FNV-1a hash (Fowler, Noll and Vo) with 64 bits.
 #[derive(Debug)]
 pub struct Hash(u64);
 
@@ -42,7 +42,7 @@ impl Hash {
 ///
 /// # Panics
 ///
-/// If a hash differs. The message holds the lines with the new hashes.
+/// If a hash differs. The message contains the lines with the new hashes.
 pub fn assert_unchanged(known: &[(&str, u64)], hash_of: impl Fn(&str) -> u64) {
     let line = |&(family, golden): &(&str, u64)| {
         let found = hash_of(family);

@@ -1,10 +1,13 @@
-//! What tests, campaigns, benchmarks and the laboratory share.
+//! Shared code of tests, campaigns, benchmarks and the laboratory.
 //!
-//! [`oracle`]: the judge, in exact rational arithmetic, with the settings that are hard on purpose.
-//! Beside it what knows nothing of the library: [`random`] numbers on streams that do not disturb each
-//! other, [`shapes`] and [`solids`] as vertices and faces, [`machines`] made of parts, [`timing`] of single calls with the statistics
-//! of many, [`tally`] of what campaigns count, [`provenance`]: where numbers come from, and [`golden`]: hashes of answers. Files of
-//! tests lie in a [`TemporaryFolder`]; [`cases`] is the number of random cases, and [`bodies`] makes those of tests.
+//! - [`oracle`] computes correct answers in exact rational arithmetic, and has settings that are deliberately
+//!   difficult.
+//! - [`random`] has random numbers in independent streams, [`shapes`] and [`solids`] have meshes, [`machines`]
+//!   has assemblies. These do not use the library.
+//! - [`timing`] measures single calls and computes statistics, [`tally`] has the counts of campaigns,
+//!   [`provenance`] describes the origin of numbers, and [`golden`] hashes answers.
+//! - [`TemporaryFolder`] has the files of a test, [`cases`] is the number of random cases, and [`bodies`]
+//!   builds the bodies of tests.
 
 pub mod bodies;
 mod cases;

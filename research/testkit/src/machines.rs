@@ -1,7 +1,8 @@
-//! Machines whose right order of taking apart is known: flanges, a radial engine, a block on threaded screws, a table on
-//! legs that are screwed in. Parts with their names, each where it belongs; `z` is upwards. Fits have no clearance: both sides have the same corners.
+//! Builds machines with a known disassembly order: flanges, a radial engine, a block with threaded screws, and
+//! a table with screwed-in legs. All parts are named and in their assembled position, with `z` upwards. Fits
+//! have no clearance: both sides have the same corners.
 //!
-//! Notation: an *outline* is a polygon in `x, y`, counter-clockwise; a *loop* is one in space.
+//! Notation: an *outline* is a polygon in `x, y`, counter-clockwise. A *loop* is a polygon in space.
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -14,11 +15,12 @@ use crate::shapes::{Mesh, helical};
 /// A name and the bodies of a part, mostly one.
 pub type NamedPart = (String, Vec<Mesh>);
 
-/// Sides of what is round, elsewhere than on flanges.
+/// Number of sides of round features, except on flanges.
 const SIDES: usize = 32;
 
-/// Two flanges with a gasket, held by so many bolts with washers and nuts, and what is round has so many sides. First the
-/// bolts go, upwards, then washers, the upper flange and the gasket; nuts go down, and the lower flange stays.
+/// Builds two flanges with a gasket, held by `bolts` bolts with washers and nuts. Round features have `sides`
+/// sides. The disassembly order is: the bolts upwards, the washers, the upper flange and the gasket. The nuts
+/// go down, and the lower flange stays.
 pub fn flange(bolts: usize, sides: usize) -> Vec<NamedPart> {
     let circle = (14.0 * bolts as f64 / TAU).max(40.0);
     let at = |k: usize| DVec2::from_angle(TAU * k as f64 / bolts as f64) * circle;
@@ -45,9 +47,9 @@ pub fn flange(bolts: usize, sides: usize) -> Vec<NamedPart> {
     parts
 }
 
-/// A radial engine, its shaft along `z`, with a cover that so many bolts hold. Of each cylinder the head leaves first, then
-/// the barrel; then the pin, along the shaft; then the piston, and the rod after it. The shaft waits for the cover, which
-/// waits for its bolts. The case stays.
+/// Builds a radial engine with its shaft along `z`, and a cover held by one bolt per cylinder. For each
+/// cylinder the order is: head, barrel, the pin along the shaft, piston, rod. The shaft comes after the cover,
+/// and the cover after its bolts. The case stays.
 pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
     const DEPTH: f64 = 14.0;
     const CORNER: f64 = 1.0;
@@ -82,7 +84,7 @@ pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
     ];
     let screw = [(round(CORNER, SIDES), DEPTH + 4.0), (round(2.2, 6), DEPTH + 6.0)];
     let screw = stacked(-DEPTH, &screw, &[]);
-    // Along their own axes, which are `z`, with the pin along `x`.
+    // The following parts are built along their own axis `z`, with the pin along `x`.
     let seat = outer + 24.0;
     let bore = polygon(10.0, 8);
     let barrel = [(round(12.0, SIDES), outer), (polygon(13.0, 8), seat)];
@@ -124,8 +126,8 @@ pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
     parts
 }
 
-/// A cap on a base, around a shaft, held by two screws in modelled threads of two turns of the base: inserts, which are bodies of
-/// the base. The screws are unscrewed, then the cap is lifted, and the shaft.
+/// Builds a cap on a base, around a shaft, held by two screws. Their threads of two turns are in inserts, which
+/// are bodies of the base. The screws are unscrewed, then the cap and the shaft are lifted.
 pub fn threaded_block() -> Vec<NamedPart> {
     let wave = |phase: f64| 1.0 - (2.0 * phase - 1.0).abs();
     let at = |k: usize| DVec2::X * [14.0, -14.0][k];
@@ -176,12 +178,13 @@ pub fn threaded_block() -> Vec<NamedPart> {
     parts
 }
 
-/// By how many turns the legs of [`screwed_table`] are turned from where they fit, and by how much they stand beside it.
+/// For each leg of [`screwed_table`] its rotation in turns and its lateral offset from the fitting position.
 pub const TABLE_LEGS: [(f64, [f64; 2]); 4] =
     [(0.2, [0.0, 0.0]), (-0.3, [0.03, -0.02]), (0.45, [0.0, 0.05]), (-0.15, [-0.04, 0.0])];
 
-/// A top with four legs, each screwed into an insert, which is a body of the top: placed by eye, so that threads run into each
-/// other. They end within the length that both parts have in common. The legs are unscrewed, and the top stays.
+/// Builds a table top with four legs. Each leg is screwed into an insert, which is a body of the top. The legs
+/// are misplaced, so that threads overlap. The threads end within the common length. The legs are unscrewed,
+/// and the top stays.
 pub fn screwed_table() -> Vec<NamedPart> {
     let wave = |phase: f64| 1.0 - (2.0 * phase - 1.0).abs();
     let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
@@ -207,7 +210,7 @@ pub fn screwed_table() -> Vec<NamedPart> {
     parts
 }
 
-/// The outline of a rod, from its foot at a height to an eye around another one.
+/// Returns the outline of a rod, from its foot at the height `foot` to a round eye at the height `eye`.
 fn rod(foot: f64, eye: f64) -> Vec<DVec2> {
     const EYE: f64 = 5.0;
     let steps = 24;
@@ -218,33 +221,37 @@ fn rod(foot: f64, eye: f64) -> Vec<DVec2> {
     [DVec2::new(-2.5, foot), DVec2::new(2.5, foot)].into_iter().chain(arc).collect()
 }
 
-/// Corners at a radius, the first one on the `x` axis.
+/// Returns the corners of a regular polygon with this circumradius. The first one is on the `x` axis.
 fn round(radius: f64, sides: usize) -> Vec<DVec2> {
     (0..sides).map(|k| DVec2::from_angle(TAU * k as f64 / sides as f64) * radius).collect()
 }
 
-/// A regular polygon whose sides are at a distance from the middle, the first side across the `x` axis.
+/// Returns a regular polygon whose sides have this distance from the centre. The first side crosses the `x`
+/// axis.
 fn polygon(apothem: f64, sides: usize) -> Vec<DVec2> {
     let radius = apothem / (PI / sides as f64).cos();
     let angle = |k: usize| TAU * (k as f64 - 0.5) / sides as f64;
     (0..sides).map(|k| DVec2::from_angle(angle(k)) * radius).collect()
 }
 
+/// Returns an outline translated by a vector.
 fn moved(outline: &[DVec2], by: DVec2) -> Vec<DVec2> {
     outline.iter().map(|p| *p + by).collect()
 }
 
+/// Returns an outline as a loop at the height `z`.
 fn lifted(outline: &[DVec2], z: f64) -> Vec<DVec3> {
     outline.iter().map(|p| p.extend(z)).collect()
 }
 
+/// Returns a loop in the opposite direction.
 fn turned(mut loops: Vec<DVec3>) -> Vec<DVec3> {
     loops.reverse();
     loops
 }
 
-/// Prisms one on another, from a height on, each an outline and its upper end, with holes through all of them. Of two
-/// outlines one lies in the other.
+/// Builds a stack of prisms from a height upwards, each with an outline and an upper end, with holes through
+/// all of them. Of two consecutive outlines, one contains the other.
 fn stacked(mut low: f64, prisms: &[(Vec<DVec2>, f64)], holes: &[Vec<DVec2>]) -> Mesh {
     let mut made = Surface::default();
     let through =
@@ -268,29 +275,31 @@ fn stacked(mut low: f64, prisms: &[(Vec<DVec2>, f64)], holes: &[Vec<DVec2>]) -> 
     made.mesh
 }
 
+/// Returns the signed area.
 fn area(outline: &[DVec2]) -> f64 {
     let next = outline.iter().cycle().skip(1);
     outline.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0
 }
 
-/// Flat walls around `z` on a floor, with round holes through the middle of some.
+/// Flat walls around `z` on a floor, with round holes through the middle of some walls.
 struct Drum {
     sides: usize,
-    /// Of the walls' inner and outer sides.
+    /// The distances of the inner and outer sides of the walls from the axis.
     apothems: [f64; 2],
-    /// Of the walls, inside.
+    /// The lower and the upper end of the walls, inside.
     heights: [f64; 2],
-    /// How thick it is, below.
+    /// The thickness of the floor.
     floor: f64,
     /// Radius and height of the holes.
     bore: (f64, f64),
-    /// Which walls have one.
+    /// For each wall whether it has a hole.
     bored: Vec<bool>,
-    /// Holes through walls and floor, along `z`.
+    /// Outlines of holes through walls and floor, along `z`.
     screws: Vec<Vec<DVec2>>,
 }
 
 impl Drum {
+    /// Builds the mesh.
     fn mesh(&self) -> Mesh {
         let mut made = Surface::default();
         let [inner, outer] = self.apothems.map(|apothem| polygon(apothem, self.sides));
@@ -336,7 +345,7 @@ impl Drum {
     }
 }
 
-/// A closed surface as it is made, of corners that are equal to the bit.
+/// A closed surface while it is built. Vertices with equal coordinates are merged.
 #[derive(Default)]
 struct Surface {
     mesh: Mesh,
@@ -344,8 +353,9 @@ struct Surface {
 }
 
 impl Surface {
+    /// Returns the index of a vertex, which is added if it is new.
     fn vertex(&mut self, p: DVec3) -> u32 {
-        // No zero is negative.
+        // Adding zero converts -0 to 0.
         let p = p + DVec3::ZERO;
         *self.known.entry(p.to_array().map(f64::to_bits)).or_insert_with(|| {
             self.mesh.vertices.push(p);
@@ -353,7 +363,7 @@ impl Surface {
         })
     }
 
-    /// A flat face whose outer loop runs counter-clockwise as seen from outside, with holes.
+    /// Adds a flat face with holes. The outer loop is counter-clockwise seen from outside.
     fn face(&mut self, outer: &[DVec3], holes: &[Vec<DVec3>]) {
         let next = outer.iter().cycle().skip(1);
         let normal: DVec3 =
@@ -380,7 +390,7 @@ impl Surface {
         }
     }
 
-    /// Flat quadrilaterals from one loop to another one, seen from the side where the first is below and runs to the right.
+    /// Adds flat quadrilaterals between two loops. Seen from outside, the first is below and runs to the right.
     fn wall(&mut self, low: &[DVec3], high: &[DVec3]) {
         for k in 0..low.len() {
             let next = (k + 1) % low.len();

@@ -1,4 +1,4 @@
-//! Where numbers come from: the machine, the build, the day and the command.
+//! Describes the origin of numbers: machine, build, date and command.
 
 use std::path::Path;
 use std::thread::available_parallelism;
@@ -10,26 +10,26 @@ use serde_json::{Value, json};
 /// The circumstances of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
-    /// Model of the processor.
+    /// The model of the processor.
     pub processor: String,
-    /// Cores this process may use.
+    /// Number of cores that this process may use.
     pub cores: String,
-    /// Operating system and architecture.
+    /// The operating system and the architecture.
     pub system: String,
-    /// Versions of what was measured, what compiled it, and what draws.
+    /// Versions of the library, the compiler and other dependencies of the numbers.
     pub versions: String,
-    /// How it was compiled.
+    /// The build settings.
     pub build: String,
-    /// Day and minute of the start, UTC.
+    /// Date and minute of the start, UTC.
     pub date: String,
     /// The command line.
     pub command: String,
-    /// Whether this is a build whose times mean something.
+    /// Whether the build is optimised, so that its times are meaningful.
     pub is_optimised: bool,
 }
 
 impl Provenance {
-    /// That of this process, now; `other`: the version of what else the numbers depend on.
+    /// Describes this process. `other` is the version of another dependency of the numbers.
     pub fn of_this_process(other: &str) -> Self {
         let version = env!("CARGO_PKG_VERSION");
         let compiler = env!("COLLTRANS_TESTKIT_COMPILER");
@@ -45,7 +45,7 @@ impl Provenance {
         }
     }
 
-    /// An object that the report of a run begins with: `date`, `command`, `machine` (`cpu`, `cores`,
+    /// Returns the object with which the report of a run begins: `date`, `command`, `machine` (`cpu`, `cores`,
     /// `system`), `versions`, `build`.
     pub fn to_json(&self) -> Value {
         json!({
@@ -58,10 +58,12 @@ impl Provenance {
     }
 }
 
+/// Returns the text for an unknown value.
 fn unknown() -> String {
     "unknown".into()
 }
 
+/// Returns the model of the processor; `None` if it is unknown.
 fn processor() -> Option<String> {
     let from_file = || {
         let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
@@ -82,6 +84,7 @@ fn processor() -> Option<String> {
     }
 }
 
+/// Returns the operating system with its release, and the architecture.
 fn system() -> String {
     use std::env::consts::{ARCH, OS};
     let release = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
@@ -91,7 +94,8 @@ fn system() -> String {
     }
 }
 
-/// The command as one could type it, with names for paths from the root: folders are this machine's affair.
+/// Returns the command line with shell quoting. Absolute paths are reduced to their last component, because
+/// folders are specific to the machine.
 fn command(mut arguments: impl Iterator<Item = String>) -> String {
     let named = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     let name = named(&arguments.next().unwrap_or_default());
@@ -112,7 +116,7 @@ fn command(mut arguments: impl Iterator<Item = String>) -> String {
     std::iter::once(name).chain(quoted).collect::<Vec<_>>().join(" ")
 }
 
-/// A duration for people: `0.4 s`, `12 s`, `3 min 20 s`, `1 h 2 min`.
+/// Formats a duration for readers: `0.4 s`, `12 s`, `3 min 20 s`, `1 h 2 min`.
 pub fn for_people(duration: Duration) -> String {
     let seconds = duration.as_secs();
     match seconds {

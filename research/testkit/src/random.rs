@@ -1,11 +1,9 @@
-//! Random numbers for all that is random here: families of settings, campaigns, property tests, bodies to
-//! measure with, experiments of the laboratory.
+//! Generates random numbers for all settings, campaigns, property tests, benchmarks and laboratory experiments.
 //!
-//! One generator, splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators",
-//! OOPSLA 2014): eight bytes of state, the same numbers on every platform, and good enough to draw test
-//! cases. What a seed gives is held by golden bits, saved cases and lines of campaigns: it must not
-//! change. [`Random::stream`] gives every purpose numbers of its own, so that what one experiment draws
-//! does not depend on whether another one ran.
+//! The generator is splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA
+//! 2014). It has eight bytes of state and yields the same numbers on every platform. The numbers of a seed must
+//! not change, because golden bits, saved cases and recorded campaigns depend on them. [`Random::stream`]
+//! yields independent numbers for each purpose, so that an experiment does not depend on which others ran.
 
 use glam::{DQuat, DVec3};
 
@@ -14,17 +12,17 @@ use glam::{DQuat, DVec3};
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of a seed.
+    /// Starts the stream of a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The stream of a seed for a purpose, told from others by a few numbers.
+    /// Starts the stream of a seed for a purpose, which is identified by a list of numbers.
     pub fn stream(seed: u64, purpose: &[u64]) -> Self {
         purpose.iter().fold(Self(seed), |mut random, part| Self(random.bits() ^ part))
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -33,52 +31,52 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number in `[0, 1)`, a multiple of `2^-53`.
+    /// Returns a number in `[0, 1)`, a multiple of `2^-53`.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * f64::EPSILON / 2.0
     }
 
-    /// A number in `[low, high)`.
+    /// Returns a number in `[low, high)`.
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// An integer in `low..=high`.
+    /// Returns an integer in `low..=high`.
     pub fn int(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
 
-    /// An integer in `low..=high`, as a coordinate.
+    /// Returns an integer in `low..=high` as a coordinate.
     pub fn whole(&mut self, low: i64, high: i64) -> f64 {
         self.int(low, high) as f64
     }
 
-    /// One of `0..count`; `count > 0`.
+    /// Returns an index in `0..count`; `count > 0`.
     pub fn index(&mut self, count: usize) -> usize {
         self.int(0, count as i64 - 1) as usize
     }
 
-    /// `true` once in `n` times.
+    /// Returns `true` with probability `1 / n`.
     pub fn one_in(&mut self, n: u64) -> bool {
         self.bits().is_multiple_of(n)
     }
 
-    /// One of several values.
+    /// Returns one of several values.
     pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.index(values.len())]
     }
 
-    /// A vector in a cube of half side 1.
+    /// Returns a vector in the cube from -1 to 1.
     pub fn vector(&mut self) -> DVec3 {
         DVec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0))
     }
 
-    /// A vector of whole numbers.
+    /// Returns a vector of integers in `low..=high`.
     pub fn grid(&mut self, low: i64, high: i64) -> DVec3 {
         DVec3::new(self.whole(low, high), self.whole(low, high), self.whole(low, high))
     }
 
-    /// A unit vector, evenly distributed.
+    /// Returns a uniformly distributed unit vector.
     pub fn direction(&mut self) -> DVec3 {
         loop {
             let v = self.vector();
@@ -88,7 +86,7 @@ impl Random {
         }
     }
 
-    /// A rotation, evenly distributed.
+    /// Returns a uniformly distributed rotation.
     pub fn rotation(&mut self) -> DQuat {
         loop {
             let v = [0; 4].map(|_| self.range(-1.0, 1.0));
@@ -104,7 +102,7 @@ impl Random {
 mod tests {
     use super::*;
 
-    /// Against the numbers that others publish for the seed 1234567.
+    /// Compares with the published numbers for the seed 1234567.
     #[test]
     fn the_generator_is_splitmix64() {
         let mut random = Random::new(1_234_567);
@@ -146,7 +144,7 @@ mod tests {
             }
             sums[3] += random.direction();
         }
-        // Five standard deviations of a mean of `count` values of variance 1/3.
+        // Five standard deviations of the mean of `count` values with variance 1/3.
         let bound = 5.0 * (1.0 / 3.0 / f64::from(count)).sqrt();
         for sum in sums {
             assert!((sum / f64::from(count)).abs().max_element() < bound, "{sum}");

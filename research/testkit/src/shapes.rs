@@ -1,4 +1,4 @@
-//! Bodies to measure with, as vertices and faces: centred at the origin, of about unit size.
+//! Builds meshes for measurements, of about unit size, mostly centred at the origin.
 //!
 //! Notation. A *ring body* has `rings` parallels of `around` vertices each between two poles.
 
@@ -9,23 +9,23 @@ use glam::DVec3;
 
 use crate::random::Random;
 
-/// Vertices and faces, counter-clockwise as seen from outside. Without faces: the convex hull of
-/// the vertices is meant.
+/// Vertices, and faces that are counter-clockwise seen from outside. Without faces, the mesh represents the
+/// convex hull of its vertices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
     /// The vertices.
     pub vertices: Vec<DVec3>,
-    /// The faces, as lists of vertices; trapezoids are flat but for rounding.
+    /// The faces, as lists of vertices. Trapezoids are flat up to rounding.
     pub faces: Vec<Vec<u32>>,
 }
 
 impl Mesh {
-    /// Points alone.
+    /// Builds a mesh without faces.
     pub fn of_points(vertices: Vec<DVec3>) -> Self {
         Self { vertices, faces: Vec::new() }
     }
 
-    /// The image under a map that keeps the orientation and flat faces flat.
+    /// Returns the image under a map that preserves the orientation and flat faces.
     #[must_use]
     pub fn mapped(mut self, map: impl Fn(DVec3) -> DVec3) -> Self {
         for v in &mut self.vertices {
@@ -34,13 +34,13 @@ impl Mesh {
         self
     }
 
-    /// The same, moved.
+    /// Returns the mesh translated by a vector.
     #[must_use]
     pub fn translated(self, by: DVec3) -> Self {
         self.mapped(|v| v + by)
     }
 
-    /// Both, side by side.
+    /// Returns the union of the vertices and faces of two meshes.
     #[must_use]
     pub fn joined(mut self, other: &Self) -> Self {
         let base = self.vertices.len() as u32;
@@ -49,21 +49,21 @@ impl Mesh {
         self
     }
 
-    /// The same, inside out.
+    /// Returns the mesh with its orientation reversed.
     #[must_use]
     pub fn reversed(mut self) -> Self {
         self.faces.iter_mut().for_each(|f| f.reverse());
         self
     }
 
-    /// The same, every face cut into triangles from its first corner.
+    /// Returns the mesh with each face triangulated from its first corner.
     #[must_use]
     pub fn triangulated(mut self) -> Self {
         self.faces = self.triangles().map(Vec::from).collect();
         self
     }
 
-    /// The same surface, each triangle cut into four at the middles of its edges.
+    /// Returns the same surface, with each triangle cut into four at the midpoints of its edges.
     #[must_use]
     pub fn quartered(&self) -> Self {
         let mut made = Self::of_points(self.vertices.clone());
@@ -81,7 +81,7 @@ impl Mesh {
         made
     }
 
-    /// The corners of the triangles into which the faces are cut from their first corners.
+    /// Returns the triangles into which the faces are cut from their first corners.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         self.faces.iter().flat_map(|f| f[1..].windows(2).map(|pair| [f[0], pair[0], pair[1]]))
     }
@@ -92,12 +92,12 @@ pub fn reach(points: &[DVec3]) -> f64 {
     points.iter().map(|v| v.length()).fold(0.0, f64::max)
 }
 
-/// Points by the bits of their coordinates: cases that were found once, to the last digit.
+/// Returns points given by the bits of their coordinates, for exact reproduction of cases.
 pub fn of_bits(bits: &[[u64; 3]]) -> Vec<DVec3> {
     bits.iter().map(|point| DVec3::from_array(point.map(f64::from_bits))).collect()
 }
 
-/// A unit sphere in rings, its inner faces trapezoids.
+/// Builds a unit sphere in rings. Its inner faces are trapezoids.
 pub fn ring_sphere(around: u32, rings: u32) -> Mesh {
     let vertices = ring_points(around, rings, 0.0);
     let at = |ring: u32, k: u32| 1 + ring * around + k % around;
@@ -113,7 +113,7 @@ pub fn ring_sphere(around: u32, rings: u32) -> Mesh {
     Mesh { vertices, faces }
 }
 
-/// The poles and rings of a unit sphere; odd rings are turned by `twist` steps.
+/// Returns the poles and rings of a unit sphere. Odd rings are rotated by `twist` steps.
 pub fn ring_points(around: u32, rings: u32, twist: f64) -> Vec<DVec3> {
     let mut vertices = vec![DVec3::Z];
     for ring in 1..=rings {
@@ -131,27 +131,29 @@ pub fn ring_points(around: u32, rings: u32, twist: f64) -> Vec<DVec3> {
     vertices
 }
 
-/// Vertices around and rings of a ring body with about `n` vertices, as many around as rings.
+/// Returns the numbers of vertices around and of rings of a ring body with about `n` vertices. Both numbers are
+/// about equal.
 pub fn even_rings(n: usize) -> [u32; 2] {
     let inner = n.saturating_sub(2) as f64;
     let around = inner.sqrt().round().max(3.0);
     [around as u32, (inner / around).round().max(1.0) as u32]
 }
 
-/// About `n` vertices in rings on `|x|^e + |y|^e + |z|^e = 1`: round for 2, box-like above.
+/// Returns about `n` vertices in rings on `|x|^e + |y|^e + |z|^e = 1`, which is round for 2 and box-like for
+/// larger exponents.
 ///
-/// The faces are not flat: the hull of the points is meant.
+/// The rings have no faces, because those would not be flat. The mesh represents the hull.
 pub fn superellipsoid(n: usize, exponent: f64) -> Mesh {
     let [around, rings] = even_rings(n);
     let onto = |v: DVec3| {
         let sum: f64 = v.abs().to_array().into_iter().map(|c| c.powf(exponent)).sum();
         v * sum.powf(-exponent.recip())
     };
-    // Turned a little, so that no ring lies in a symmetry plane.
+    // The twist of the rings prevents rings in symmetry planes.
     Mesh::of_points(ring_points(around, rings, 0.3).into_iter().map(onto).collect())
 }
 
-/// The upper half of a ring sphere of about `2 n` vertices, with a flat base.
+/// Returns the upper half of a ring sphere of about `2 n` vertices, with a flat base, as points.
 pub fn half_sphere(n: usize) -> Mesh {
     let [around, rings] = even_rings(2 * n);
     let rings = (rings - 1) | 1;
@@ -160,7 +162,7 @@ pub fn half_sphere(n: usize) -> Mesh {
     Mesh::of_points(upper.map(|v| if v.z.abs() < 1e-9 { v.with_z(0.0) } else { v }).collect())
 }
 
-/// The corners of a regular polygon about `z`, the first one above the x axis.
+/// Returns the corners of a regular polygon about `z`. The first one has y = 0.
 pub fn ring(sides: usize, radius: f64, z: f64) -> impl Iterator<Item = DVec3> + Clone {
     (0..sides).map(move |k| {
         let (sine, cosine) = (TAU * k as f64 / sides as f64).sin_cos();
@@ -168,21 +170,22 @@ pub fn ring(sides: usize, radius: f64, z: f64) -> impl Iterator<Item = DVec3> + 
     })
 }
 
-/// The corners of regular polygons about `z`, each by its radius and height, and tips on the axis: the hull is meant.
+/// Returns the corners of regular polygons about `z`, each with a radius and a height, and tips on the axis.
+/// The mesh represents the hull.
 pub fn revolved(rings: &[[f64; 2]], tips: &[f64], sides: usize) -> Mesh {
     let corners = rings.iter().flat_map(|&[radius, z]| ring(sides, radius, z));
     Mesh::of_points(corners.chain(tips.iter().map(|&z| DVec3::Z * z)).collect())
 }
 
-/// A prism over a regular polygon with `sides` corners of radius 1, from `z = -half_height` to
-/// `half_height`: the first corner on the x axis, bottom ring first.
+/// Builds a prism over a regular polygon with `sides` corners of radius 1, from `z = -half_height` to
+/// `half_height`. The first corner is on the x axis, and the bottom ring comes first.
 pub fn prism(sides: usize, half_height: f64) -> Mesh {
     let outline: Vec<DVec3> = ring(sides, 1.0, 0.0).collect();
     extruded(&outline, [-half_height, half_height])
 }
 
-/// What lies between two heights above and below a polygon, which runs counter-clockwise as seen from
-/// above: its corners at the lower height come first.
+/// Builds the prism over a polygon between two heights. The polygon is counter-clockwise seen from above. Its
+/// corners at the lower height come first.
 pub fn extruded(outline: &[DVec3], heights: [f64; 2]) -> Mesh {
     let n = outline.len() as u32;
     let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
@@ -191,7 +194,7 @@ pub fn extruded(outline: &[DVec3], heights: [f64; 2]) -> Mesh {
     Mesh { vertices: vertices.collect(), faces }
 }
 
-/// A cone over a regular polygon of radius 1, from its base to its apex, which is the last vertex.
+/// Builds a cone over a regular polygon of radius 1, from its base to its apex, which is the last vertex.
 pub fn cone(sides: usize, [base, apex]: [f64; 2]) -> Mesh {
     let n = sides as u32;
     let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect()];
@@ -199,13 +202,13 @@ pub fn cone(sides: usize, [base, apex]: [f64; 2]) -> Mesh {
     Mesh { vertices: ring(sides, 1.0, base).chain([DVec3::Z * apex]).collect(), faces }
 }
 
-/// The box from `-half` to `half`.
+/// Builds the box from `-half` to `half`.
 pub fn cuboid(half: DVec3) -> Mesh {
     block(-half, half)
 }
 
-/// The box from one corner to the opposite one: bit `k` of a vertex says whether it is high along axis
-/// `k`. The faces look down and up `z`, `y` and `x`.
+/// Builds the box from one corner to the opposite one. Bit `k` of a vertex index is 1 if the vertex is high
+/// along axis `k`. The faces point down and up `z`, `y` and `x`.
 pub fn block(low: impl Into<DVec3>, high: impl Into<DVec3>) -> Mesh {
     let ends = [low.into(), high.into()];
     let corner = |i: usize| DVec3::new(ends[i & 1].x, ends[i >> 1 & 1].y, ends[i >> 2].z);
@@ -214,7 +217,7 @@ pub fn block(low: impl Into<DVec3>, high: impl Into<DVec3>) -> Mesh {
     Mesh { vertices: (0..8).map(corner).collect(), faces: faces.map(Vec::from).to_vec() }
 }
 
-/// The points of a grid, so many along each axis, the first at the origin.
+/// Returns the points of a grid with `counts` points along the axes. The first is at the origin.
 pub fn grid(counts: [usize; 3], spacing: DVec3) -> Vec<DVec3> {
     let mut points = Vec::new();
     for i in 0..counts[0] {
@@ -226,16 +229,17 @@ pub fn grid(counts: [usize; 3], spacing: DVec3) -> Vec<DVec3> {
     points
 }
 
-/// Random points on the unit sphere: their hull has triangles only.
+/// Returns `n` random points on the unit sphere. Their hull has only triangles.
 pub fn random_hull(n: usize, random: &mut Random) -> Mesh {
     Mesh::of_points((0..n).map(|_| random.direction()).collect())
 }
 
-/// A screw or, with an `inner` radius beyond it, a nut: the radius over the phase `z / pitch - turn`, from 0 to 1, as a tube
-/// of rings from `z = 0` on, closed at its ends. Facets lie along the helix.
+/// Builds a screw, or a nut if `inner` is a radius beyond the thread. The function `outer` is the radius for
+/// the phase `z / pitch - turn` from 0 to 1. The mesh is a tube of rings from `z = 0`, closed at its ends. Its
+/// facets follow the helix.
 pub fn helical(inner: Option<f64>, outer: impl Fn(f64) -> f64, pitch: f64, turns: usize) -> Mesh {
     const SIDES: usize = 24;
-    // As many to a turn as sides: edges run along the crest.
+    // A turn has as many rows as sides, so that edges follow the crest.
     const ROWS: usize = SIDES;
     let (rows, length) = (turns * ROWS, pitch.abs() * turns as f64);
     let mut vertices = Vec::new();
@@ -266,7 +270,7 @@ pub fn helical(inner: Option<f64>, outer: impl Fn(f64) -> f64, pitch: f64, turns
     for side in 0..SIDES {
         for row in 0..rows {
             let q = [at(row, side), at(row, side + 1), at(row + 1, side + 1), at(row + 1, side)];
-            // The diagonal that lies along the crest.
+            // The diagonal along the crest.
             let split = if pitch > 0.0 { [0, 1, 2, 0, 2, 3] } else { [0, 1, 3, 1, 2, 3] };
             faces.push(split[..3].iter().map(|&k| q[k]).collect());
             faces.push(split[3..].iter().map(|&k| q[k]).collect());
@@ -298,7 +302,8 @@ pub fn helical(inner: Option<f64>, outer: impl Fn(f64) -> f64, pitch: f64, turns
 mod tests {
     use super::*;
 
-    /// Every directed edge once, its reverse once, and every face seen from outside.
+    /// Checks that each directed edge occurs once, as does its reverse, and that each face is oriented
+    /// outwards.
     fn assert_closed_and_outward(mesh: &Mesh) {
         let mut edges = std::collections::BTreeSet::new();
         for face in &mesh.faces {

@@ -1,5 +1,5 @@
-//! Meshes of bodies that are not convex: turned parts, threads, plates, bumpy balls. Vertices, and polygons
-//! that run counter-clockwise as seen from outside.
+//! Builds meshes of bodies that are not convex: turned parts, threads, plates, bumpy balls. Polygons are
+//! counter-clockwise seen from outside.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::shapes::{Mesh, extruded};
 
-/// Boxes, by their low and high corners, of a room from -2.2 to 2.2 with a window in its side towards x.
+/// Boxes, by their low and high corners, of a room from -2.2 to 2.2 with a window in its wall towards x.
 pub const ROOM_WITH_WINDOW: [[[f64; 3]; 2]; 9] = [
     [[-2.2, -2.2, -2.2], [2.2, 2.2, -2.0]],
     [[-2.2, -2.2, 2.0], [2.2, 2.2, 2.2]],
@@ -21,7 +21,7 @@ pub const ROOM_WITH_WINDOW: [[[f64; 3]; 2]; 9] = [
     [[2.0, 0.8, -2.2], [2.2, 2.2, 2.2]],
 ];
 
-/// Boxes, by their low and high corners, of a tray with grooves for a lid that slides along x as far as a stop.
+/// Boxes, by their low and high corners, of a tray with grooves for a lid, which slides along x up to a stop.
 pub const TRAY_WITH_GROOVES: [[[f64; 3]; 2]; 10] = [
     [[-1.0, -1.0, -1.0], [5.0, 4.0, 0.0]],
     [[-1.0, -1.0, 0.0], [0.0, 4.0, 3.5]],
@@ -35,11 +35,10 @@ pub const TRAY_WITH_GROOVES: [[[f64; 3]; 2]; 10] = [
     [[8.5, -1.0, 2.0], [9.0, 4.0, 4.0]],
 ];
 
-/// A solid of revolution about `z`, with so many sides, from a closed profile of `[radius, height]`
-/// that runs counter-clockwise with radii to the right and heights upwards. Points at radius 0 are on
-/// the axis.
+/// Builds a solid of revolution about `z` with `sides` sides. The closed profile of points `[radius, height]`
+/// is counter-clockwise, with radii to the right and heights upwards. Points with radius 0 are on the axis.
 ///
-/// Side `k` has its corner at the angle `TAU k / sides`; corners lie on the circle.
+/// Side `k` has its corner at the angle `TAU k / sides`. The corners are on the circle.
 pub fn turned(profile: &[[f64; 2]], sides: usize) -> Mesh {
     let mut surface = Mesh::default();
     let mut rings: Vec<Vec<u32>> = Vec::new();
@@ -74,24 +73,25 @@ pub fn turned(profile: &[[f64; 2]], sides: usize) -> Mesh {
     surface
 }
 
-/// A cylinder of a radius between two heights.
+/// Builds a cylinder with a radius between two heights.
 pub fn pin(radius: f64, [low, high]: [f64; 2], sides: usize) -> Mesh {
     turned(&[[0.0, low], [radius, low], [radius, high], [0.0, high]], sides)
 }
 
-/// A round plate with a round hole along its axis.
+/// Builds a round plate with a round hole along its axis.
 pub fn washer([hole, outside]: [f64; 2], [low, high]: [f64; 2], sides: usize) -> Mesh {
     turned(&[[hole, low], [outside, low], [outside, high], [hole, high]], sides)
 }
 
-/// A bolt: a shaft from `low` to `seat` and a head from there to `top`.
+/// Builds a bolt: a shaft from `low` to `seat`, and a head from there to `top`.
 pub fn bolt([shaft, head]: [f64; 2], [low, seat, top]: [f64; 3], sides: usize) -> Mesh {
     let profile = [[0.0, low], [shaft, low], [shaft, seat], [head, seat], [head, top], [0.0, top]];
     turned(&profile, sides)
 }
 
-/// A threaded rod about `z`, or a nut with an outer radius: at the angle `a` and the height `z` the thread is at
-/// `radius + depth cos (TAU z / pitch - a)`; so many sides, and rows along the axis.
+/// Builds a threaded rod about `z`, or a nut if there is an outer radius. At the angle `a` and the height `z`
+/// the surface of the thread has the radius `radius + depth cos (TAU z / pitch - a)`. It has `sides` sides and
+/// `rows` rows along the axis.
 pub fn thread(
     [radius, depth, pitch]: [f64; 3],
     [low, high]: [f64; 2],
@@ -117,7 +117,7 @@ pub fn thread(
     }
     let rings = surface.vertices.len() / sides;
     let at = |ring: usize, k: usize| (ring % rings * sides + k % sides) as u32;
-    // A rod ends with its last row, a nut's rings go all round.
+    // A rod ends with its last row. The rings of a nut form a cycle.
     for j in 0..if outer.is_some() { rings } else { rows } {
         for k in 0..sides {
             let [a, b, c, d] = [at(j, k), at(j, k + 1), at(j + 1, k + 1), at(j + 1, k)];
@@ -138,7 +138,7 @@ pub fn thread(
     surface
 }
 
-/// A box whose six sides are grids of squares.
+/// Builds a box whose six sides are grids of squares.
 pub fn slab(low: DVec3, high: DVec3, counts: [usize; 3]) -> Mesh {
     let mut surface = Mesh::default();
     let mut index: HashMap<[usize; 3], u32> = HashMap::new();
@@ -170,7 +170,7 @@ pub fn slab(low: DVec3, high: DVec3, counts: [usize; 3]) -> Mesh {
     surface
 }
 
-/// A ball of radius 1 with bumps, of about so many triangles: two for each square of six grids.
+/// Builds a ball of radius 1 with bumps. It has about `triangles` triangles, two for each square of six grids.
 pub fn bumpy_ball(triangles: usize) -> Mesh {
     let n = ((triangles as f64 / 12.0).sqrt().round() as usize).max(1);
     let cube = slab(DVec3::NEG_ONE, DVec3::ONE, [n; 3]);
@@ -182,7 +182,8 @@ pub fn bumpy_ball(triangles: usize) -> Mesh {
     cube.mapped(bump).triangulated()
 }
 
-/// The outline of a comb in `x, y`: teeth of width 1 and length 4, 1 apart, on a bar of height 1.
+/// Returns the outline of a comb in `x, y`: teeth of width 1 and length 4, at distances of 1, on a bar of
+/// height 1.
 pub fn comb_outline(teeth: usize) -> Vec<DVec3> {
     let tooth = |x: f64| [[x + 1.0, 1.0], [x + 1.0, 5.0], [x, 5.0], [x, 1.0]];
     let bar = [[0.0, 0.0], [2.0 * teeth as f64 - 1.0, 0.0]];
@@ -190,7 +191,8 @@ pub fn comb_outline(teeth: usize) -> Vec<DVec3> {
     corners.map(|[x, y]| DVec3::new(x, y, 0.0)).collect()
 }
 
-/// A comb of height 1. Each cap is a fan of long triangles from one corner of the bar, and two triangles for each tooth.
+/// Builds a comb of height 1. Each cap is a fan of long triangles from one corner of the bar, and two triangles
+/// for each tooth.
 pub fn comb(teeth: usize) -> Mesh {
     let mut comb = extruded(&comb_outline(teeth), [0.0, 1.0]);
     let walls = comb.faces.split_off(2);
@@ -209,8 +211,8 @@ pub fn comb(teeth: usize) -> Mesh {
     comb
 }
 
-/// A plate in `x, y` with a row of round holes, in long thin faces as CAD programs make them: every
-/// hole is joined to the nearest corners of its square only.
+/// Builds a plate in `x, y` with a grid of round holes, in long thin faces as CAD programs write them. Each
+/// hole is connected only to the nearest corners of its square.
 pub fn perforated_plate(holes: [usize; 2], thickness: f64, sides: usize) -> Mesh {
     let quarter = (sides / 4).max(1);
     let sides = 4 * quarter;
@@ -235,7 +237,7 @@ pub fn perforated_plate(holes: [usize; 2], thickness: f64, sides: usize) -> Mesh
         };
         let mut flat: Vec<[DVec3; 3]> = Vec::new();
         for side in 0..4 {
-            // The corner between this quarter of the rim and the next side of the square.
+            // The corner between this quarter of the hole's boundary and the next side of the square.
             for k in side * quarter..(side + 1) * quarter {
                 flat.push([rim(k), corner(side), rim(k + 1)]);
             }

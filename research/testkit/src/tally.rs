@@ -1,12 +1,12 @@
-//! What became of the settings of one family of a campaign: named numbers, and what is wrong.
+//! Named numbers and disagreements of one family of a campaign.
 
 use std::collections::BTreeMap;
 
-/// The numbers of one family.
+/// The numbers and the disagreements of one family.
 #[derive(Debug, Default)]
 pub struct Tally {
     numbers: BTreeMap<&'static str, Number>,
-    /// Lines that say what disagrees.
+    /// Descriptions of disagreements.
     pub disagreements: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ impl Tally {
         self.add(name, 1);
     }
 
-    /// Adds one to a count where something holds.
+    /// Adds one to a count if `holds` is true.
     pub fn count_if(&mut self, name: &'static str, holds: bool) {
         self.add(name, u64::from(holds));
     }
@@ -33,17 +33,17 @@ impl Tally {
         self.note(name, Number::Count(more));
     }
 
-    /// Keeps the larger one of a number and those before.
+    /// Records a number of which the largest is reported.
     pub fn largest(&mut self, name: &'static str, value: impl Into<f64>) {
         self.note(name, Number::Largest(value.into()));
     }
 
-    /// Takes a number into a mean.
+    /// Records a number of which the mean is reported.
     pub fn mean(&mut self, name: &'static str, value: impl Into<f64>) {
         self.note(name, Number::Mean { sum: value.into(), count: 1 });
     }
 
-    /// Returns a count; 0 of what has not been counted.
+    /// Returns a count; 0 if it has not been recorded.
     pub fn get(&self, name: &str) -> u64 {
         match self.numbers.get(name) {
             Some(Number::Count(count)) => *count,
@@ -51,12 +51,12 @@ impl Tally {
         }
     }
 
-    /// Notes a disagreement.
+    /// Records a disagreement.
     pub fn disagree(&mut self, what: String) {
         self.disagreements.push(what);
     }
 
-    /// Returns the numbers and disagreements of both.
+    /// Merges the numbers and disagreements of another tally.
     #[must_use]
     pub fn merged(mut self, other: Self) -> Self {
         for (name, number) in other.numbers {
@@ -66,14 +66,15 @@ impl Tally {
         self
     }
 
+    /// Merges a number into those recorded under its name.
     fn note(&mut self, name: &'static str, number: Number) {
         self.numbers.entry(name).and_modify(|known| *known = known.with(number)).or_insert(number);
     }
 
-    /// Returns the numbers under [`header`] as a line.
+    /// Returns the numbers as a line below [`header`].
     ///
     /// # Panics
-    /// If a number has been noted that has no column.
+    /// If a recorded number has no column.
     pub fn line(&self, columns: &[&str]) -> String {
         let without = self.numbers.keys().find(|name| !columns.contains(name));
         assert!(without.is_none(), "{without:?} has no column");
@@ -86,6 +87,7 @@ impl Tally {
 }
 
 impl Number {
+    /// Returns the combination of two numbers of the same kind.
     fn with(self, other: Self) -> Self {
         match (self, other) {
             (Self::Count(a), Self::Count(b)) => Self::Count(a + b),
@@ -93,10 +95,11 @@ impl Number {
             (Self::Mean { sum, count }, Self::Mean { sum: more, count: and }) => {
                 Self::Mean { sum: sum + more, count: count + and }
             }
-            _ => unreachable!("a name stands for one kind of number"),
+            _ => unreachable!("each name has one kind of number"),
         }
     }
 
+    /// Formats the number.
     fn text(&self) -> String {
         let value = match *self {
             Self::Count(count) => return count.to_string(),
@@ -117,6 +120,7 @@ pub fn header(columns: &[&str]) -> String {
     format!("{}{:>6}", names.collect::<String>(), "wrong")
 }
 
+/// Returns the width of a column.
 fn width(name: &str) -> usize {
     name.len().max(9)
 }

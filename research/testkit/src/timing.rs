@@ -1,24 +1,24 @@
-//! Times single queries, and sums many times up.
+//! Measures the times of single queries, and computes statistics of times.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Measures one call at a time, with the clock's own cost taken off.
+/// A stopwatch for single calls, which subtracts the cost of reading the clock.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch {
-    /// The least time between two readings, in nanoseconds.
+    /// The smallest time between two readings, in nanoseconds.
     cost: f64,
 }
 
 impl Stopwatch {
-    /// Finds out what the clock costs now.
-    #[expect(clippy::new_without_default, reason = "it measures")]
+    /// Measures the cost of reading the clock.
+    #[expect(clippy::new_without_default, reason = "it measures the clock")]
     pub fn new() -> Self {
         let once = |_| Instant::now().elapsed().as_nanos();
         Self { cost: (0..256).map(once).min().unwrap_or(0) as f64 }
     }
 
-    /// The result of a call and the nanoseconds it took: at least 1, so that ratios exist.
+    /// Returns the result of a call, and its time in nanoseconds. The time is at least 1, so that ratios exist.
     pub fn time<T>(self, call: impl FnOnce() -> T) -> (T, f64) {
         let started = Instant::now();
         let result = black_box(call());
@@ -27,7 +27,7 @@ impl Stopwatch {
     }
 }
 
-/// The value below which a share of the values lies; NaN if there are none.
+/// Returns the value below which a share of the values lies; NaN if there are no values.
 pub fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -35,12 +35,12 @@ pub fn quantile(values: &[f64], share: f64) -> f64 {
     sorted.get((last as f64 * share).round() as usize).copied().unwrap_or(f64::NAN)
 }
 
-/// The median.
+/// Returns the median; NaN if there are no values.
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// Mean and standard deviation.
+/// Returns the mean and the standard deviation.
 pub fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -48,8 +48,8 @@ pub fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
     [mean, variance.sqrt()]
 }
 
-/// All but the largest hundredth, which other programs on the machine cause where times are
-/// measured.
+/// Returns the values in increasing order, without the largest hundredth, which other programs cause in
+/// measured times.
 pub fn without_disturbed(values: &[f64]) -> Vec<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -57,7 +57,7 @@ pub fn without_disturbed(values: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// The exponent `k` of `y = c x^k` by least squares in the logarithms.
+/// Returns the exponent `k` of `y = c x^k`, fitted by least squares of the logarithms.
 pub fn exponent(points: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     let logs: Vec<_> = points.map(|(x, y)| (x.ln(), y.ln())).collect();
     let count = logs.len() as f64;

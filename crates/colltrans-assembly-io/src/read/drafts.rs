@@ -11,7 +11,7 @@ use colltrans_mesh::words::first_named;
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::{MOST_PLACED, Names, contents_error, assembly_error};
+use super::{MOST_PLACED, Names, assembly_error, contents_error};
 use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly::{Assembly, Part, Piece};
@@ -292,7 +292,12 @@ fn named_objects(draft: &Draft) -> Vec<(String, Placed)> {
 }
 
 /// Builds a part from placed meshes.
-fn build_part(source: &Source, draft: &Draft, name: &str, placed: &[Placed]) -> Result<Part, ReadError> {
+fn build_part(
+    source: &Source,
+    draft: &Draft,
+    name: &str,
+    placed: &[Placed],
+) -> Result<Part, ReadError> {
     let piece =
         |placed: &Placed| Piece { mesh: Mesh::clone(&placed.mesh), world_from_piece: placed.world };
     let pieces: Vec<Piece> = placed.iter().map(piece).collect();

@@ -138,7 +138,10 @@ impl<'a> Source<'a> {
 
     /// Opens a file by a reference relative to the folder of the source. Returns its path and contents; `None`
     /// if it does not exist.
-    pub(super) fn open_reference(&self, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+    pub(super) fn open_reference(
+        &self,
+        name: &str,
+    ) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
         self.open_relative(folder_of(self.path), name)
     }
 

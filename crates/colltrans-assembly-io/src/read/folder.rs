@@ -8,7 +8,7 @@ use colltrans_mesh::{Format, Mesh};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::{Draft, Placed, assemble, io_error, parse_mesh, file_stem};
+use super::{Draft, Placed, assemble, file_stem, io_error, parse_mesh};
 use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::units;
@@ -48,7 +48,8 @@ fn read_files(source: Source, files: &[PathBuf], holds: &str) -> Result<Assembly
         let world = units.world_from_mesh(&mesh);
         up = up.or(mesh.up);
         let placed = Placed { mesh: Arc::new(mesh), world };
-        drafts.push(Draft { file: Some(file.clone()), ..Draft::new(file_stem(file), vec![placed]) });
+        drafts
+            .push(Draft { file: Some(file.clone()), ..Draft::new(file_stem(file), vec![placed]) });
     }
     let assembly = assemble(source, drafts, holds)?;
     let assembly = up.into_iter().fold(assembly, Assembly::with_up);

@@ -318,7 +318,8 @@ impl Document {
                 self.asset.version
             ));
         }
-        let known = |name: &String| SUPPORTED_EXTENSIONS.iter().any(|start| name.starts_with(start));
+        let known =
+            |name: &String| SUPPORTED_EXTENSIONS.iter().any(|start| name.starts_with(start));
         match self.extensions_required.iter().find(|name| !known(name)) {
             Some(name) => Err(format!(
                 "the required extension {name} is not supported; save the file without it, as plain \
@@ -439,7 +440,9 @@ impl Reader<'_> {
         let node = document.nodes.get(index);
         let node = node.ok_or_else(|| refused("no such node".into()))?;
         if depth > MAX_DEPTH {
-            return Err(refused(format!("nodes are nested deeper than {MAX_DEPTH}, or in a cycle")));
+            return Err(refused(format!(
+                "nodes are nested deeper than {MAX_DEPTH}, or in a cycle"
+            )));
         }
         self.budget.count_placed().map_err(refused)?;
         if node.is_hidden() {
@@ -541,7 +544,12 @@ impl Reader<'_> {
     }
 
     /// Returns the values of an accessor, after checking that all their bytes exist.
-    fn accessor_values(&self, index: usize, what: &'static str, shape: &str) -> Result<AccessorValues<'_>, String> {
+    fn accessor_values(
+        &self,
+        index: usize,
+        what: &'static str,
+        shape: &str,
+    ) -> Result<AccessorValues<'_>, String> {
         let missing = || format!("no such accessor {index} of {what}");
         let accessor = self.document.accessors.get(index).ok_or_else(missing)?;
         if accessor.shape != shape {

@@ -12,7 +12,8 @@ use serde::{Deserialize, Deserializer};
 
 use super::files::Source;
 use super::{
-    Budget, Draft, Placed, Split, assemble, contents_error, assembly_error, parse_mesh, plain, reword_parser_message, file_stem,
+    Budget, Draft, Placed, Split, assemble, assembly_error, contents_error, file_stem, parse_mesh,
+    plain, reword_parser_message,
 };
 use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
@@ -147,14 +148,16 @@ pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
     let text = source.text()?;
     let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let manifest: Manifest = if toml {
-        toml::from_str(&text)
-            .map_err(|e| contents_error(path, toml_place(&text, &e), reword_parser_message(e.message())))?
+        toml::from_str(&text).map_err(|e| {
+            contents_error(path, toml_place(&text, &e), reword_parser_message(e.message()))
+        })?
     } else {
         let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
         serde_json::from_str(&text).map_err(|e| contents_error(path, part_place(&e), plain(&e)))?
     };
     let metres = manifest.unit.as_deref().and_then(units::metres);
-    let mut gathered = PartGatherer { budget: Budget::with_bytes(text.len()), metres, ..PartGatherer::default() };
+    let mut gathered =
+        PartGatherer { budget: Budget::with_bytes(text.len()), metres, ..PartGatherer::default() };
     for (k, entry) in manifest.parts.iter().enumerate() {
         gathered.add_part(&source, k, entry)?;
     }
@@ -273,9 +276,9 @@ impl PartGatherer {
             .first()
             .ok_or_else(|| refused("the list of files is empty; give at least one file".into()))?;
         let name = entry.name.clone().unwrap_or_else(|| file_stem(Path::new(first)));
-        let (world, normalised) = entry
-            .world_from_mesh()
-            .map_err(|reason| contents_error(source.path, format!("{} ({name})", part_place(k)), reason))?;
+        let (world, normalised) = entry.world_from_mesh().map_err(|reason| {
+            contents_error(source.path, format!("{} ({name})", part_place(k)), reason)
+        })?;
         if let Some(off) = normalised {
             self.notes.push(format!(
                 "the rotation of {name} deviates from a rotation by {off:.0e} and was normalised; directions may \
@@ -304,7 +307,11 @@ impl PartGatherer {
             self.budget.count_placed().map_err(refused)?;
             let split = entry.split.as_ref().map(|word| word.parse::<Split>());
             let split = split.transpose().map_err(|e| {
-                contents_error(source.path, format!("{} ({name})", part_place(k)), format!("split: {e}"))
+                contents_error(
+                    source.path,
+                    format!("{} ({name})", part_place(k)),
+                    format!("split: {e}"),
+                )
             })?;
             let draft = Draft { fixed: entry.fixed, split, ..Draft::new(name, pieces) };
             self.drafts.push(draft.as_one_part());
@@ -361,14 +368,18 @@ impl Rotation {
     /// Returns the rotation, and its defect if it was normalised.
     fn to_matrix(&self) -> Result<(DMat3, Option<f64>), String> {
         match self {
-            Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => rotation_from_quaternion(*q),
+            Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => {
+                rotation_from_quaternion(*q)
+            }
             Self::Named(NamedRotation::RpyDegrees(rpy)) if rpy.iter().any(|a| !a.is_finite()) => {
                 Err(format!("invalid rpy_degrees {rpy:?}; accepted: finite numbers"))
             }
             Self::Named(NamedRotation::RpyDegrees(rpy)) => {
                 Ok((rotation_from_rpy(rpy.map(f64::to_radians)), None))
             }
-            Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => rotation_from_matrix(rows),
+            Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => {
+                rotation_from_matrix(rows)
+            }
         }
     }
 }

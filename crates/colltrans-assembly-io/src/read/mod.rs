@@ -236,7 +236,11 @@ pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Rob
 pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
     let (path, options) = (path.as_ref(), ReadOptions::default());
     let folders = files::Folders::for_source(path, &options);
-    srdf::read_disabled_pairs(&Source::new(path, &options, &files::SourceAndFiles { path, files: &folders }))
+    srdf::read_disabled_pairs(&Source::new(
+        path,
+        &options,
+        &files::SourceAndFiles { path, files: &folders },
+    ))
 }
 
 /// Reads a GLB file from memory. The file must not refer to other files.
@@ -271,7 +275,11 @@ fn assembly_error(path: &Path) -> impl Fn(AssemblyError) -> ReadError + '_ {
 }
 
 /// Builds an error about the contents of a file.
-fn contents_error(path: &Path, place: impl Into<String>, reason: impl std::fmt::Display) -> ReadError {
+fn contents_error(
+    path: &Path,
+    place: impl Into<String>,
+    reason: impl std::fmt::Display,
+) -> ReadError {
     ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
 }
 

@@ -15,7 +15,7 @@ use glam::{DAffine3, DVec3};
 use super::files::Source;
 use super::shapes::{Round, SIDES};
 use super::urdf::{self, PartGatherer};
-use super::{contents_error, assembly_error};
+use super::{assembly_error, contents_error};
 use crate::error::ReadError;
 use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
 use colltrans_assembly::AssemblyError;
@@ -28,12 +28,18 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     let joints = urdf::read_joints(&source, &element)?;
     // Rejects cycles, unknown links, and links with two parents.
     urdf::link_poses(&source, &element, &joints)?;
-    let mut tree =
-        TreeBuilder { source: &source, frames: Vec::new(), frame_of_link: HashMap::new(), joints: Vec::new() };
+    let mut tree = TreeBuilder {
+        source: &source,
+        frames: Vec::new(),
+        frame_of_link: HashMap::new(),
+        joints: Vec::new(),
+    };
     let above: HashMap<&str, (&str, &urdf::Joint)> =
         joints.iter().map(|(name, joint)| (joint.child, (*name, joint))).collect();
-    let names: Vec<&str> =
-        element.all("link").map(|link| urdf::element_name(&source, link)).collect::<Result<_, _>>()?;
+    let names: Vec<&str> = element
+        .all("link")
+        .map(|link| urdf::element_name(&source, link))
+        .collect::<Result<_, _>>()?;
     for name in &names {
         // Collects the links up to one whose frame is known, then adds their frames downwards.
         let mut way = vec![*name];
@@ -46,8 +52,8 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
             tree.add_link(link, above.get(link).copied())?;
         }
     }
-    let mechanism =
-        Mechanism::new(tree.frames).map_err(|e| contents_error(source.path, "joints", e.to_string()))?;
+    let mechanism = Mechanism::new(tree.frames)
+        .map_err(|e| contents_error(source.path, "joints", e.to_string()))?;
     let joints = set_mimics(&source, tree.joints, &joints)?;
     let hulls = source.options.hulls.iter().filter(|name| *name != "*");
     if let Some(name) = hulls.into_iter().find(|name| !names.contains(&name.as_str())) {
@@ -67,7 +73,10 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
         for piece in &pieces {
             let options = source.options.body_options().with_hull(takes_hull);
             let loaded = body_of_piece(piece, &options).map_err(|refused| {
-                assembly_error(source.path)(AssemblyError::Part { part: name.into(), source: refused })
+                assembly_error(source.path)(AssemblyError::Part {
+                    part: name.into(),
+                    source: refused,
+                })
             })?;
             // If the hull equals the mesh, there is no note.
             is_hull |= takes_hull && !loaded.notes.is_empty();
@@ -119,7 +128,8 @@ impl<'a> TreeBuilder<'a> {
             self.frame_of_link.insert(link, None);
             return Ok(());
         };
-        let refused = |reason: String| contents_error(self.source.path, format!("joint {name}"), reason);
+        let refused =
+            |reason: String| contents_error(self.source.path, format!("joint {name}"), reason);
         let (kind, moves) = joint_motion(joint.element).map_err(refused)?;
         let DAffine3 { matrix3, translation } = joint.origin;
         let origin = Pose::from_matrix(matrix3, translation).map_err(|e| refused(e.to_string()))?;

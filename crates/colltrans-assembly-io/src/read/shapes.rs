@@ -87,7 +87,11 @@ pub(super) fn sphere_scale(radius: f64, round: Round, world_from_piece: DAffine3
 
 /// Builds a solid of revolution: rotates a profile of points (radius, z), in increasing order of z, about z.
 /// Its ends are the points `poles` on the axis, or flat faces if that is `None`.
-fn solid_of_revolution(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAffine3) -> Piece {
+fn solid_of_revolution(
+    profile: &[(f64, f64)],
+    poles: Option<[f64; 2]>,
+    world_from_piece: DAffine3,
+) -> Piece {
     let angle = |k: usize| (k as f64 / SIDES as f64 * TAU).sin_cos();
     let mut vertices: Vec<DVec3> = Vec::new();
     for &(r, z) in profile {

@@ -47,7 +47,10 @@ impl SlicerSettings {
             whole.name = whole.name.take().or_else(|| metadata_value(object, "name"));
             for part in object.all("part") {
                 if let Some(id) = part.get("id") {
-                    whole.parts.insert(id.to_owned(), BodySettings::from_element(part, part.get("subtype")));
+                    whole.parts.insert(
+                        id.to_owned(),
+                        BodySettings::from_element(part, part.get("subtype")),
+                    );
                 }
             }
             for volume in object.all("volume") {
@@ -70,7 +73,10 @@ impl SlicerSettings {
 impl ObjectSettings {
     /// Returns the bodies if there are several and their consecutive ranges cover exactly `triangles`
     /// triangles; otherwise `None`.
-    pub(super) fn consecutive_bodies(&self, triangles: usize) -> Option<&[(Range<usize>, BodySettings)]> {
+    pub(super) fn consecutive_bodies(
+        &self,
+        triangles: usize,
+    ) -> Option<&[(Range<usize>, BodySettings)]> {
         let mut end = 0;
         for (run, _) in &self.volumes {
             if run.start != end || run.end <= end {

@@ -26,7 +26,7 @@ use quick_xml::name::NamespaceResolver;
 use zip::ZipArchive;
 
 use super::files::{Source, decode_uri};
-use super::slicer::{self, SlicerSettings, ObjectSettings};
+use super::slicer::{self, ObjectSettings, SlicerSettings};
 use super::{Budget, Draft, Names, Split, assemble, contents_error, drafts};
 use crate::error::ReadError;
 use colltrans_assembly::Assembly;
@@ -185,7 +185,8 @@ struct Package<'a> {
 impl<'a> Package<'a> {
     /// Opens the archive.
     fn open(source: &'a Source<'a>, bytes: Vec<u8>) -> Result<Self, ReadError> {
-        let left = MAX_BYTES.min((bytes.len() as u64).saturating_mul(MAX_RATIO).max(UNCHECKED_BYTES));
+        let left =
+            MAX_BYTES.min((bytes.len() as u64).saturating_mul(MAX_RATIO).max(UNCHECKED_BYTES));
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
             let reason =
                 "not a 3MF file: expected a zip archive; the file has another format or is truncated";
@@ -215,10 +216,12 @@ impl<'a> Package<'a> {
     fn root_model_path(&mut self) -> Result<String, ReadError> {
         if let Some(name) = self.find_file("_rels/.rels") {
             let text = self.file_text(&name)?;
-            let refused =
-                |(place, reason)| contents_error(self.source.path, format!("{name}: {place}"), reason);
+            let refused = |(place, reason)| {
+                contents_error(self.source.path, format!("{name}: {place}"), reason)
+            };
             let relations = Element::parse(&text).map_err(refused)?;
-            let model = relations.children.iter().find_file(|r| r.get("Type") == Some(ROOT_MODEL_RELATION));
+            let model =
+                relations.children.iter().find_file(|r| r.get("Type") == Some(ROOT_MODEL_RELATION));
             if let Some(target) = model.and_then(|r| r.get("Target")) {
                 return Ok(target.to_owned());
             }
@@ -228,7 +231,8 @@ impl<'a> Package<'a> {
         }
         // Packages of the production extension also have models in deeper folders.
         let is_model = |n: &String| n.to_ascii_lowercase().ends_with(".model");
-        let mut models: Vec<String> = self.file_names().into_iter().filter(is_model).visit_objects();
+        let mut models: Vec<String> =
+            self.file_names().into_iter().filter(is_model).visit_objects();
         models.sort_by_key(|n| (n.matches('/').count(), n.clone()));
         models.into_iter().next().ok_or_else(|| {
             let reason = format!(
@@ -242,7 +246,8 @@ impl<'a> Package<'a> {
     /// Unpacks a file of the package and returns its text.
     fn file_text(&mut self, path: &str) -> Result<String, ReadError> {
         let refused = |reason: String| contents_error(self.source.path, path, reason);
-        let name = self.find_file(path).ok_or_else(|| refused("the package has no such file".into()))?;
+        let name =
+            self.find_file(path).ok_or_else(|| refused("the package has no such file".into()))?;
         let file =
             self.archive.by_name(&name).map_err(|e| refused(format!("cannot unpack: {e}")))?;
         let mut bytes = Vec::new();
@@ -337,7 +342,11 @@ fn read_models(source: &Source, package: &mut Package, root: &str) -> Result<Mod
         }
         let text = package.file_text(&path)?;
         let model = Parser::parse_model(&text).map_err(|(place, reason)| {
-            contents_error(source.path, format!("{}: {place}", path.trim_start_matches('/')), reason)
+            contents_error(
+                source.path,
+                format!("{}: {place}", path.trim_start_matches('/')),
+                reason,
+            )
         })?;
         let components = model.objects.values().flat_map(|object| &object.components);
         let mut others: Vec<String> =
@@ -378,7 +387,8 @@ struct ObjectContext<'a> {
 
 /// A visitor of placed objects, with name, settings and transformation to the world. It returns whether the
 /// components of the object are visited.
-type ObjectVisitor<'a> = dyn FnMut(&str, &Object, ObjectContext, DAffine3) -> Result<bool, String> + 'a;
+type ObjectVisitor<'a> =
+    dyn FnMut(&str, &Object, ObjectContext, DAffine3) -> Result<bool, String> + 'a;
 
 /// The context in which an object is placed.
 #[derive(Default)]
@@ -429,8 +439,10 @@ impl Models {
         visit: &mut ObjectVisitor,
     ) -> Result<(), String> {
         let path = placed.path.as_deref().unwrap_or(from);
-        let model =
-            self.by_path.get(&path_key(path)).ok_or_else(|| format!("the package has no {path}"))?;
+        let model = self
+            .by_path
+            .get(&path_key(path))
+            .ok_or_else(|| format!("the package has no {path}"))?;
         let id = &placed.id;
         let object = model.objects.get(id).ok_or_else(|| {
             let place = placed.path.as_ref().map_or(String::new(), |path| format!(" in {path}"));
@@ -515,7 +527,11 @@ impl Parser {
     }
 
     /// Handles the start of an element.
-    fn open_element(&mut self, tag: &BytesStart, resolver: &NamespaceResolver) -> Result<(), String> {
+    fn open_element(
+        &mut self,
+        tag: &BytesStart,
+        resolver: &NamespaceResolver,
+    ) -> Result<(), String> {
         let (space, name) = resolver.resolve_element(tag.name());
         // Elements of extensions are skipped. Some writers use no namespace at all.
         if xml::namespace(&space).is_some_and(|space| space != CORE) {

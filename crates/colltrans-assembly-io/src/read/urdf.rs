@@ -130,7 +130,8 @@ impl<'a> PartGatherer<'a> {
         link: &str,
         at: DAffine3,
     ) -> Result<Option<Piece>, ReadError> {
-        let refused = |reason: String| contents_error(self.source.path, format!("link {link}"), reason);
+        let refused =
+            |reason: String| contents_error(self.source.path, format!("link {link}"), reason);
         let filename = mesh.need("filename").map_err(refused)?;
         let scale = mesh.numbers::<3>("scale").map_err(refused)?.unwrap_or([1.0; 3]);
         let Some((file, bytes)) = find_mesh(self.source, filename)? else {
@@ -179,7 +180,10 @@ fn primitive_piece(shape: &Element, round: Round, at: DAffine3) -> Result<Piece,
 }
 
 /// Returns the name of an element, which must have one.
-pub(super) fn element_name<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
+pub(super) fn element_name<'a>(
+    source: &Source,
+    element: &'a Element,
+) -> Result<&'a str, ReadError> {
     let refused = |e| contents_error(source.path, format!("URDF: line {}", element.line), e);
     element.need("name").map_err(refused)
 }
@@ -213,7 +217,10 @@ pub(super) struct Joint<'a> {
 pub(super) type Joints<'a> = HashMap<&'a str, Joint<'a>>;
 
 /// Returns the joints of a robot, and checks the joint positions of the options.
-pub(super) fn read_joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
+pub(super) fn read_joints<'a>(
+    source: &Source,
+    robot: &'a Element,
+) -> Result<Joints<'a>, ReadError> {
     let mut joints = HashMap::new();
     for element in robot.all("joint") {
         let name = element_name(source, element)?;
@@ -304,7 +311,12 @@ pub(super) fn link_poses<'a>(
 }
 
 /// Returns the motion of a joint at its position.
-fn joint_motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result<DAffine3, String> {
+fn joint_motion(
+    source: &Source,
+    joints: &Joints,
+    name: &str,
+    joint: &Joint,
+) -> Result<DAffine3, String> {
     let kind = joint.element.need("type")?;
     let position = joint_position(source, joints, name, 8)?;
     let axis = match joint.element.first("axis") {
@@ -325,7 +337,12 @@ fn joint_motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> 
 }
 
 /// Returns the position of a joint: the given one, or that computed from the joint that it mimics, or 0.
-fn joint_position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Result<f64, String> {
+fn joint_position(
+    source: &Source,
+    joints: &Joints,
+    name: &str,
+    depth: usize,
+) -> Result<f64, String> {
     if let Some(given) = source.options.joints.get(name) {
         return Ok(*given);
     }

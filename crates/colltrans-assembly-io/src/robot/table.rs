@@ -138,8 +138,8 @@ impl Table {
             line => format!("line {line} column {}", e.column()),
         };
         let at = |e: &serde_json::Error| table_error(place(e), crate::plain::plain(e));
-        let read: JsonTable =
-            serde_json::from_str(text).map_err(|e| first_invalid_point(text).unwrap_or_else(|| at(&e)))?;
+        let read: JsonTable = serde_json::from_str(text)
+            .map_err(|e| first_invalid_point(text).unwrap_or_else(|| at(&e)))?;
         let Trajectory { joint_names: names, points } = match read {
             JsonTable::Rows(rows) => return Self { rows, ..Self::default() }.check_row_lengths(),
             JsonTable::Trajectory(trajectory) => trajectory,
@@ -177,7 +177,8 @@ impl Table {
                 format!("{found} positions, expected {wanted}, one for each of joint_names");
             return Err(table_error(format!("points[{k}]"), reason));
         }
-        Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }.check_row_lengths()
+        Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }
+            .check_row_lengths()
     }
 
     /// Returns the table if all rows have the same number of values, which is that of the names if there are
@@ -305,15 +306,26 @@ mod tests {
     #[test]
     fn invalid_tables_report_place_and_reason() {
         let error_text = |text: &str| Table::parse(text).unwrap_err().to_string();
-        assert_eq!(error_text("a,b\n1,2\n1\n"), "line 3: 1 values, expected 2 as in the lines above");
-        assert_eq!(error_text("1,2\n1,x\n"), "line 2: `1,x` has a value that is not a finite number");
+        assert_eq!(
+            error_text("a,b\n1,2\n1\n"),
+            "line 3: 1 values, expected 2 as in the lines above"
+        );
+        assert_eq!(
+            error_text("1,2\n1,x\n"),
+            "line 2: `1,x` has a value that is not a finite number"
+        );
         assert_eq!(error_text("a,b\n"), "end of file: no rows; expected at least one");
-        assert_eq!(error_text("1,inf\n"), "line 1: `1,inf` has a value that is not a finite number");
+        assert_eq!(
+            error_text("1,inf\n"),
+            "line 1: `1,inf` has a value that is not a finite number"
+        );
         assert_eq!(error_text("[[1, 2], [1]]"), "row 1: 1 values, expected 2");
         assert!(error_text("{\"points\": []}").contains("neither a list of rows nor"));
         assert!(error_text("[[1, 2").contains("line 1"));
         let point = |point: &str| {
-            error_text(&format!(r#"{{"joint_names": ["a"], "points": [{{"positions": [1]}}, {point}]}}"#))
+            error_text(&format!(
+                r#"{{"joint_names": ["a"], "points": [{{"positions": [1]}}, {point}]}}"#
+            ))
         };
         let text = point(r#"{"positions": ["x"]}"#);
         assert!(text.starts_with("points[1]: ") && text.contains('x'), "{text}");
@@ -322,11 +334,16 @@ mod tests {
         let floating = r#"{"joint_trajectory": {"joint_names": ["a"], "points": [{"positions": [1]}]},
             "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": [{"transforms": [{}]}]}}"#;
         assert!(
-            error_text(floating).starts_with("multi_dof_joint_trajectory: joints with several degrees")
+            error_text(floating)
+                .starts_with("multi_dof_joint_trajectory: joints with several degrees")
         );
         let mixed = r#"{"joint_names": ["a"], "points": [
             {"positions": [1], "time_from_start": 1}, {"positions": [2]}]}"#;
-        assert!(error_text(mixed).starts_with("points[1]: missing time_from_start"), "{}", error_text(mixed));
+        assert!(
+            error_text(mixed).starts_with("points[1]: missing time_from_start"),
+            "{}",
+            error_text(mixed)
+        );
         let short = point(r#"{"positions": [1, 2]}"#);
         assert_eq!(short, "points[1]: 2 positions, expected 1, one for each of joint_names");
         for yaml in ["---\njoint_names:\n- a\n", "header:\n  stamp: 0\n", "# ROS\npoints: []\n"] {

@@ -12,10 +12,10 @@ use glam::DVec3;
 use crate::Mesh;
 
 /// Whether depths are computed. Volumes are always computed.
-const DEEP: bool = cfg!(feature = "depth");
+const COMPUTES_DEPTH: bool = cfg!(feature = "depth");
 
 /// Maximum number of planes and nodes visited in the search for the deepest point, which takes some seconds.
-const MOST_LOOKS: usize = 1_000_000_000;
+const MAX_VISITS: usize = 1_000_000_000;
 
 /// The difference between a convex hull and its part.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Excess {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub is_closed: bool,
     /// The largest depth of the part's surface below the hull's. `None` if the mesh has no faces, the search
-    /// exceeds its limit, or the feature `depth` is off.
+    /// exceeds its limit, or the feature `surface_depth` is off.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub depth: Option<f64>,
 }
@@ -44,7 +44,11 @@ impl Excess {
             hull_volume: hull.volume(),
             part_volume: (is_closed && volume >= 0.0).then_some(volume),
             is_closed,
-            depth: if DEEP && !mesh.faces.is_empty() { depth(mesh, hull) } else { None },
+            depth: if COMPUTES_DEPTH && !mesh.faces.is_empty() {
+                surface_depth(mesh, hull)
+            } else {
+                None
+            },
         }
     }
 
@@ -54,37 +58,38 @@ impl Excess {
         // A cube with edges of this extent has six faces.
         let most = 6.0 * tolerance * extent * extent;
         let is_filled = self.part_volume.is_some_and(|volume| self.hull_volume - volume <= most);
-        is_filled && self.depth.map_or(!DEEP, |depth| depth <= tolerance)
+        is_filled && self.depth.map_or(!COMPUTES_DEPTH, |depth| depth <= tolerance)
     }
 }
 
 /// Returns the depth of the deepest sample of a mesh below a hull; `None` if the search exceeds its limit.
-fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
-    let mut looks = 0;
-    depth_counted(mesh, hull, &mut looks)
+fn surface_depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
+    let mut visits = 0;
+    depth_with_visits(mesh, hull, &mut visits)
 }
 
-/// Computes [`depth`], and adds the number of visited planes and nodes to `looks`.
-fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut usize) -> Option<f64> {
+/// Computes [`surface_depth`], and adds the number of visited planes and nodes to `visits`.
+fn depth_with_visits(mesh: &Mesh, hull: &ConvexPolyhedron, visits: &mut usize) -> Option<f64> {
     if hull.dimension() < 3 {
         return Some(0.0);
     }
     let centre = hull.vertices().iter().sum::<DVec3>() / hull.vertices().len() as f64;
-    let around: Vec<DVec3> = hull.vertices().iter().map(|v| *v - centre).collect();
+    let facets_around_edge: Vec<DVec3> = hull.vertices().iter().map(|v| *v - centre).collect();
     let plane = |face: u32| {
         let normal = hull.face_normal(face);
-        let heights = hull.face_vertices(face).map(|v| normal.dot(around[v as usize]));
+        let heights = hull.face_vertices(face).map(|v| normal.dot(facets_around_edge[v as usize]));
         (normal, heights.fold(f64::NEG_INFINITY, f64::max))
     };
-    let planes = PlaneTree::new(&around, (0..hull.face_count() as u32).map(plane).collect());
+    let planes =
+        PlaneTree::new(&facets_around_edge, (0..hull.face_count() as u32).map(plane).collect());
     // Smaller depths are rounding errors.
     let noise = 1e-13 * mesh.extent();
     let mut deepest = noise;
     // Consecutive points of the mesh are near each other, and mostly below the same face.
     let mut near = 0;
-    for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
-        deepest = deepest.max(planes.least_depth(p - centre, deepest, &mut near, looks));
-        if *looks > MOST_LOOKS {
+    for p in mesh.faces.iter().flat_map(|face| face_face_samples(mesh, face)) {
+        deepest = deepest.max(planes.least_depth(p - centre, deepest, &mut near, visits));
+        if *visits > MAX_VISITS {
             return None;
         }
     }
@@ -92,10 +97,10 @@ fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut usize) -> Opt
 }
 
 /// Returns the corners of a face, the midpoints of its edges and its centre.
-fn samples<'a>(mesh: &'a Mesh, face: &'a [u32]) -> impl Iterator<Item = DVec3> + 'a {
+fn face_samples<'a>(mesh: &'a Mesh, face: &'a [u32]) -> impl Iterator<Item = DVec3> + 'a {
     let at = |v: &u32| mesh.vertices[*v as usize];
     let centre = face.iter().map(at).sum::<DVec3>() / face.len() as f64;
-    let next = face.iter().cycle().skip(1);
+    let next = face.iter().canonical_cycle().skip(1);
     let middles = face.iter().zip(next).map(move |(a, b)| (at(a) + at(b)) * 0.5);
     face.iter().map(at).chain(middles).chain([centre])
 }
@@ -106,7 +111,7 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     /// A square tube along x: 3 x 3 outside, 1 x 1 inside, length 4.
-    fn tube() -> Mesh {
+    fn square_tube() -> Mesh {
         let square = |half: f64| [[-half, -half], [half, -half], [half, half], [-half, half]];
         let mut vertices = Vec::new();
         for x in [0.0, 4.0] {
@@ -129,8 +134,8 @@ mod tests {
     }
 
     #[test]
-    fn a_tube_is_filled() {
-        let mut mesh = tube();
+    fn hull_of_tube_exceeds_its_volume_and_depth() {
+        let mut mesh = square_tube();
         if mesh.signed_volume() < 0.0 {
             mesh.faces.iter_mut().for_each(|face| face.reverse());
         }
@@ -147,7 +152,7 @@ mod tests {
 
     /// A prism over a regular polygon, which is its own hull (`teeth` is 0), or over a ring of teeth within
     /// that polygon.
-    fn wheel(corners: u32, teeth: f64) -> Mesh {
+    fn toothed_wheel(corners: u32, teeth: f64) -> Mesh {
         let outline = |z: f64| {
             (0..corners).map(move |k| {
                 let angle = f64::from(k) / f64::from(corners) * std::f64::consts::TAU;
@@ -163,24 +168,24 @@ mod tests {
 
     /// Faces with many corners have as many neighbours. The search must not visit all of them for each point.
     #[test]
-    fn planes_looked_at_grow_little_faster_than_the_mesh() {
+    fn visits_grow_little_faster_than_the_mesh() {
         for teeth in [0.0, 1e-3, 0.1] {
-            let looks = [1_000, 8_000].map(|corners| {
-                let mesh = wheel(corners, teeth);
+            let visits = [1_000, 8_000].map(|corners| {
+                let mesh = toothed_wheel(corners, teeth);
                 let hull = ConvexPolyhedron::from_points(&mesh.vertices).unwrap();
-                let mut looks = 0;
-                let deep = depth_counted(&mesh, &hull, &mut looks).unwrap();
+                let mut visits = 0;
+                let deep = depth_with_visits(&mesh, &hull, &mut visits).unwrap();
                 assert!((deep > 0.0) == (teeth > 0.0), "{teeth}: {deep}");
-                looks
+                visits
             });
             // With eight times the corners, quadratic growth would be a factor of 64.
-            assert!(looks[1] < 24 * looks[0] && looks[0] < 500_000, "{teeth}: {looks:?}");
+            assert!(visits[1] < 24 * visits[0] && visits[0] < 500_000, "{teeth}: {visits:?}");
         }
     }
 
     /// Compares with all planes for all points.
     #[test]
-    fn the_deepest_point_is_the_deepest() {
+    fn depth_equals_search_over_all_planes() {
         let mut random = Random::new(3);
         for _ in 0..20 {
             let vertices: Vec<DVec3> = (0..40).map(|_| random.vector()).collect();
@@ -195,9 +200,9 @@ mod tests {
                     })
                     .fold(f64::INFINITY, f64::min)
             };
-            let slow = mesh.faces.iter().flat_map(|face| samples(&mesh, face)).map(below);
+            let slow = mesh.faces.iter().flat_map(|face| face_samples(&mesh, face)).map(below);
             let slow = slow.fold(0.0, f64::max);
-            assert!((depth(&mesh, &hull).unwrap() - slow).abs() < 1e-14);
+            assert!((surface_depth(&mesh, &hull).unwrap() - slow).abs() < 1e-14);
         }
     }
 }

@@ -6,9 +6,9 @@
 //! same files.
 
 mod excess;
-mod heal;
 mod note;
 mod orient;
+mod repair;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ use crate::{Error, Mesh, ReadOptions, read_with};
 const CONVEX_TOLERANCE: f64 = 1e-5;
 /// Default tolerance between solids, as a multiple of the sum of their precisions. Both sides of a fit may be
 /// off by up to one precision, and an inclined facet increases the error.
-const PRECISIONS: f64 = 2.0;
+const TOLERANCE_FACTOR: f64 = 2.0;
 
 /// Options for building a body from a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -160,10 +160,10 @@ pub enum Refused {
     #[error(transparent)]
     Convex(#[from] BuildError),
     /// The mesh is not a solid.
-    #[error("{}", of_solid(.0))]
+    #[error("{}", solid_message(.0))]
     Solid(#[from] SolidError),
     /// The mesh needs repair, which is disabled. The notes describe the repairs.
-    #[error("the mesh needs repair, which is disabled: {}", listed(.0))]
+    #[error("the mesh needs repair, which is disabled: {}", joined_notes(.0))]
     Mended(Vec<Note>),
 }
 
@@ -187,12 +187,12 @@ impl Refused {
 }
 
 /// Joins notes to one text.
-fn listed(notes: &[Note]) -> String {
+fn joined_notes(notes: &[Note]) -> String {
     notes.iter().map(Note::to_string).collect::<Vec<_>>().join("; ")
 }
 
 /// Returns the message of an error about a solid, in terms of the file.
-fn of_solid(error: &SolidError) -> String {
+fn solid_message(error: &SolidError) -> String {
     match error {
         SolidError::Open { count, from, to, facet } => format!(
             "the surface is not closed: {} a face on one side only, the first runs from vertex \
@@ -265,7 +265,7 @@ pub fn hull(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
 pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
     let precision = mesh.precision * options.scale;
     let mut mesh = options.scaled(mesh);
-    let (body, notes) = mended(&mut mesh, options)?;
+    let (body, notes) = build_repaired(&mut mesh, options)?;
     Ok(Loaded { body, precision, notes })
 }
 
@@ -286,7 +286,7 @@ pub struct Apart {
 /// The errors of [`solid`] with open shells allowed.
 pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refused> {
     let mut mesh = options.scaled(mesh);
-    let (solid, mut notes) = mended(&mut mesh, &options.with_open(true))?;
+    let (solid, mut notes) = build_repaired(&mut mesh, &options.with_open(true))?;
     let of_triangle = solid.bodies();
     let count = of_triangle.iter().max().map_or(0, |last| *last as usize + 1);
     if count < 2 {
@@ -302,11 +302,14 @@ pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refus
 }
 
 /// Builds a solid from a mesh, with repairs if needed. Returns it with the notes.
-fn mended(mesh: &mut Cow<Mesh>, options: &BodyOptions) -> Result<(Solid, Vec<Note>), Refused> {
+fn build_repaired(
+    mesh: &mut Cow<Mesh>,
+    options: &BodyOptions,
+) -> Result<(Solid, Vec<Note>), Refused> {
     let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
     let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
     if let Err(SolidError::Inconsistent { .. } | SolidError::Open { .. }) = built {
-        notes.extend(heal::heal(mesh.to_mut()).notes());
+        notes.extend(repair::repair(mesh.to_mut()).notes());
         built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
     }
     let mut first = None;
@@ -318,9 +321,9 @@ fn mended(mesh: &mut Cow<Mesh>, options: &BodyOptions) -> Result<(Solid, Vec<Not
     }
     let body = built?;
     notes.extend(report_notes(body.report(), first));
-    let mended = || notes.iter().filter(|note| note.is_mended());
-    if options.as_is && mended().next().is_some() {
-        return Err(Refused::Mended(mended().cloned().collect()));
+    let build_repaired = || notes.iter().filter(|note| note.is_mended());
+    if options.as_is && build_repaired().next().is_some() {
+        return Err(Refused::Mended(build_repaired().cloned().collect()));
     }
     Ok((body, notes))
 }
@@ -378,7 +381,7 @@ pub fn between<'a>(
     start_overlap: StartOverlap,
 ) -> Result<Cast<'a, Solid>, QueryError> {
     let cast = Cast::new(moving, fixed, direction)?;
-    let of_files = PRECISIONS * (precisions[0] + precisions[1]);
+    let of_files = TOLERANCE_FACTOR * (precisions[0] + precisions[1]);
     let tolerance = tolerance.unwrap_or_else(|| of_files.max(cast.tolerance()));
     cast.with_options(
         SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance),
@@ -396,7 +399,7 @@ pub fn between_motions<'a>(
     tolerance: Option<f64>,
 ) -> Result<MotionCast<'a, Solid>, QueryError> {
     let cast = MotionCast::new(moving, fixed)?;
-    let of_files = PRECISIONS * (precisions[0] + precisions[1]);
+    let of_files = TOLERANCE_FACTOR * (precisions[0] + precisions[1]);
     match tolerance {
         Some(tolerance) => cast.tolerating(tolerance),
         None if of_files > cast.tolerance() => cast.tolerating(of_files),

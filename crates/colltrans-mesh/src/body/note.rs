@@ -132,11 +132,11 @@ impl fmt::Display for Note {
                 );
             }
             Self::Surface { open_edges, first, what } => {
-                return surface(f, *open_edges, *first, what);
+                return write_open_surface(f, *open_edges, *first, what);
             }
-            Self::Doubles(left) => return left.told(f, "with the corners of another one"),
-            Self::Fins(left) => return left.told(f, "that hung on the surface"),
-            Self::Walls(left) => return left.told(f, "inside the surface"),
+            Self::Doubles(left) => return left.write_removed(f, "with the corners of another one"),
+            Self::Fins(left) => return left.write_removed(f, "that hung on the surface"),
+            Self::Walls(left) => return left.write_removed(f, "inside the surface"),
             Self::FacesTurned(n) => {
                 (n, "face turned, against the others", "faces turned, against the others")
             }
@@ -164,14 +164,14 @@ impl fmt::Display for Note {
 
 impl Left {
     /// Writes the note on these faces.
-    fn told(&self, f: &mut fmt::Formatter<'_>, which: &str) -> fmt::Result {
+    fn write_removed(&self, f: &mut fmt::Formatter<'_>, which: &str) -> fmt::Result {
         let faces = counted(self.facets, "face", "faces");
         write!(f, "{faces} {which} left out (area {})", six_digits(self.area))
     }
 }
 
 /// Writes the note on an open surface.
-fn surface(
+fn write_open_surface(
     f: &mut fmt::Formatter<'_>,
     open_edges: usize,
     first: Option<[usize; 3]>,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use colltrans_mesh::{Error, Format, Mesh, ReadOptions, read, read_with};
 
-fn collection() -> Option<PathBuf> {
+fn collection_folder() -> Option<PathBuf> {
     let folder = std::env::var_os("COLLTRANS_DATA").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
         PathBuf::from,
@@ -15,12 +15,12 @@ fn collection() -> Option<PathBuf> {
     folder.is_dir().then_some(folder)
 }
 
-fn files(folder: &Path) -> Vec<PathBuf> {
+fn mesh_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            found.extend(files(&path));
+            found.extend(mesh_files(&path));
         } else if Format::of_path(&path).is_ok() {
             found.push(path);
         }
@@ -30,9 +30,9 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn every_file_is_read_or_refused() {
-    let Some(folder) = collection() else { return };
-    let files = files(&folder);
+fn every_file_is_read_or_rejected() {
+    let Some(folder) = collection_folder() else { return };
+    let files = mesh_files(&folder);
     assert!(!files.is_empty());
     for path in files {
         match read(&path) {
@@ -45,8 +45,8 @@ fn every_file_is_read_or_refused() {
 
 /// Closed parts with corners that are written with different rounding.
 #[test]
-fn closed_parts_are_closed() {
-    let Some(folder) = collection() else { return };
+fn duplicate_vertices_of_closed_parts_are_merged() {
+    let Some(folder) = collection_folder() else { return };
     for (name, merged) in
         [("angle_block.STL", 46), ("featuretype.STL", 288), ("octagonal_pocket.ply", 27)]
     {
@@ -66,8 +66,8 @@ fn closed_parts_are_closed() {
 
 /// For each broken file, the number of open edges of its surface.
 #[test]
-fn what_is_bad_about_the_bad_ones() {
-    let Some(folder) = collection() else { return };
+fn broken_files_have_expected_open_edges() {
+    let Some(folder) = collection_folder() else { return };
     for (name, open) in [
         ("busted.STL", 0),
         ("comments.off", 0),
@@ -86,8 +86,8 @@ fn what_is_bad_about_the_bad_ones() {
 }
 
 #[test]
-fn known_counts() {
-    let Some(folder) = collection() else { return };
+fn files_have_known_counts() {
+    let Some(folder) = collection_folder() else { return };
     let counts = |name: &str| {
         let Mesh { vertices, faces, .. } = read(folder.join(name)).unwrap();
         (vertices.len(), faces.len())

@@ -5,12 +5,12 @@ use std::path::Path;
 use colltrans_mesh::{Error, Format, Groups, Mesh, Place, parse, to_obj, to_off, to_stl};
 use glam::DVec3;
 
-fn read(format: Format, text: impl AsRef<[u8]>) -> Result<Mesh, Error> {
+fn read_bytes(format: Format, text: impl AsRef<[u8]>) -> Result<Mesh, Error> {
     parse(format, text.as_ref().to_vec(), Path::new("part"))
 }
 
-fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
-    match read(format, text) {
+fn error_place(format: Format, text: impl AsRef<[u8]>) -> Place {
+    match read_bytes(format, text) {
         Err(Error::Syntax { place, what, path }) => {
             assert_eq!(path, Path::new("part"));
             assert!(!what.is_empty() && !what.contains('\n'), "{what:?}");
@@ -21,8 +21,8 @@ fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
 }
 
 #[test]
-fn words_in_a_ply_file_are_told_as_such() {
-    let error = read(Format::Ply, "ply-like words\n").unwrap_err().to_string();
+fn text_in_ply_file_reports_missing_first_line() {
+    let error = read_bytes(Format::Ply, "ply-like words\n").unwrap_err().to_string();
     assert_eq!(
         error,
         "part: line 1: the first line of a PLY file must be `ply`, found `ply-like words`"
@@ -42,9 +42,9 @@ fn tetrahedron() -> Mesh {
 }
 
 #[test]
-fn text_formats_return_every_bit() {
+fn text_formats_round_trip_exactly() {
     let mesh = tetrahedron();
-    for back in [read(Format::Obj, to_obj(&mesh)), read(Format::Off, to_off(&mesh))] {
+    for back in [read_bytes(Format::Obj, to_obj(&mesh)), read_bytes(Format::Off, to_off(&mesh))] {
         let Mesh { vertices, faces, .. } = back.unwrap();
         assert_eq!((vertices, faces), (mesh.vertices.clone(), mesh.faces.clone()));
     }
@@ -55,7 +55,7 @@ fn binary_stl_returns_single_precision() {
     let mesh = tetrahedron();
     let bytes = to_stl(&mesh).unwrap();
     assert_eq!(bytes.len(), 84 + 50 * 4);
-    let read_back = read(Format::Stl, &bytes).unwrap();
+    let read_back = read_bytes(Format::Stl, &bytes).unwrap();
     // Vertices are welded in the order of the faces: 0 2 1, then 3.
     let rounded = |v: usize| mesh.vertices[v].as_vec3().as_dvec3();
     assert_eq!(read_back.vertices, [rounded(0), rounded(2), rounded(1), rounded(3)]);
@@ -64,23 +64,23 @@ fn binary_stl_returns_single_precision() {
 }
 
 #[test]
-fn a_binary_stl_may_begin_with_solid() {
+fn binary_stl_may_begin_with_solid() {
     let mut bytes = to_stl(&tetrahedron()).unwrap();
     bytes[..13].copy_from_slice(b"solid by hand");
-    assert_eq!(read(Format::Stl, &bytes).unwrap().faces.len(), 4);
+    assert_eq!(read_bytes(Format::Stl, &bytes).unwrap().faces.len(), 4);
 }
 
 #[test]
-fn a_binary_stl_is_measured_against_its_header() {
+fn binary_stl_size_must_match_its_header() {
     let bytes = to_stl(&tetrahedron()).unwrap();
-    assert_eq!(place(Format::Stl, &bytes[..bytes.len() - 1]), Place::End);
-    assert_eq!(place(Format::Stl, &bytes[..60]), Place::End);
-    assert_eq!(place(Format::Stl, b""), Place::End);
+    assert_eq!(error_place(Format::Stl, &bytes[..bytes.len() - 1]), Place::End);
+    assert_eq!(error_place(Format::Stl, &bytes[..60]), Place::End);
+    assert_eq!(error_place(Format::Stl, b""), Place::End);
     let mut lying = bytes.clone();
     lying[80..84].fill(0xff);
-    assert_eq!(place(Format::Stl, &lying), Place::End);
+    assert_eq!(error_place(Format::Stl, &lying), Place::End);
     let padded = [bytes, vec![0; 7]].concat();
-    assert_eq!(read(Format::Stl, &padded).unwrap().faces.len(), 4);
+    assert_eq!(read_bytes(Format::Stl, &padded).unwrap().faces.len(), 4);
 }
 
 const FACET: &str = "  facet normal 0 0 nan\n    OUTER loop\n vertex 0 0 0\n vertex 1 0 0\n\
@@ -88,17 +88,18 @@ const FACET: &str = "  facet normal 0 0 nan\n    OUTER loop\n vertex 0 0 0\n ver
 
 #[test]
 fn text_stl_keeps_digits_and_all_solids() {
-    let mesh = read(Format::Stl, format!("solid\r\n{FACET}endsolid\n\nsolid b\n{FACET}endsolid b"))
-        .unwrap();
+    let mesh =
+        read_bytes(Format::Stl, format!("solid\r\n{FACET}endsolid\n\nsolid b\n{FACET}endsolid b"))
+            .unwrap();
     assert_eq!(mesh.faces, [[0, 1, 2], [0, 1, 2]]);
     assert_eq!(mesh.vertices[2], DVec3::new(0.0, 1e-14, 0.0));
 }
 
 #[test]
-fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
+fn text_stl_accepts_padding_comments_and_control_bytes() {
     let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 1 0\n\
         endloop\nendfacet\nendsolid a\n";
-    let plain = read(Format::Stl, text).unwrap();
+    let plain = read_bytes(Format::Stl, text).unwrap();
     let commented = text.replacen("outer", "# made by foo\n  ; bar\nouter", 1);
     let inputs: [Vec<u8>; 12] = [
         commented.clone().into_bytes(),
@@ -115,18 +116,18 @@ fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
         [b"\xef\xbb\xbf\0\0", text.as_bytes(), b"\0"].concat(),
     ];
     for input in inputs {
-        assert_eq!(read(Format::Stl, &input).unwrap().vertices, plain.vertices, "{input:?}");
+        assert_eq!(read_bytes(Format::Stl, &input).unwrap().vertices, plain.vertices, "{input:?}");
     }
     let inside = text.replacen("0.1", "0\0.1", 1);
-    assert_eq!(place(Format::Stl, inside), Place::Line(5));
+    assert_eq!(error_place(Format::Stl, inside), Place::Line(5));
     // A line that is commented out is missing.
-    assert_eq!(place(Format::Stl, text.replacen("outer", "; outer", 1)), Place::Line(4));
+    assert_eq!(error_place(Format::Stl, text.replacen("outer", "; outer", 1)), Place::Line(4));
 }
 
 #[test]
-fn text_that_is_no_text_stl_is_refused_as_text() {
+fn other_text_in_stl_file_is_rejected_with_line() {
     let text = format!("solid x\n{FACET}endsolid x\n");
-    let message = |bytes: Vec<u8>| read(Format::Stl, bytes).unwrap_err().to_string();
+    let message = |bytes: Vec<u8>| read_bytes(Format::Stl, bytes).unwrap_err().to_string();
     for (input, line) in [
         (format!("/* made by foo */\n{text}"), "line 1"),
         (format!("\u{feff}# a comment\n\n{}", text.replacen("solid x\n", "", 1)), "line 3"),
@@ -148,9 +149,9 @@ fn text_that_is_no_text_stl_is_refused_as_text() {
 }
 
 #[test]
-fn text_stl_errors_name_the_line() {
+fn text_stl_errors_report_the_line() {
     let broken = |from: &str, to: &str| {
-        place(Format::Stl, format!("solid x\n{FACET}endsolid").replace(from, to))
+        error_place(Format::Stl, format!("solid x\n{FACET}endsolid").replace(from, to))
     };
     assert_eq!(broken("vertex 1 0 0", "vertex 1 0"), Place::Line(5));
     assert_eq!(broken("vertex 1 0 0", "vertex 1 zero 0"), Place::Line(5));
@@ -165,21 +166,21 @@ fn obj_keeps_order_polygons_and_negative_indices() {
     let text = "# a comment\nmtllib none.mtl\no first\nv 9 9 9 # not used\nv 0 0 0 nan nan nan\n\
         vt 0 0\nvn 0 0 1\nv 2 0 0 2\nv 1 \\\n 1 0\nv 0 1 0\n\
         f 5/1/1 4//1 3/1 2\ng second\nusemtl steel\nl 2 3 4\nf -4 -3 -2\n";
-    let mesh = read(Format::Obj, text).unwrap();
+    let mesh = read_bytes(Format::Obj, text).unwrap();
     assert_eq!(mesh.vertices.len(), 5);
     assert_eq!(mesh.vertices[2], DVec3::X, "a weight of 2 halves the coordinates");
     assert_eq!(mesh.vertices[3], DVec3::new(1.0, 1.0, 0.0), "a continued line");
     assert_eq!(mesh.faces, [vec![4, 3, 2, 1], vec![1, 2, 3]]);
-    let points = read(Format::Obj, "v 0 0 0\nv 1 0 0\n").unwrap();
+    let points = read_bytes(Format::Obj, "v 0 0 0\nv 1 0 0\n").unwrap();
     assert_eq!((points.vertices.len(), points.faces.len()), (2, 0));
-    assert_eq!(read(Format::Obj, "# nothing\n").unwrap(), Mesh::default());
-    assert!(read(Format::Obj, "").unwrap_err().to_string().contains("the file is empty"));
+    assert_eq!(read_bytes(Format::Obj, "# nothing\n").unwrap(), Mesh::default());
+    assert!(read_bytes(Format::Obj, "").unwrap_err().to_string().contains("the file is empty"));
 }
 
 #[test]
-fn obj_errors_name_the_line() {
+fn obj_errors_report_the_line() {
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    let with = |line: &str| place(Format::Obj, format!("{vertices}{line}\nf 1 2 3\n"));
+    let with = |line: &str| error_place(Format::Obj, format!("{vertices}{line}\nf 1 2 3\n"));
     assert_eq!(with("v 1 2"), Place::Line(4));
     assert_eq!(with("v 1 2 x"), Place::Line(4));
     assert_eq!(with("v 1 2 3 0"), Place::Line(4));
@@ -192,32 +193,41 @@ fn obj_errors_name_the_line() {
 }
 
 #[test]
-fn off_bends() {
+fn off_accepts_header_variants() {
     let body = "0 0 0\n1 0 0 0.5 0.5 0.5 1\n\n# between\n0 1 0 # after\n3 0 1 2 255 0 0\n";
     for header in ["OFF\n3 1 3\n", "  COFF 3 1 0 # c\n", "OFF3 1 0\n", "# first\n\nSTOFF\n#\n3 1\n"]
     {
-        let mesh = read(Format::Off, format!("{header}{body}")).unwrap();
+        let mesh = read_bytes(Format::Off, format!("{header}{body}")).unwrap();
         assert_eq!(mesh.vertices, [DVec3::ZERO, DVec3::X, DVec3::Y], "{header}");
         assert_eq!(mesh.faces, [[0, 1, 2]]);
     }
 }
 
 #[test]
-fn off_errors_name_the_line() {
+fn off_errors_report_the_line() {
     let vertices = "0 0 0\n1 0 0\n0 1 0\n";
-    assert_eq!(place(Format::Off, ""), Place::End);
-    assert_eq!(place(Format::Off, "# only\n"), Place::End);
-    assert_eq!(place(Format::Off, format!("FOO\n3 1 0\n{vertices}3 0 1 2")), Place::Line(1));
-    assert_eq!(place(Format::Off, format!("4OFF\n3 1 0\n{vertices}3 0 1 2")), Place::Line(1));
-    assert_eq!(place(Format::Off, "OFF BINARY\n"), Place::Line(1));
-    assert_eq!(place(Format::Off, format!("OFF\n3 x 0\n{vertices}")), Place::Line(2));
-    assert_eq!(place(Format::Off, format!("OFF\n4000000000 1 0\n{vertices}")), Place::Line(2));
-    assert_eq!(place(Format::Off, format!("OFF\n4 1 0\n{vertices}")), Place::End);
-    assert_eq!(place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1 3\n")), Place::Line(6));
-    assert_eq!(place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1\n")), Place::Line(6));
-    assert_eq!(place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1 -1\n")), Place::Line(6));
+    assert_eq!(error_place(Format::Off, ""), Place::End);
+    assert_eq!(error_place(Format::Off, "# only\n"), Place::End);
+    assert_eq!(error_place(Format::Off, format!("FOO\n3 1 0\n{vertices}3 0 1 2")), Place::Line(1));
+    assert_eq!(error_place(Format::Off, format!("4OFF\n3 1 0\n{vertices}3 0 1 2")), Place::Line(1));
+    assert_eq!(error_place(Format::Off, "OFF BINARY\n"), Place::Line(1));
+    assert_eq!(error_place(Format::Off, format!("OFF\n3 x 0\n{vertices}")), Place::Line(2));
     assert_eq!(
-        place(Format::Off, format!("OFF\n3 1 0\n{vertices}99999999999999 0 1 2\n")),
+        error_place(Format::Off, format!("OFF\n4000000000 1 0\n{vertices}")),
+        Place::Line(2)
+    );
+    assert_eq!(error_place(Format::Off, format!("OFF\n4 1 0\n{vertices}")), Place::End);
+    assert_eq!(
+        error_place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1 3\n")),
+        Place::Line(6)
+    );
+    assert_eq!(error_place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1\n")), Place::Line(6));
+    assert_eq!(
+        error_place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1 -1\n")),
+        Place::Line(6)
+    );
+    assert_eq!(
+        error_place(Format::Off, format!("OFF\n3 1 0\n{vertices}99999999999999 0 1 2\n")),
         Place::Line(6)
     );
 }
@@ -248,9 +258,9 @@ fn binary_ply(little: bool) -> Vec<u8> {
 }
 
 #[test]
-fn ply_in_all_three_encodings() {
+fn ply_is_read_in_all_three_encodings() {
     for bytes in [PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false)] {
-        let mesh = read(Format::Ply, bytes).unwrap();
+        let mesh = read_bytes(Format::Ply, bytes).unwrap();
         assert_eq!(mesh.vertices[0], DVec3::new(0.1, 0.0, 0.0));
         assert_eq!(mesh.vertices[2], DVec3::new(0.0, 1e-17, 0.0));
         assert_eq!(mesh.faces, [[0, 1, 2]]);
@@ -260,7 +270,7 @@ fn ply_in_all_three_encodings() {
 #[test]
 fn ply_comments_may_be_in_any_encoding() {
     for bytes in [PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false)] {
-        let plain = read(Format::Ply, &bytes).unwrap();
+        let plain = read_bytes(Format::Ply, &bytes).unwrap();
         for line in [
             &b"comment Geh\xe4use\n"[..],
             b"obj_info \xff\xfe\x80\n",
@@ -268,18 +278,18 @@ fn ply_comments_may_be_in_any_encoding() {
         ] {
             let at = bytes.windows(7).position(|window| window == b"element").unwrap();
             let told = [&bytes[..at], line, &bytes[at..]].concat();
-            let mesh = read(Format::Ply, told).unwrap();
+            let mesh = read_bytes(Format::Ply, told).unwrap();
             assert_eq!((mesh.vertices, mesh.faces), (plain.vertices.clone(), plain.faces.clone()));
         }
     }
 }
 
 #[test]
-fn broken_ply_files_are_told_in_plain_words() {
+fn broken_ply_files_report_line_and_reason() {
     let good = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
         property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    assert!(read(Format::Ply, good).is_ok());
+    assert!(read_bytes(Format::Ply, good).is_ok());
     let types = "char, uchar, short, ushort, int, uint, float, double";
     for (from, to, told) in [
         ("ply\n", "plx\n", "line 1: the first line of a PLY file must be `ply`, found `plx`"),
@@ -334,42 +344,52 @@ fn broken_ply_files_are_told_in_plain_words() {
     ] {
         let text = good.replacen(from, to, 1);
         for end in ["\n", "\r\n", "\r"] {
-            let error = read(Format::Ply, text.replace('\n', end)).unwrap_err().to_string();
+            let error = read_bytes(Format::Ply, text.replace('\n', end)).unwrap_err().to_string();
             assert_eq!(error, format!("part: {told}"), "{end:?}");
         }
     }
     for cut in [5, 40, 60, 100] {
-        let error = read(Format::Ply, &good[..cut]).unwrap_err().to_string();
+        let error = read_bytes(Format::Ply, &good[..cut]).unwrap_err().to_string();
         assert!(error.starts_with("part: line ") && !error.contains("Couldn't"), "{error}");
     }
-    let error = read(Format::Ply, &good[..good.find("property float z").unwrap()]).unwrap_err();
+    let error =
+        read_bytes(Format::Ply, &good[..good.find("property float z").unwrap()]).unwrap_err();
     let told = "part: line 6: the file ends within the header, before `end_header`";
     assert_eq!(error.to_string(), told);
 }
 
 #[test]
-fn ply_errors_say_where() {
-    assert_eq!(place(Format::Ply, ""), Place::End);
-    assert_eq!(place(Format::Ply, "ply\n"), Place::Line(2));
-    assert_eq!(place(Format::Ply, PLY.replace("property double y\n", "")), Place::Header);
+fn ply_errors_report_the_place() {
+    assert_eq!(error_place(Format::Ply, ""), Place::End);
+    assert_eq!(error_place(Format::Ply, "ply\n"), Place::Line(2));
+    assert_eq!(error_place(Format::Ply, PLY.replace("property double y\n", "")), Place::Header);
     let list = PLY.replace("property double y\n", "property list uchar double y\n");
-    assert_eq!(place(Format::Ply, list), Place::Header);
+    assert_eq!(error_place(Format::Ply, list), Place::Header);
     let float = PLY.replace("list uchar int vertex_ind", "list uchar float vertex_ind");
     assert_ne!(float, PLY);
-    assert_eq!(place(Format::Ply, float), Place::Header);
-    assert_eq!(place(Format::Ply, PLY.replace("vertex 3", "vertex 999999999999")), Place::Header);
-    assert_eq!(place(Format::Ply, PLY.replace("1 0 0 2", "1 0 zero 2")), Place::Line(14));
-    assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 3 0.5")), Place::Face(0));
-    assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 -2 0.5")), Place::Face(0));
-    assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "250 0 1 2 0.5")), Place::Line(16));
+    assert_eq!(error_place(Format::Ply, float), Place::Header);
+    assert_eq!(
+        error_place(Format::Ply, PLY.replace("vertex 3", "vertex 999999999999")),
+        Place::Header
+    );
+    assert_eq!(error_place(Format::Ply, PLY.replace("1 0 0 2", "1 0 zero 2")), Place::Line(14));
+    assert_eq!(error_place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 3 0.5")), Place::Face(0));
+    assert_eq!(
+        error_place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 -2 0.5")),
+        Place::Face(0)
+    );
+    assert_eq!(
+        error_place(Format::Ply, PLY.replace("3 0 1 2 0.5", "250 0 1 2 0.5")),
+        Place::Line(16)
+    );
     let binary = binary_ply(true);
-    assert_eq!(place(Format::Ply, &binary[..binary.len() - 1]), Place::End);
+    assert_eq!(error_place(Format::Ply, &binary[..binary.len() - 1]), Place::End);
     let empty = "ply\nformat binary_little_endian 1.0\nelement nothing 99999999999\nend_header\n";
-    assert_eq!(place(Format::Ply, empty), Place::Header);
+    assert_eq!(error_place(Format::Ply, empty), Place::Header);
 }
 
 #[test]
-fn the_extension_tells_the_format() {
+fn extension_selects_the_format() {
     assert_eq!(Format::of_path(Path::new("a.b/PART.Stl")).unwrap(), Format::Stl);
     assert_eq!(Format::names("or"), "STL, OBJ, PLY, OFF or DAE");
     for path in ["part.step", "part", "stl"] {
@@ -382,7 +402,7 @@ fn the_extension_tells_the_format() {
 
 /// No prefix and no single changed byte of a file causes a panic in a reader.
 #[test]
-fn mutilated_files_get_answers() {
+fn mutilated_files_do_not_panic() {
     let files = [
         (Format::Stl, to_stl(&tetrahedron()).unwrap()),
         (Format::Stl, format!("solid x\n{FACET}endsolid").into_bytes()),
@@ -394,11 +414,11 @@ fn mutilated_files_get_answers() {
     ];
     for (format, bytes) in files {
         for end in 0..bytes.len() {
-            let _ = read(format, &bytes[..end]);
+            let _ = read_bytes(format, &bytes[..end]);
             for change in [0, 0xff, b'9', b'-', b'\n'] {
                 let mut changed = bytes.clone();
                 changed[end] = change;
-                if let Ok(mesh) = read(format, changed) {
+                if let Ok(mesh) = read_bytes(format, changed) {
                     let count = mesh.vertices.len();
                     assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < count));
                 }
@@ -408,7 +428,7 @@ fn mutilated_files_get_answers() {
 }
 
 /// Returns the names of the groups with the number of their faces.
-fn groups(mesh: &Mesh) -> Vec<(&str, usize)> {
+fn group_counts(mesh: &Mesh) -> Vec<(&str, usize)> {
     let Groups { names, of_face } = &mesh.groups;
     assert!(of_face.is_empty() || of_face.len() == mesh.faces.len());
     let count = |k: usize| of_face.iter().filter(|&&g| g as usize == k).count();
@@ -416,7 +436,7 @@ fn groups(mesh: &Mesh) -> Vec<(&str, usize)> {
 }
 
 #[test]
-fn objects_and_groups_of_obj_are_told() {
+fn obj_objects_and_groups_are_returned() {
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     let cases: [(&str, &[(&str, usize)]); 7] = [
         ("f 1 2 3\nf 1 3 4\n", &[]),
@@ -431,25 +451,25 @@ fn objects_and_groups_of_obj_are_told() {
         ("o a # not b\nf 1 2 3\no c\nf 1 3 \\\n4\n", &[("a", 1), ("c", 1)]),
     ];
     for (text, wanted) in cases {
-        let mesh = read(Format::Obj, format!("{vertices}{text}")).unwrap();
-        assert_eq!(groups(&mesh), wanted, "{text}");
+        let mesh = read_bytes(Format::Obj, format!("{vertices}{text}")).unwrap();
+        assert_eq!(group_counts(&mesh), wanted, "{text}");
     }
 }
 
 #[test]
-fn solids_of_stl_are_told() {
+fn stl_solids_are_returned_as_groups() {
     let facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
     let text = format!(
         "solid a 1\n{facet}endsolid a 1\nSOLID\n{facet}{facet}endsolid\nsolid x\nendsolid x\nsolid a 1\n{facet}endsolid\n"
     );
-    let mesh = read(Format::Stl, text).unwrap();
-    assert_eq!(groups(&mesh), [("a 1", 1), ("", 2), ("a 1", 1)]);
-    let mesh = read(Format::Stl, format!("solid a\n{facet}endsolid a\n")).unwrap();
-    assert_eq!(groups(&mesh), []);
+    let mesh = read_bytes(Format::Stl, text).unwrap();
+    assert_eq!(group_counts(&mesh), [("a 1", 1), ("", 2), ("a 1", 1)]);
+    let mesh = read_bytes(Format::Stl, format!("solid a\n{facet}endsolid a\n")).unwrap();
+    assert_eq!(group_counts(&mesh), []);
 }
 
 /// Returns a COLLADA file of a square pyramid (five corners), placed by these nodes.
-fn dae(asset: &str, faces: &str, nodes: &str) -> String {
+fn dae_text(asset: &str, faces: &str, nodes: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n\
          <asset>{asset}</asset>\n<library_geometries><geometry id=\"g\"><mesh>\n\
@@ -467,7 +487,7 @@ const VERTEX: &str = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
 
 /// Returns all five faces, in two kinds of elements, with indices for normals in addition to those for
 /// vertices.
-fn pyramid() -> String {
+fn pyramid_faces() -> String {
     let normal = "<input semantic=\"NORMAL\" source=\"#p\" offset=\"1\"/>";
     format!(
         "<polylist count=\"2\">{VERTEX}{normal}<vcount>4 3</vcount><p>3 0 2 0 1 0 0 0 0 1 1 1 4 1</p></polylist>\
@@ -477,46 +497,51 @@ fn pyramid() -> String {
 }
 
 #[test]
-fn nodes_of_collada_are_placed_and_named() {
+fn collada_nodes_are_placed_and_named() {
     let nodes = "<node name=\"a\"><instance_geometry url=\"#g\"/></node>\
         <node id=\"b\"><translate>0 0 5</translate><rotate>0 0 1 90</rotate><scale>2 2 2</scale>\
         <node name=\"c\"><matrix>1 0 0 3 0 1 0 0 0 0 -1 0 0 0 0 1</matrix><instance_node url=\"#n\"/></node></node>";
     let asset = "<unit name=\"centimeter\" meter=\"0.01\"/><up_axis>Z_UP</up_axis>";
-    let mesh = read(Format::Dae, dae(asset, &pyramid(), nodes)).unwrap();
+    let mesh = read_bytes(Format::Dae, dae_text(asset, &pyramid_faces(), nodes)).unwrap();
     assert_eq!(
         mesh.faces[..5],
         [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]]
     );
     assert_eq!((mesh.unit, mesh.up), (Some(0.01), Some(DVec3::Z)));
-    assert_eq!(groups(&mesh), [("a", 5), ("n", 5)]);
+    assert_eq!(group_counts(&mesh), [("a", 5), ("n", 5)]);
     assert!(mesh.open_edges().is_empty());
     // Mirrored twice, and scaled by 2.
     assert!((mesh.signed_volume() - 3.0).abs() < 1e-12);
     let [_, apex] = [4, 9].map(|k| mesh.vertices[k]);
     // (.5 + 3, .5, -1), scaled by 2, rotated to (-1, 7), raised by 5.
     assert!((apex - DVec3::new(-1.0, 7.0, 3.0)).length() < 1e-12, "{apex}");
-    let bare =
-        read(Format::Dae, dae("", &pyramid(), "<node><instance_geometry url=\"#g\"/></node>"))
-            .unwrap();
-    assert_eq!((bare.unit, bare.up, groups(&bare)), (Some(1.0), Some(DVec3::Y), vec![]));
+    let bare = read_bytes(
+        Format::Dae,
+        dae_text("", &pyramid_faces(), "<node><instance_geometry url=\"#g\"/></node>"),
+    )
+    .unwrap();
+    assert_eq!((bare.unit, bare.up, group_counts(&bare)), (Some(1.0), Some(DVec3::Y), vec![]));
 }
 
 #[test]
-fn strips_and_fans_of_collada() {
+fn collada_strips_and_fans_are_read() {
     let faces = format!(
         "<trifans count=\"1\">{VERTEX}<p>4 0 1 2 3 0</p></trifans><tristrips count=\"1\">{VERTEX}<p>3 2 0 1</p></tristrips>"
     );
-    let mesh =
-        read(Format::Dae, dae("", &faces, "<node><instance_geometry url=\"#g\"/></node>")).unwrap();
+    let mesh = read_bytes(
+        Format::Dae,
+        dae_text("", &faces, "<node><instance_geometry url=\"#g\"/></node>"),
+    )
+    .unwrap();
     assert_eq!(mesh.faces.len(), 6);
     assert!(mesh.open_edges().is_empty());
     assert!((mesh.signed_volume() - 1.0 / 3.0).abs() < 1e-12);
 }
 
 #[test]
-fn faults_of_collada_name_their_line() {
+fn invalid_collada_reports_the_reason() {
     let node = "<node><instance_geometry url=\"#g\"/></node>";
-    let list = |what: &str| dae("", what, node);
+    let list = |what: &str| dae_text("", what, node);
     let triangles =
         |p: &str| list(&format!("<triangles count=\"1\">{VERTEX}<p>{p}</p></triangles>"));
     let ring = "<node id=\"r\"><instance_node url=\"#r\"/></node>";
@@ -540,43 +565,49 @@ fn faults_of_collada_name_their_line() {
             "more corners",
         ),
         (list(&format!("<polygons count=\"1\">{VERTEX}<ph><p>0 1 2</p></ph></polygons>")), "holes"),
-        (list(&pyramid()).replace("count=\"5\"", "count=\"6\""), "extend beyond the 15 numbers"),
         (
-            list(&pyramid()).replace("count=\"5\"", "count=\"99999999999999999999\""),
+            list(&pyramid_faces()).replace("count=\"5\"", "count=\"6\""),
+            "extend beyond the 15 numbers",
+        ),
+        (
+            list(&pyramid_faces()).replace("count=\"5\"", "count=\"99999999999999999999\""),
             "expected a non-negative integer",
         ),
-        (list(&pyramid()).replace("url=\"#g\"", "url=\"#h\""), "unknown id `#h`"),
-        (list(&pyramid()).replace("url=\"#g\"", "url=\"b.dae#g\""), "refers to another file"),
-        (dae("<unit meter=\"0\"/>", &pyramid(), node), "invalid unit"),
-        (dae("<up_axis>W</up_axis>", &pyramid(), node), "unknown axis `W`"),
+        (list(&pyramid_faces()).replace("url=\"#g\"", "url=\"#h\""), "unknown id `#h`"),
+        (list(&pyramid_faces()).replace("url=\"#g\"", "url=\"b.dae#g\""), "refers to another file"),
+        (dae_text("<unit meter=\"0\"/>", &pyramid_faces(), node), "invalid unit"),
+        (dae_text("<up_axis>W</up_axis>", &pyramid_faces(), node), "unknown axis `W`"),
         (
-            dae("", &pyramid(), "<node><lookat>0 0 0 1 1 1 0 0 1</lookat></node>"),
+            dae_text("", &pyramid_faces(), "<node><lookat>0 0 0 1 1 1 0 0 1</lookat></node>"),
             "<lookat> is not supported",
         ),
         (
-            dae("", &pyramid(), "<node><scale>1 2</scale></node>"),
+            dae_text("", &pyramid_faces(), "<node><scale>1 2</scale></node>"),
             "<scale> has 2 numbers, expected 3",
         ),
-        (dae("", &pyramid(), ring), "form a cycle"),
-        (dae("", &pyramid(), &format!("{doubling}<node id=\"d20\"/>")), "more than 65536"),
+        (dae_text("", &pyramid_faces(), ring), "form a cycle"),
+        (
+            dae_text("", &pyramid_faces(), &format!("{doubling}<node id=\"d20\"/>")),
+            "more than 65536",
+        ),
         ("<?xml version=\"1.0\"?><COLLADA><a></b></COLLADA>".into(), ""),
         ("<?xml version=\"1.0\"?><COLLADA>".into(), "not closed"),
         ("<?xml version=\"1.0\"?><COLLADA/>".into(), "no scene"),
     ];
     for (text, wanted) in cases {
-        let error = read(Format::Dae, &text).unwrap_err();
+        let error = read_bytes(Format::Dae, &text).unwrap_err();
         assert!(matches!(error, Error::Syntax { .. }), "{error}");
         assert!(error.to_string().contains(wanted), "{error}, not {wanted}");
     }
-    let other = read(Format::Dae, "<?xml version=\"1.0\"?><robot/>").unwrap_err().to_string();
+    let other = read_bytes(Format::Dae, "<?xml version=\"1.0\"?><robot/>").unwrap_err().to_string();
     assert_eq!(
         other,
         "part: contains an XML file, but its extension stands for DAE; rename or convert the file"
     );
     // Each prefix of a file is read, or rejected with an error.
-    let whole = dae("<unit meter=\"1\"/>", &pyramid(), node);
+    let whole = dae_text("<unit meter=\"1\"/>", &pyramid_faces(), node);
     for end in 0..whole.len() {
-        if let Ok(mesh) = read(Format::Dae, &whole[..end]) {
+        if let Ok(mesh) = read_bytes(Format::Dae, &whole[..end]) {
             assert_eq!(mesh.faces.len(), 5, "{end}");
         }
     }
@@ -584,10 +615,10 @@ fn faults_of_collada_name_their_line() {
 
 #[test]
 #[cfg(feature = "dae")]
-fn strides_and_counts_of_collada_that_overflow_are_refused() {
+fn overflowing_collada_strides_are_rejected() {
     let nodes = "<node><instance_geometry url=\"#g\"/></node>";
-    let file = dae("", &pyramid(), nodes);
-    assert!(read(Format::Dae, &file).is_ok());
+    let file = dae_text("", &pyramid_faces(), nodes);
+    assert!(read_bytes(Format::Dae, &file).is_ok());
     let largest = usize::MAX.to_string();
     let accessor = &file[file.find("<accessor").unwrap()..];
     let accessor = &accessor[..=accessor.find('>').unwrap()];
@@ -603,7 +634,8 @@ fn strides_and_counts_of_collada_that_overflow_are_refused() {
         let wild = format!(
             "<accessor source=\"{source}\" count=\"{count}\" stride=\"{stride}\" offset=\"{offset}\">"
         );
-        let error = read(Format::Dae, file.replacen(accessor, &wild, 1)).unwrap_err().to_string();
+        let error =
+            read_bytes(Format::Dae, file.replacen(accessor, &wild, 1)).unwrap_err().to_string();
         assert!(error.contains("extend beyond"), "{error}");
     }
 }

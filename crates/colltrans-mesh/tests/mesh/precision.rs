@@ -20,7 +20,7 @@ fn prism(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
 }
 
 /// Returns a frame with the polygon as its hole and an outer boundary of twice the size.
-fn frame(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
+fn polygon_frame(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
     let n = outline.len() as u32;
     let ring = |z: f64, by: f64| outline.iter().map(move |[x, y]| DVec3::new(x * by, y * by, z));
     let rings = [(low, 1.0), (high, 1.0), (low, 2.0), (high, 2.0)];
@@ -40,13 +40,13 @@ fn frame(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
     mesh
 }
 
-fn moved(mut mesh: Mesh, by: impl Fn(DVec3) -> DVec3) -> Mesh {
+fn transformed(mut mesh: Mesh, by: impl Fn(DVec3) -> DVec3) -> Mesh {
     mesh.vertices.iter_mut().for_each(|v| *v = by(*v));
     mesh
 }
 
 /// Writes a mesh in a format, with coordinates printed by `print`, and reads it again.
-fn written(mesh: &Mesh, format: Format, print: &dyn Fn(f64) -> String) -> Mesh {
+fn write_and_read(mesh: &Mesh, format: Format, print: &dyn Fn(f64) -> String) -> Mesh {
     let row = |v: DVec3| v.to_array().map(print).join(" ");
     let mut text = String::new();
     match format {
@@ -91,7 +91,7 @@ fn written(mesh: &Mesh, format: Format, print: &dyn Fn(f64) -> String) -> Mesh {
 }
 
 /// Writes a mesh as a binary STL file and reads it again.
-fn binary(mesh: &Mesh) -> Mesh {
+fn write_and_read_binary(mesh: &Mesh) -> Mesh {
     let triangles: Vec<[u32; 3]> = (mesh.faces.iter())
         .flat_map(|face| (1..face.len() - 1).map(move |k| [face[0], face[k], face[k + 1]]))
         .collect();
@@ -129,7 +129,7 @@ fn goes_through(parts: &[Mesh; 2], direction: DVec3) -> bool {
 
 /// A peg has the outline of the hole below it, in random poses. Rounded files make the two overlap.
 #[test]
-fn a_peg_that_fills_its_hole_comes_through_as_text_of_six_digits() {
+fn peg_with_outline_of_its_hole_fits_after_rounding() {
     let mut random = Random::new(11);
     let mut stuck = 0;
     for _ in 0..12 {
@@ -142,13 +142,14 @@ fn a_peg_that_fills_its_hole_comes_through_as_text_of_six_digits() {
             })
             .collect();
         let (turn, at) = (random.rotation(), random.vector() * 20.0);
-        let placed = |mesh| moved(mesh, |v| turn * v + at);
-        let parts = [placed(prism(&outline, [3.0, 9.0])), placed(frame(&outline, [0.0, 2.0]))];
+        let placed = |mesh| transformed(mesh, |v| turn * v + at);
+        let parts =
+            [placed(prism(&outline, [3.0, 9.0])), placed(polygon_frame(&outline, [0.0, 2.0]))];
         let through = |parts: [Mesh; 2]| goes_through(&parts, turn * DVec3::NEG_Z);
-        assert!(through(parts.each_ref().map(binary)), "binary STL");
+        assert!(through(parts.each_ref().map(write_and_read_binary)), "binary STL");
         for format in [Format::Stl, Format::Obj, Format::Ply, Format::Off] {
             let text = |print: &dyn Fn(f64) -> String| {
-                parts.each_ref().map(|mesh| written(mesh, format, print))
+                parts.each_ref().map(|mesh| write_and_read(mesh, format, print))
             };
             assert!(through(text(&six_decimals)), "{format} with six decimals");
             assert!(through(text(&six_digits)), "{format} with six digits");
@@ -164,17 +165,17 @@ fn a_peg_that_fills_its_hole_comes_through_as_text_of_six_digits() {
 }
 
 #[test]
-fn the_format_of_numbers_is_told() {
+fn number_format_follows_the_printed_digits() {
     let box_of = |size: DVec3| {
         let DVec3 { x, y, z } = size;
         prism(&[[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]], [0.0, z])
     };
     let turn = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.7, 0.1);
-    let turned = moved(box_of(DVec3::new(20.0, 30.0, 40.0)), |v| turn * v);
+    let turned = transformed(box_of(DVec3::new(20.0, 30.0, 40.0)), |v| turn * v);
     let all = |x: f64| x.to_string();
     for format in [Format::Stl, Format::Obj, Format::Ply, Format::Off] {
         let is = |mesh: &Mesh, print: &dyn Fn(f64) -> String| {
-            let mesh = written(mesh, format, print);
+            let mesh = write_and_read(mesh, format, print);
             (mesh.format, mesh.precision)
         };
         assert_eq!(is(&turned, &six_decimals), (NumberFormat::Decimals(6), 2e-6), "{format}");
@@ -202,7 +203,7 @@ fn the_format_of_numbers_is_told() {
             assert_eq!(is(&drawn, &six_decimals), doubles, "{format}");
         }
     }
-    assert_eq!(binary(&turned).format, NumberFormat::Single);
+    assert_eq!(write_and_read_binary(&turned).format, NumberFormat::Single);
 }
 
 /// Prints a number of a million or more like `%.6g`.
@@ -212,7 +213,7 @@ fn six_digits_with_exponent(x: f64) -> String {
 
 /// Numbers whose values do not show that they are rounded: `4.23511e+07`, `0.300`.
 #[test]
-fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
+fn peg_fits_if_exponents_or_zeros_show_the_rounding() {
     let mut random = Random::new(5);
     for _ in 0..6 {
         let turn = random.rotation();
@@ -220,14 +221,14 @@ fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
             let corner = |k: i32| (f64::from(k) * std::f64::consts::TAU / 24.0).sin_cos();
             let outline: Vec<[f64; 2]> =
                 (0..24).map(corner).map(|(sin, cos)| [size * cos, size * sin]).collect();
-            let placed = |mesh| moved(mesh, |v| turn * v);
-            let hole = placed(frame(&outline, [0.0, 2.0 * size]));
+            let placed = |mesh| transformed(mesh, |v| turn * v);
+            let hole = placed(polygon_frame(&outline, [0.0, 2.0 * size]));
             [placed(prism(&outline, [0.0, 2.0 * size])), hole]
         };
         let goes_through = |parts: &[Mesh; 2]| goes_through(parts, turn * DVec3::Z);
         for format in [Format::Stl, Format::Obj, Format::Off, Format::Ply] {
             let read = |size: f64, print: &dyn Fn(f64) -> String| {
-                parts(size).each_ref().map(|mesh| written(mesh, format, print))
+                parts(size).each_ref().map(|mesh| write_and_read(mesh, format, print))
             };
             let large = read(5e7, &six_digits_with_exponent);
             assert_eq!(large[0].format, NumberFormat::Digits(6), "{format}");
@@ -241,7 +242,7 @@ fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
 
 /// Coordinates that a PLY file declares as `float`, after another property, with four digits.
 #[test]
-fn digits_of_ply_in_single_precision_are_those_of_the_text() {
+fn digits_of_text_ply_with_float_are_those_of_the_text() {
     let mut random = Random::new(3);
     let mut text = String::from(
         "ply\nformat ascii 1.0\nelement vertex 60\nproperty int id\nproperty float x\n\
@@ -258,10 +259,10 @@ fn digits_of_ply_in_single_precision_are_those_of_the_text() {
 
 /// The nodes of COLLADA transform and scale their geometry, so that its digits are no longer those of the file.
 #[test]
-fn nodes_of_collada_keep_the_precision_of_their_text() {
+fn collada_nodes_scale_the_precision_of_their_text() {
     let turn = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.7, 0.1);
     let outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 30.0], [0.0, 30.0]];
-    let mesh = moved(prism(&outline, [0.0, 40.0]), |v| turn * v);
+    let mesh = transformed(prism(&outline, [0.0, 40.0]), |v| turn * v);
     for (print, found, precision) in [
         (&six_decimals as &dyn Fn(f64) -> String, NumberFormat::Decimals(6), 2e-5),
         (&|x| format!("{:.3}", 0.1 * x), NumberFormat::Decimals(3), 2e-2),
@@ -297,9 +298,9 @@ fn collada(mesh: &Mesh, print: &dyn Fn(f64) -> String) -> Mesh {
 }
 
 /// Returns an L of size 40 at coordinates of the UTM grid.
-fn angle() -> Mesh {
+fn utm_angle() -> Mesh {
     let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 10.0], [10.0, 10.0], [10.0, 40.0], [0.0, 40.0]];
-    moved(prism(&outline, [0.0, 10.0]), |v| v + DVec3::new(500_000.0, 4_649_776.0, 0.0))
+    transformed(prism(&outline, [0.0, 10.0]), |v| v + DVec3::new(500_000.0, 4_649_776.0, 0.0))
 }
 
 /// Returns the mesh with an additional vertex that no face uses.
@@ -311,8 +312,8 @@ fn with_stray(mesh: &Mesh, at: DVec3) -> Mesh {
 }
 
 #[test]
-fn a_vertex_that_no_face_uses_changes_no_tolerance() {
-    let angle = angle();
+fn unused_vertex_does_not_change_tolerances() {
+    let angle = utm_angle();
     let refused = convex(&angle, &BodyOptions::default()).unwrap_err();
     for stray in [DVec3::ZERO, DVec3::splat(1e12)] {
         let stray = with_stray(&angle, stray);
@@ -321,7 +322,7 @@ fn a_vertex_that_no_face_uses_changes_no_tolerance() {
         assert_eq!((stray.extent(), stray.bounds()), (40.0, angle.bounds()));
         for format in [Format::Obj, Format::Ply, Format::Off] {
             let [with, without] =
-                [&stray, &angle].map(|mesh| written(mesh, format, &|x| x.to_string()));
+                [&stray, &angle].map(|mesh| write_and_read(mesh, format, &|x| x.to_string()));
             assert_eq!(with.precision, without.precision, "{format}");
             assert_eq!(with.merged.tolerance, without.merged.tolerance, "{format}");
         }
@@ -329,14 +330,14 @@ fn a_vertex_that_no_face_uses_changes_no_tolerance() {
 }
 
 #[test]
-fn a_hull_leaves_out_what_no_face_uses() {
+fn hull_excludes_unused_vertices() {
     let options = BodyOptions::default().with_hull(true);
-    let angle = angle();
+    let angle = utm_angle();
     let plain = convex(&angle, &options).unwrap();
     assert!((plain.body.volume() - 11_500.0).abs() < 1e-3, "{}", plain.body.volume());
     for stray in [DVec3::ZERO, DVec3::splat(1e12)] {
         for format in [Format::Obj, Format::Ply, Format::Off] {
-            let mesh = written(&with_stray(&angle, stray), format, &|x| x.to_string());
+            let mesh = write_and_read(&with_stray(&angle, stray), format, &|x| x.to_string());
             let loaded = convex(&mesh, &options).unwrap();
             assert_eq!(loaded.body.vertices(), plain.body.vertices(), "{format}");
             assert!(loaded.notes.contains(&Note::Stray(1)), "{:?}", loaded.notes);
@@ -362,7 +363,7 @@ fn a_hull_leaves_out_what_no_face_uses() {
 }
 
 #[test]
-fn a_body_that_is_convex_by_tolerance_tells_its_dent() {
+fn body_convex_within_tolerance_reports_its_dent() {
     let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [20.0, 39.9999], [0.0, 40.0]];
     let dented = prism(&outline, [0.0, 10.0]);
     let loaded = convex(&dented, &BodyOptions::default()).unwrap();

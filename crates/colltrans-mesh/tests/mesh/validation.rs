@@ -10,16 +10,16 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::block;
 use glam::DVec3;
 
-fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Mesh, Error> {
+fn read_bytes(format: Format, bytes: impl AsRef<[u8]>) -> Result<Mesh, Error> {
     parse(format, bytes.as_ref().to_vec(), Path::new("part"))
 }
 
-fn message(format: Format, bytes: impl AsRef<[u8]>) -> String {
-    read(format, bytes).unwrap_err().to_string()
+fn error_message(format: Format, bytes: impl AsRef<[u8]>) -> String {
+    read_bytes(format, bytes).unwrap_err().to_string()
 }
 
 /// Returns a cube of triangles or of squares.
-fn cube(triangles: bool) -> Mesh {
+fn unit_cube(triangles: bool) -> Mesh {
     let cube = block(DVec3::ZERO, DVec3::ONE);
     let cube = if triangles { cube.triangulated() } else { cube };
     Mesh::new(cube.vertices, cube.faces)
@@ -27,7 +27,7 @@ fn cube(triangles: bool) -> Mesh {
 
 /// Returns the cube as text STL, with the corners of facets printed by `corner`.
 fn text_stl(mut corner: impl FnMut(DVec3) -> String) -> String {
-    let mesh = cube(true);
+    let mesh = unit_cube(true);
     let mut text = String::from("solid part\n");
     for face in &mesh.faces {
         text.push_str("facet normal 0 0 0\nouter loop\n");
@@ -39,11 +39,11 @@ fn text_stl(mut corner: impl FnMut(DVec3) -> String) -> String {
     text + "endsolid part\n"
 }
 
-fn plain(v: DVec3) -> String {
+fn coordinates_text(v: DVec3) -> String {
     format!("{} {} {}", v.x, v.y, v.z)
 }
 
-fn ply(mesh: &Mesh) -> String {
+fn ply_text(mesh: &Mesh) -> String {
     let (vertices, faces) = (mesh.vertices.len(), mesh.faces.len());
     let mut text = format!(
         "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty double x\nproperty double y\n\
@@ -51,7 +51,7 @@ fn ply(mesh: &Mesh) -> String {
          end_header\n"
     );
     for v in &mesh.vertices {
-        let _ = writeln!(text, "{}", plain(*v));
+        let _ = writeln!(text, "{}", coordinates_text(*v));
     }
     for face in &mesh.faces {
         let corners: Vec<String> = face.iter().map(u32::to_string).collect();
@@ -61,25 +61,25 @@ fn ply(mesh: &Mesh) -> String {
 }
 
 /// Returns the cube in each text format.
-fn texts() -> [(Format, String); 4] {
-    let mesh = cube(false);
+fn text_files() -> [(Format, String); 4] {
+    let mesh = unit_cube(false);
     [
-        (Format::Stl, text_stl(plain)),
+        (Format::Stl, text_stl(coordinates_text)),
         (Format::Obj, to_obj(&mesh)),
         (Format::Off, to_off(&mesh)),
-        (Format::Ply, ply(&mesh)),
+        (Format::Ply, ply_text(&mesh)),
     ]
 }
 
 #[test]
-fn marks_and_line_ends_change_nothing() {
-    for (format, text) in texts() {
-        let expected = read(format, &text).unwrap();
+fn byte_order_marks_and_line_endings_do_not_matter() {
+    for (format, text) in text_files() {
+        let expected = read_bytes(format, &text).unwrap();
         assert_eq!((expected.vertices.len(), expected.open_edges().len()), (8, 0), "{format}");
         for mark in ["", "\u{feff}"] {
             for end in ["\n", "\r\n", "\r"] {
                 let variant = format!("{mark}{}", text.replace('\n', end));
-                let found = read(format, &variant).unwrap();
+                let found = read_bytes(format, &variant).unwrap();
                 assert_eq!(found, expected, "{format} with {mark:?} and {end:?}");
             }
         }
@@ -87,30 +87,30 @@ fn marks_and_line_ends_change_nothing() {
 }
 
 #[test]
-fn errors_count_lines_whatever_ends_them() {
-    for (format, text) in texts() {
+fn error_line_numbers_count_all_line_endings() {
+    for (format, text) in text_files() {
         let text = text.replacen("0 1 0\n", "0 x 0\n", 1);
         let broken = text.lines().position(|l| l.ends_with("0 x 0")).unwrap() + 1;
         for end in ["\n", "\r\n", "\r"] {
-            let message = message(format, text.replace('\n', end));
+            let message = error_message(format, text.replace('\n', end));
             assert!(message.starts_with(&format!("part: line {broken}: ")), "{format}: {message}");
         }
     }
 }
 
 #[test]
-fn sixteen_bits_a_character_are_refused() {
-    for (format, text) in texts() {
+fn utf16_text_is_rejected() {
+    for (format, text) in text_files() {
         let mut bytes = b"\xff\xfe".to_vec();
         bytes.extend(text.encode_utf16().flat_map(u16::to_le_bytes));
-        let message = message(format, bytes);
+        let message = error_message(format, bytes);
         assert!(message.contains("UTF-16"), "{message}");
     }
 }
 
 /// In a binary PLY file the header may end in a lone CR, and the data may begin with the byte of LF.
 #[test]
-fn a_binary_ply_may_have_any_header() {
+fn binary_ply_header_may_have_any_line_ending() {
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n\
         property float y\nproperty float z\nelement face 1\n\
         property list uchar uchar vertex_indices\nend_header\n";
@@ -122,31 +122,31 @@ fn a_binary_ply_may_have_any_header() {
             bytes.extend(c.to_le_bytes());
         }
         bytes.extend([3, 0, 1, 2]);
-        let mesh = read(Format::Ply, &bytes).unwrap();
+        let mesh = read_bytes(Format::Ply, &bytes).unwrap();
         assert_eq!(mesh.vertices[0].x, f64::from(first), "{end:?}");
         assert_eq!(mesh.faces, [[0, 1, 2]]);
     }
 }
 
 #[test]
-fn contents_are_held_against_the_name() {
-    let mesh = cube(true);
+fn contents_must_match_the_extension() {
+    let mesh = unit_cube(true);
     let files = [
         (Format::Stl, "a binary STL file", to_stl(&mesh).unwrap()),
-        (Format::Stl, "a text STL file", text_stl(plain).into_bytes()),
+        (Format::Stl, "a text STL file", text_stl(coordinates_text).into_bytes()),
         (Format::Obj, "an OBJ file", to_obj(&mesh).into_bytes()),
         (Format::Off, "an OFF file", to_off(&mesh).into_bytes()),
-        (Format::Ply, "a PLY file", ply(&mesh).into_bytes()),
+        (Format::Ply, "a PLY file", ply_text(&mesh).into_bytes()),
     ];
     for (is, name, bytes) in &files {
         for format in [Format::Stl, Format::Obj, Format::Off, Format::Ply] {
             if *is == format {
-                assert!(read(format, bytes).is_ok(), "{name}");
+                assert!(read_bytes(format, bytes).is_ok(), "{name}");
             } else {
                 let expected = format!(
                     "part: contains {name}, but its extension stands for {format}; rename or convert the file"
                 );
-                assert_eq!(message(format, bytes), expected);
+                assert_eq!(error_message(format, bytes), expected);
             }
         }
     }
@@ -158,90 +158,95 @@ fn contents_are_held_against_the_name() {
         (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"),
     ] {
         for format in [Format::Stl, Format::Obj, Format::Off, Format::Ply] {
-            let message = message(format, bytes);
+            let message = error_message(format, bytes);
             assert!(message.contains(name), "{message}");
         }
     }
 }
 
 #[test]
-fn an_obj_keyword_is_known_or_refused() {
-    assert!(message(Format::Obj, "v 0 0 0\nV 1 0 0\n").ends_with("line 2: unknown keyword `V`"));
-    let curved = message(Format::Obj, "v 0 0 0\ncstype bezier\nsurf 0 1 0 1 1\n");
+fn unknown_obj_keyword_is_rejected() {
+    assert!(
+        error_message(Format::Obj, "v 0 0 0\nV 1 0 0\n").ends_with("line 2: unknown keyword `V`")
+    );
+    let curved = error_message(Format::Obj, "v 0 0 0\ncstype bezier\nsurf 0 1 0 1 1\n");
     assert!(curved.contains("line 3: curved surfaces"), "{curved}");
     let junk: Vec<u8> = (0..=255).collect();
-    assert!(read(Format::Obj, junk).is_err());
+    assert!(read_bytes(Format::Obj, junk).is_err());
 }
 
 #[test]
-fn a_binary_stl_that_begins_with_solid_is_measured_too() {
-    let mut bytes = to_stl(&cube(true)).unwrap();
+fn size_of_binary_stl_with_solid_header_is_checked() {
+    let mut bytes = to_stl(&unit_cube(true)).unwrap();
     bytes[..80].fill(b' ');
     bytes[..10].copy_from_slice(b"solid cube");
     let length = bytes.len();
-    assert_eq!(read(Format::Stl, &bytes).unwrap().faces.len(), 12);
+    assert_eq!(read_bytes(Format::Stl, &bytes).unwrap().faces.len(), 12);
     for end in [length - 1, length - 50, length - 51, 84 + 50, 90, 84, 83, 80] {
-        let message = message(Format::Stl, &bytes[..end]);
+        let message = error_message(Format::Stl, &bytes[..end]);
         let said = message.contains("truncated: 12 triangles in its header need")
             || end < 84 && message.contains("end of file");
         assert!(said, "{end}: {message}");
     }
     // Zeros, or fewer bytes than a triangle, are accepted as padding; other bytes are not.
     for padding in [vec![0; 2000], vec![b' '; 49], vec![0x1a]] {
-        assert_eq!(read(Format::Stl, [bytes.clone(), padding].concat()).unwrap().faces.len(), 12);
+        assert_eq!(
+            read_bytes(Format::Stl, [bytes.clone(), padding].concat()).unwrap().faces.len(),
+            12
+        );
     }
-    let more = message(Format::Stl, [bytes.clone(), vec![1; 50]].concat());
+    let more = error_message(Format::Stl, [bytes.clone(), vec![1; 50]].concat());
     assert!(more.contains("50 unexpected bytes after the 12 triangles"), "{more}");
 }
 
 #[test]
-fn a_text_stl_is_whole_or_refused() {
-    let text = text_stl(plain);
+fn truncated_text_stl_is_rejected() {
+    let text = text_stl(coordinates_text);
     // Each truncation is rejected, except inside the name after the last keyword.
     for end in 0..text.find("endsolid").unwrap() + "endsolid".len() {
-        assert!(read(Format::Stl, &text[..end]).is_err(), "{:?}", &text[..end]);
+        assert!(read_bytes(Format::Stl, &text[..end]).is_err(), "{:?}", &text[..end]);
     }
     let line = text.find("endsolid").unwrap();
-    let cut = message(Format::Stl, &text[..line]);
+    let cut = error_message(Format::Stl, &text[..line]);
     assert!(cut.contains("the last solid is not closed; the file is truncated"), "{cut}");
-    let odd = message(Format::Stl, text.replacen("endloop\n", "", 1));
+    let odd = error_message(Format::Stl, text.replacen("endloop\n", "", 1));
     assert!(odd.contains("line 7: `endfacet` inside a loop that is not closed"), "{odd}");
 }
 
 #[test]
-fn what_follows_the_last_element_is_refused() {
-    let mesh = cube(true);
-    let more = message(Format::Off, to_off(&mesh) + "\n# blank and comment\n3 0 1 2\n");
+fn data_after_the_last_element_is_rejected() {
+    let mesh = unit_cube(true);
+    let more = error_message(Format::Off, to_off(&mesh) + "\n# blank and comment\n3 0 1 2\n");
     assert!(more.contains("line 25: unexpected text after the 8 vertices and 12 faces"), "{more}");
-    assert!(read(Format::Off, to_off(&mesh) + "\n\n# the end\n").is_ok());
-    let more = message(Format::Ply, ply(&mesh) + "3 0 1 2\n");
+    assert!(read_bytes(Format::Off, to_off(&mesh) + "\n\n# the end\n").is_ok());
+    let more = error_message(Format::Ply, ply_text(&mesh) + "3 0 1 2\n");
     assert!(more.contains("8 unexpected bytes"), "{more}");
-    assert!(read(Format::Ply, ply(&mesh) + "\n \n").is_ok());
+    assert!(read_bytes(Format::Ply, ply_text(&mesh) + "\n \n").is_ok());
 }
 
 #[test]
-fn faces_of_a_ply_file_are_not_missed() {
-    let text = ply(&cube(true));
-    let unnamed = message(Format::Ply, text.replace("vertex_indices", "corners"));
+fn ply_faces_in_other_properties_are_rejected() {
+    let text = ply_text(&unit_cube(true));
+    let unnamed = error_message(Format::Ply, text.replace("vertex_indices", "corners"));
     assert!(unnamed.contains("no list `vertex_indices`"), "{unnamed}");
-    let strips = message(Format::Ply, text.replace("element face", "element tristrips"));
+    let strips = error_message(Format::Ply, text.replace("element face", "element tristrips"));
     assert!(strips.contains("triangle strips"), "{strips}");
     for list in ["list float int", "list uchar float"] {
-        let odd = message(Format::Ply, text.replace("list uchar int", list));
+        let odd = error_message(Format::Ply, text.replace("list uchar int", list));
         assert!(odd.contains("must be a list of integers"), "{odd}");
     }
 }
 
 /// Zeros with rounding errors, as in computed corners.
 #[test]
-fn twins_are_merged_and_counted() {
+fn duplicate_vertices_are_merged_and_counted() {
     let mut written = 0;
     let text = text_stl(|v| {
         written += 1;
         let x = if v.x == 0.0 && written % 2 == 0 { 5e-17 } else { v.x };
-        plain(DVec3::new(x, v.y, v.z))
+        coordinates_text(DVec3::new(x, v.y, v.z))
     });
-    let mesh = read(Format::Stl, &text).unwrap();
+    let mesh = read_bytes(Format::Stl, &text).unwrap();
     assert_eq!((mesh.vertices.len(), mesh.faces.len(), mesh.open_edges().len()), (8, 12, 0));
     assert_eq!(mesh.merged.vertices, 4);
     assert_eq!(mesh.merged.largest_distance, 5e-17);
@@ -255,8 +260,8 @@ fn twins_are_merged_and_counted() {
 
 /// In formats with numbered vertices the numbers remain, so that answers refer to those of the file.
 #[test]
-fn numbered_vertices_keep_their_numbers() {
-    let square = cube(false);
+fn numbered_vertices_keep_their_indices() {
+    let square = unit_cube(false);
     let mut soup = Mesh::default();
     for face in &square.faces {
         let first = soup.vertices.len() as u32;
@@ -265,9 +270,9 @@ fn numbered_vertices_keep_their_numbers() {
     }
     soup.vertices[9].z += 1e-16;
     for (format, text) in
-        [(Format::Obj, to_obj(&soup)), (Format::Off, to_off(&soup)), (Format::Ply, ply(&soup))]
+        [(Format::Obj, to_obj(&soup)), (Format::Off, to_off(&soup)), (Format::Ply, ply_text(&soup))]
     {
-        let mesh = read(format, text).unwrap();
+        let mesh = read_bytes(format, text).unwrap();
         assert_eq!(mesh.vertices, soup.vertices, "{format}");
         assert_eq!(mesh.open_edges().len(), 0, "{format}");
         assert_eq!(mesh.faces[0], soup.faces[0], "the first are the ones that stay");
@@ -280,18 +285,18 @@ fn numbered_vertices_keep_their_numbers() {
 }
 
 #[test]
-fn slivers_between_twins_are_dropped_and_counted() {
+fn slivers_between_duplicates_are_removed_and_counted() {
     // A tetrahedron with a doubled edge 0-1: between the two copies is a sliver 0 1 4, open at one side.
     let (a, b, c, d) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
     let twin = DVec3::new(1.0, 1e-16, 0.0);
     let faces = vec![vec![0, 2, 1], vec![0, 4, 3], vec![0, 1, 4], vec![1, 2, 3], vec![0, 3, 2]];
-    let mesh = read(Format::Off, to_off(&Mesh::new(vec![a, b, c, d, twin], faces))).unwrap();
+    let mesh = read_bytes(Format::Off, to_off(&Mesh::new(vec![a, b, c, d, twin], faces))).unwrap();
     assert_eq!((mesh.faces.len(), mesh.open_edges().len()), (4, 0));
     assert_eq!((mesh.merged.vertices, mesh.merged.dropped_faces), (1, 1));
 }
 
 #[test]
-fn the_tolerance_follows_the_precision_of_the_numbers() {
+fn default_tolerance_follows_the_number_precision() {
     // The distance is one unit in the last place of single precision.
     let ulp = f64::from(f32::EPSILON);
     let mut written = 0;
@@ -299,7 +304,7 @@ fn the_tolerance_follows_the_precision_of_the_numbers() {
         written += usize::from(v == DVec3::ONE);
         if v == DVec3::ONE && written % 2 == 0 { v + ulp } else { v }
     };
-    let mesh = cube(true);
+    let mesh = unit_cube(true);
     let mut soup = Mesh::default();
     for face in &mesh.faces {
         let first = soup.vertices.len() as u32;
@@ -307,10 +312,13 @@ fn the_tolerance_follows_the_precision_of_the_numbers() {
         soup.faces.push((first..first + 3).collect());
     }
     let closed = |mesh: Result<Mesh, Error>| mesh.unwrap().open_edges().is_empty();
-    assert!(closed(read(Format::Stl, to_stl(&soup).unwrap())), "binary STL is single");
-    assert!(!closed(read(Format::Off, to_off(&soup))), "text may hold doubles");
-    assert!(!closed(read(Format::Ply, ply(&soup))), "these are doubles");
-    assert!(closed(read(Format::Ply, ply(&soup).replace("double", "float"))), "these are not");
+    assert!(closed(read_bytes(Format::Stl, to_stl(&soup).unwrap())), "binary STL is single");
+    assert!(!closed(read_bytes(Format::Off, to_off(&soup))), "text may hold doubles");
+    assert!(!closed(read_bytes(Format::Ply, ply_text(&soup))), "these are doubles");
+    assert!(
+        closed(read_bytes(Format::Ply, ply_text(&soup).replace("double", "float"))),
+        "these are not"
+    );
     let asked = ReadOptions::default().with_merge_tolerance(Some(1e-6));
     let path = Path::new("part");
     assert!(closed(parse_with(Format::Off, to_off(&soup).into(), path, asked)));
@@ -322,7 +330,7 @@ fn the_tolerance_follows_the_precision_of_the_numbers() {
 }
 
 /// Returns a torus of separate triangles, with random rounding of each corner of each triangle.
-fn torus(around: usize, along: usize) -> Mesh {
+fn triangle_torus(around: usize, along: usize) -> Mesh {
     let angle = |i: usize, n: usize| std::f64::consts::TAU * (i % n) as f64 / n as f64;
     let at = |i: usize, j: usize| {
         let (sin_i, cos_i) = angle(i, around).sin_cos();
@@ -352,17 +360,17 @@ fn torus(around: usize, along: usize) -> Mesh {
 }
 
 #[test]
-fn a_million_facets() {
+fn million_facets_are_merged() {
     let (around, along) = (1000, 500);
-    let bytes = to_stl(&torus(around, along)).unwrap();
-    let mesh = read(Format::Stl, bytes).unwrap();
+    let bytes = to_stl(&triangle_torus(around, along)).unwrap();
+    let mesh = read_bytes(Format::Stl, bytes).unwrap();
     assert_eq!((mesh.vertices.len(), mesh.faces.len()), (around * along, 2 * around * along));
     assert!(mesh.open_edges().is_empty());
     assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0));
 }
 
 /// Checks the invariants of a mesh: indices are valid, and faces are cycles of at least three corners.
-fn assert_sound(mesh: &Mesh) {
+fn assert_valid(mesh: &Mesh) {
     let count = mesh.vertices.len();
     for face in &mesh.faces {
         assert!(face.len() >= 3, "{face:?}");
@@ -375,10 +383,10 @@ fn assert_sound(mesh: &Mesh) {
 
 /// Parts of files are cut out, duplicated, moved and overwritten. The result must be a valid mesh or an error.
 #[test]
-fn mangled_files_give_sound_meshes_or_errors() {
+fn mangled_files_give_valid_meshes_or_errors() {
     let mut files: Vec<(Format, Vec<u8>)> =
-        texts().into_iter().map(|(format, text)| (format, text.into_bytes())).collect();
-    files.push((Format::Stl, to_stl(&cube(true)).unwrap()));
+        text_files().into_iter().map(|(format, text)| (format, text.into_bytes())).collect();
+    files.push((Format::Stl, to_stl(&unit_cube(true)).unwrap()));
     let mut random = Random::new(11);
     let mut random = |below: usize| random.index(below);
     let pieces: [&[u8]; 10] =
@@ -401,8 +409,8 @@ fn mangled_files_give_sound_meshes_or_errors() {
                 _ => bytes[start] = random(256) as u8,
             }
         }
-        if let Ok(mesh) = read(*format, &bytes) {
-            assert_sound(&mesh);
+        if let Ok(mesh) = read_bytes(*format, &bytes) {
+            assert_valid(&mesh);
             read_well += 1;
         }
     }
@@ -410,10 +418,10 @@ fn mangled_files_give_sound_meshes_or_errors() {
 }
 
 #[test]
-fn files_that_hold_nothing_are_named_as_such() {
-    for (format, _) in texts() {
-        assert!(message(format, Vec::new()).ends_with("end of file: the file is empty"));
+fn empty_files_report_that_they_are_empty() {
+    for (format, _) in text_files() {
+        assert!(error_message(format, Vec::new()).ends_with("end of file: the file is empty"));
     }
-    let header = message(Format::Ply, b"ply\nformat ascii 1.0\nend_header\n");
+    let header = error_message(Format::Ply, b"ply\nformat ascii 1.0\nend_header\n");
     assert!(header.ends_with("header: the element `vertex` is missing"), "{header}");
 }

@@ -1,13 +1,13 @@
-//! Nearly flat bodies, held against their input points in fractions, and a cast onto each that is judged
-//! by the input points too.
+//! Campaign of nearly flat bodies. Bodies are compared with their input points in rational arithmetic. A cast
+//! onto each is judged by the input points as well.
 
 use colltrans_testkit::oracle::settings::{Setting, setting};
 use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, casts};
 
-/// What is counted: bodies by dimension, points that were dropped, and, in multiples of the largest coordinate, how
-/// far from the body the farthest one is and the largest hull error; then what casts count.
+/// Columns: numbers of bodies by dimension, of dropped points, the largest distance of a point from its body
+/// and the largest hull error in multiples of the largest coordinate, then the columns of casts.
 pub(crate) const COLUMNS: &[&str] = &[
     "bodies",
     "solid",
@@ -27,13 +27,14 @@ pub(crate) const COLUMNS: &[&str] = &[
     "miss/u",
 ];
 
-/// Examines the fixed body of a setting, and a cast onto it that is solved again.
+/// Examines the fixed body of a setting, and a cast onto it, which the oracle solves as well.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let setting = setting(asked.family, asked.seed);
     examine_body(&setting, tally);
     casts::examine_setting(&setting, true, tally)
 }
 
+/// Compares the fixed body of a setting with its input points.
 fn examine_body(setting: &Setting, tally: &mut Tally) {
     let Ok(bodies) = setting.bodies() else { return };
     tally.count("bodies");

@@ -1,5 +1,5 @@
-//! Bodies that do not turn, asked from several places and along several directions by the faces of their difference:
-//! each answer judged, and held against the ordinary cast's.
+//! Campaign of bodies that do not rotate, queried by the faces of their Minkowski difference with several
+//! positions and directions. Each answer is judged, and compared with that of a normal cast.
 
 use colltrans::{FixedRotations, StartedFrom};
 use colltrans_testkit::oracle::settings::setting;
@@ -9,14 +9,14 @@ use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, casts};
 
-/// One of so many is solved by the linear programme, whatever its certificate proves.
+/// One setting out of this many is solved by the linear programme, regardless of the certificate.
 const LP_EVERY: u64 = 200;
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] =
     &["casts", "contact", "grazing", "separated", "answers", "by faces", "rounding"];
 
-/// Asks [`CASTS`] of a setting.
+/// Examines [`CASTS`] casts of a setting.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
     let Asked { family, seed, .. } = *asked;
     let setting = setting(family, seed);

@@ -1,5 +1,5 @@
-//! Single settings: bodies held against their input points, cast with every solver, each answer checked
-//! exactly, a sample solved again.
+//! Campaign of single settings. Bodies are compared with their input points, and cast with every solver. Each
+//! answer is checked exactly, and the oracle solves a sample.
 
 use colltrans::{Options, Outcome, QueryError, Solver, cta};
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
@@ -7,7 +7,7 @@ use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, print};
 
-/// Who answers: every solver, and the collision translation algorithm as a first guess alone.
+/// The solvers: each one, and the collision translation algorithm as a first guess only.
 const WHO: [(&str, Solver, Option<cta::Options>); 4] = [
     ("Cta", Solver::Cta, None),
     ("Cta, rough", Solver::Cta, Some(cta::Options::ROUGH)),
@@ -15,6 +15,7 @@ const WHO: [(&str, Solver, Option<cta::Options>); 4] = [
     ("Auto", Solver::Auto, None),
 ];
 
+/// Computes the first contact with a solver.
 fn ask(
     setting: &Setting,
     bodies: &Bodies,
@@ -28,7 +29,7 @@ fn ask(
     setting.query(bodies)?.with_options(options)?.first_contact()
 }
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "settings",
     "contact",
@@ -41,7 +42,7 @@ pub(crate) const COLUMNS: &[&str] = &[
     "miss/u",
 ];
 
-/// Examines the setting of a family with a seed; one in `asked.every` is solved again.
+/// Examines the setting of a family with a seed. The oracle solves one out of `asked.every`.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let with_oracle = asked.index().is_multiple_of(asked.every);
     examine_setting(&setting(asked.family, asked.seed), with_oracle, tally)
@@ -56,7 +57,8 @@ pub(crate) fn kind(outcome: &Outcome) -> &'static str {
     }
 }
 
-/// Casts with every solver, checks every answer, and compares the answers.
+/// Casts with every solver, and checks each answer. If `with_oracle`, or if a certificate is not exact,
+/// compares the answer with the oracle.
 pub(crate) fn examine_setting(
     setting: &Setting,
     with_oracle: bool,
@@ -99,7 +101,7 @@ pub(crate) fn examine_setting(
     Ok(())
 }
 
-/// One setting, with all its numbers.
+/// Prints and examines one setting. Returns whether there are no disagreements.
 pub(crate) fn replay(family: &str, seed: u64) -> bool {
     let setting = setting(family, seed);
     println!("{setting:#?}");
@@ -113,7 +115,7 @@ pub(crate) fn replay(family: &str, seed: u64) -> bool {
     print(family, &tally, COLUMNS)
 }
 
-/// What one-off queries answer, and what the oracle says.
+/// Prints the answers of single queries and of the oracle.
 pub(crate) fn print_answers(setting: &Setting, bodies: &Bodies) {
     for (name, solver, narrowing) in WHO {
         println!("{name}: {:#?}", ask(setting, bodies, solver, narrowing));

@@ -1,5 +1,5 @@
-//! Distances: of settings as they are drawn, brought near contact along their direction, to touch, and to
-//! overlap.
+//! Campaign of distances, of settings as drawn, and moved along their direction near contact, to touching, and
+//! to overlap.
 
 use colltrans::{Pair, Pose, QueryError, Within};
 use colltrans_testkit::oracle::check::Objection;
@@ -10,10 +10,10 @@ use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
 
-/// Vertices of both bodies up to which depths are compared with the exact one.
+/// Maximum number of vertices of both bodies for which depths are compared with the exact one.
 const SMALL: usize = 24;
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "settings",
     "apart",
@@ -29,7 +29,7 @@ pub(crate) const COLUMNS: &[&str] = &[
     "open",
 ];
 
-/// Asks for the distance of a setting's bodies, and judges it.
+/// Computes the distance of a setting's bodies, and judges it.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let setting = setting(family, seed);
@@ -40,6 +40,7 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     Ok(judge(&setting, &bodies, moving, &mut random, tally)?)
 }
 
+/// Judges distance, depth and `within` of two bodies.
 fn judge(
     setting: &Setting,
     bodies: &Bodies,

@@ -1,5 +1,6 @@
-//! Casts that keep a gap: settings as they are drawn, with gaps from rounding errors to many times the bodies,
-//! and those at which bodies graze or begin. And bodies that glide over each other at about the gap ([`GLIDING`]).
+//! Campaign of casts with a minimum gap. Gaps of random settings are between rounding errors and many times the
+//! size of the bodies, and include the gaps at which bodies graze or start. The family [`GLIDING`] has bodies
+//! that slide at about the gap.
 
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pair, Pose, QueryError};
 use colltrans_testkit::oracle::check::Objection;
@@ -12,14 +13,14 @@ use glam::{DQuat, DVec3};
 
 use crate::Asked;
 
-/// Boxes and hulls with a flat side over another, which slide along it at the gap but for some noises and a tilt
-/// of about as many, against each other.
+/// The family of boxes and hulls with a flat side that slide above another one. Their distance is the gap up to
+/// some noises, and they are tilted by about as much.
 pub(crate) const GLIDING: &str = "gliding";
 
-/// Bounds that are so many noises over `n.d` apart are counted.
+/// Bounds that differ by more than this many noises over `n.d` are counted as wide.
 const WIDE: f64 = 6.0;
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "settings",
     "contacts",
@@ -34,7 +35,7 @@ pub(crate) const COLUMNS: &[&str] = &[
     "open",
 ];
 
-/// Casts the bodies of a setting, and judges the answers.
+/// Casts the bodies of a setting with a gap, and judges the answers.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     if family == GLIDING {
@@ -49,7 +50,7 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     judge(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
 }
 
-/// One setting of [`GLIDING`].
+/// Examines one setting of [`GLIDING`].
 fn glide(seed: u64, tally: &mut Tally) -> Result<(), String> {
     let mut random = Random::new(seed ^ 0x61de);
     tally.count("settings");
@@ -62,7 +63,7 @@ fn glide(seed: u64, tally: &mut Tally) -> Result<(), String> {
             half * DVec3::new(sign(0), sign(1), sign(2))
         });
         let hull = random_hull(12, random).vertices.into_iter().map(|v| v * 2.0);
-        // Corners of a box, or a hull that is cut off level on the side of the other body.
+        // The corners of a box, or a hull that is cut to a flat side towards the other body.
         let cut = |v: DVec3| if v.z * side > half.z { v.with_z(half.z * side) } else { v };
         let points: Vec<DVec3> = if random.index(2) == 0 {
             corners.collect()
@@ -88,7 +89,8 @@ fn glide(seed: u64, tally: &mut Tally) -> Result<(), String> {
     judge(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
 }
 
-/// None, of rounding errors, a share or a multiple of the size, or one at which something is tied.
+/// Draws a gap: 0, some rounding errors, a fraction or a multiple of the size, or a gap at which a case is
+/// tied.
 fn gap(cast: &Cast, random: &mut Random) -> f64 {
     let size = (reach(cast.moving().vertices()) + reach(cast.fixed().vertices())).max(1e-50);
     let gap = match random.index(10) {
@@ -99,7 +101,7 @@ fn gap(cast: &Cast, random: &mut Random) -> f64 {
         4 => size * 10.0_f64.powf(random.range(0.0, 4.0)),
         5 => random.pick(&[0.125, 0.25, 0.5, 1.0, 2.0]),
         6 | 7 => size * random.range(0.0, 1.0),
-        // That of the shadows, or at the start, and next to it.
+        // The gap of the shadows, or that at the start, or one close to it.
         kind => {
             let tied = if kind == 8 {
                 Judge::new(*cast).shadows
@@ -116,11 +118,12 @@ fn gap(cast: &Cast, random: &mut Random) -> f64 {
     gap.clamp(0.0, 1e58)
 }
 
+/// Judges the first contact and the clearance with a gap.
 fn judge(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
     let error = |e: &dyn std::fmt::Display| Objection(e.to_string());
     let kept = cast.keeping(gap).map_err(|e| error(&e))?;
     if gap == 0.0 && kept.first_contact() != cast.first_contact() {
-        return Err(Objection("a gap of 0 is none".into()));
+        return Err(Objection("a gap of 0 changes the answer".into()));
     }
     let judge = Judge::new(kept);
     let (outcome, clearance) = match (kept.first_contact(), kept.clearance()) {

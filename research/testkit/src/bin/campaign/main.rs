@@ -1,16 +1,13 @@
-//! The long campaign: many settings of every family, each cast with every solver, every certificate
-//! re-verified in exact arithmetic, and a sample compared with the rational linear programme. Or
-//! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
-//! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
-//! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
-//! that keep a gap. Or casts of bodies that do not turn, in bulk. Or motions that turn, of convex bodies or of solids.
-//! Or arms on paths. Or bodies that turn with little play. Or forged proofs, which neither checker may accept. Or
-//! ways out in several moves. Or all free directions of solids, each held against casts along
-//! some of them.
-//! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
-//! that answers are judged for the input.
+//! Compares the library with exact arithmetic on many random settings.
 //!
-//! `--help` lists its options. Exit code 1 if anything disagrees.
+//! Each option selects a campaign: single casts with every solver, sequences of settings with trackers, nearly
+//! flat bodies, distances, scenes, casts with a minimum gap, bulk casts without rotation, motions of convex
+//! bodies or solids, arms on paths, bodies that rotate with little play, forged proofs, removal paths, and free
+//! directions of solids. Certificates are verified in exact arithmetic, and a sample is solved by the rational
+//! linear programme. Bodies are compared with their input points in exact arithmetic, so that answers are
+//! judged for the input.
+//!
+//! `--help` lists the options. The exit code is 1 if there are disagreements.
 
 mod bodies;
 mod bulk;
@@ -38,45 +35,47 @@ use colltrans_testkit::tally::{Tally, header};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-/// Disagreements printed for each family; all are counted.
+/// Maximum number of disagreements to print for each family. All are counted.
 const SHOWN: usize = 12;
-/// Settings of casts, if nothing is asked for, and how many of them the linear programme solves.
+/// Default number of settings of casts.
 const SETTINGS: u64 = 20_000;
+/// Default number of settings that the linear programme solves.
 const LP: u64 = 1_000;
-/// Free directions judged of each setting.
+/// Number of free directions to judge for each setting.
 const DIRECTIONS: u64 = 500;
 
-/// One kind of campaign.
+/// A kind of campaign.
 struct Campaign {
-    /// Its option, and what the option counts.
+    /// The option, and the unit of its value.
     option: &'static str,
     counts: &'static str,
-    /// How many of them an examination makes.
+    /// Number of these units in one examination.
     each: u64,
     families: fn() -> Vec<String>,
     columns: &'static [&'static str],
     examine: Examine,
 }
 
-/// Examines a setting; what disagrees is an error, or noted in the tally.
+/// Examines a setting. A disagreement is returned as an error, or recorded in the tally.
 type Examine = fn(&Asked<'_>, &mut Tally) -> Result<(), String>;
 
-/// One setting to be examined.
+/// A setting to examine.
 struct Asked<'a> {
     family: &'a str,
     seed: u64,
-    /// Of casts: one in so many is solved by the linear programme.
+    /// For casts: the linear programme solves one setting out of this many.
     every: u64,
 }
 
 impl Asked<'_> {
-    /// Returns the number of the setting in its family.
+    /// Returns the index of the setting in its family.
     fn index(&self) -> u64 {
         self.seed & u64::from(u32::MAX)
     }
 }
 
 impl Campaign {
+    /// Examines a setting and records an error as a disagreement.
     fn examine(&self, asked: &Asked<'_>, tally: &mut Tally) {
         if let Err(what) = (self.examine)(asked, tally) {
             tally.disagree(format!("{}:{} {what}", asked.family, asked.seed));
@@ -84,7 +83,7 @@ impl Campaign {
     }
 }
 
-/// Returns the column in which an outcome of a motion or of a path is counted.
+/// Returns the column that counts an outcome of a motion or path.
 macro_rules! column_of {
     ($outcome:expr, $Outcome:ident, $undecided:literal) => {
         match $outcome {
@@ -98,6 +97,7 @@ macro_rules! column_of {
 }
 use column_of;
 
+/// Builds a campaign in which each examination is one setting.
 const fn campaign(
     option: &'static str,
     families: fn() -> Vec<String>,
@@ -107,7 +107,7 @@ const fn campaign(
     Campaign { option, counts: "N", each: 1, families, columns, examine }
 }
 
-/// All campaigns; the first one is for who asks for none.
+/// All campaigns. The first one is the default.
 const CAMPAIGNS: [Campaign; 17] = [
     campaign("--settings", settings, casts::COLUMNS, casts::examine),
     Campaign {
@@ -157,34 +157,40 @@ const CAMPAIGNS: [Campaign; 17] = [
     },
 ];
 
+/// Returns the names as strings.
 fn names(families: &[&str]) -> Vec<String> {
     families.iter().map(|&name| name.to_owned()).collect()
 }
 
+/// Returns the families of convex settings.
 fn settings() -> Vec<String> {
     FAMILIES.iter().map(|family| family.0.to_owned()).collect()
 }
 
+/// Returns the families of casts with a minimum gap.
 fn keeping_families() -> Vec<String> {
     settings().into_iter().chain([keeping::GLIDING.to_owned()]).collect()
 }
 
+/// Returns the kinds of proofs.
 fn proof_kinds() -> Vec<String> {
     KINDS.iter().map(|kind| kind.name.to_owned()).collect()
 }
 
+/// Returns the text of `--help`.
 fn usage() -> String {
     let lines = CAMPAIGNS.iter().map(|campaign| {
         let Campaign { option, counts, .. } = campaign;
         format!("campaign {option} {counts} [--seed S] [--only FAMILY | --case FAMILY:SEED]\n")
     });
     let rest = "\
-        campaign --settings N --lp N\n    so many of them are solved by the linear programme too\n\
+        campaign --settings N --lp N\n    N of them are also solved by the linear programme\n\
         campaign --case FAMILY:SEED | FAMILY:SEED:STEP\n    \
         one cast, or one step of a sequence, with all its numbers\n";
     lines.chain([rest.to_owned()]).collect()
 }
 
+/// The arguments of the command line.
 struct Arguments {
     campaign: Option<(&'static Campaign, u64)>,
     lp: u64,
@@ -193,7 +199,7 @@ struct Arguments {
     case: Option<Case>,
 }
 
-/// One setting of a campaign, or a step of a sequence.
+/// A setting of a campaign, or a step of a sequence.
 struct Case {
     family: String,
     seed: u64,
@@ -208,7 +214,11 @@ impl FromStr for Case {
         let (family, seed, step) = match parts[..] {
             [family, seed] => (family, seed, None),
             [family, seed, step] => (family, seed, Some(number(step)?)),
-            _ => return Err(format!("a case is FAMILY:SEED or FAMILY:SEED:STEP, not {text}")),
+            _ => {
+                return Err(format!(
+                    "invalid case {text}; accepted: FAMILY:SEED or FAMILY:SEED:STEP"
+                ));
+            }
         };
         Ok(Self { family: family.to_owned(), seed: number(seed)?, step })
     }
@@ -229,10 +239,11 @@ fn main() -> ExitCode {
     }
 }
 
+/// Parses the arguments.
 fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     let mut arguments = Arguments { campaign: None, lp: LP, seed: 1, only: None, case: None };
     while let Some(word) = words.next() {
-        let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
+        let value = words.next().ok_or_else(|| format!("missing value of {word}"))?;
         match word.as_str() {
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,
@@ -249,11 +260,12 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     Ok(arguments)
 }
 
+/// Parses a number.
 fn number<T: FromStr>(text: &str) -> Result<T, String> {
-    text.parse().map_err(|_| format!("{text} is not a number"))
+    text.parse().map_err(|_| format!("{text} is not a number of the accepted range"))
 }
 
-/// Examines what is asked for; `true` if nothing disagrees.
+/// Runs the campaign or the case of the arguments. Returns whether there are no disagreements.
 fn carry_out(arguments: &Arguments) -> Result<bool, String> {
     let (campaign, count) = match (arguments.campaign, &arguments.case) {
         (Some(asked), _) => asked,
@@ -280,7 +292,7 @@ fn carry_out(arguments: &Arguments) -> Result<bool, String> {
     }
 }
 
-/// Examines so many seeds, the same number of each family; `true` if nothing disagrees.
+/// Examines `count` settings, divided equally among the families. Returns whether there are no disagreements.
 fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Arguments) -> bool {
     let per_family = count.div_ceil(campaign.each).div_ceil(families.len() as u64);
     let every = (count / arguments.lp.max(1)).max(1);
@@ -309,7 +321,7 @@ fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Argume
     total.disagreements.is_empty()
 }
 
-/// Prints a line of the table, and the first disagreements; `true` if there are none.
+/// Prints a line of the table and the first disagreements. Returns whether there are none.
 fn print(name: &str, tally: &Tally, columns: &[&str]) -> bool {
     println!("{name:<20} {}", tally.line(columns));
     for line in tally.disagreements.iter().take(SHOWN) {
@@ -318,7 +330,7 @@ fn print(name: &str, tally: &Tally, columns: &[&str]) -> bool {
     tally.disagreements.is_empty()
 }
 
-/// One setting of casts, or one step of a sequence, with all its numbers.
+/// Prints and examines a setting of casts, or a step of a sequence.
 fn replay(Case { family, seed, step }: &Case) -> Result<bool, String> {
     let families = settings();
     if !families.contains(family) {
@@ -330,6 +342,7 @@ fn replay(Case { family, seed, step }: &Case) -> Result<bool, String> {
     })
 }
 
+/// Returns the message for an unknown family.
 fn unknown(family: &str, families: &[String]) -> String {
-    format!("this campaign has no family {family}; it has: {}", families.join(", "))
+    format!("unknown family {family}; families of this campaign: {}", families.join(", "))
 }

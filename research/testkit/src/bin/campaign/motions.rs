@@ -1,6 +1,6 @@
-//! Motions that turn: the bodies of a setting, one of them or both turning, unscrewing or thrown, with gaps
-//! to be kept and depths that are tolerated. All proofs are checked by the library, a sample with the motion
-//! as a real function. So are those of how far the body can go, and depths and distances on the way there.
+//! Campaign of motions: the bodies of a setting, one or both rotating, in screw motions or thrown, with minimum
+//! gaps and tolerated depths. The library checks all proofs, and a sample is judged with the motion as a real
+//! function. The clearance is examined likewise, with depths and distances on the way.
 
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
 use colltrans::{MIN_MAGNITUDE, Pair, Pose, QueryError};
@@ -14,13 +14,13 @@ use glam::DVec3;
 
 use crate::{Asked, column_of};
 
-/// One setting in so many is judged in whole numbers.
+/// One setting out of this many is judged in integer arithmetic.
 const SAMPLE: u64 = 100;
 
-/// Times on the way of a body at which it is asked how deep it is.
+/// Number of times along a motion at which the depth is computed.
 const TIMES: u32 = 8;
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "settings",
     "contacts",
@@ -34,7 +34,7 @@ pub(crate) const COLUMNS: &[&str] = &[
     "open",
 ];
 
-/// Lets the bodies of a setting move, and judges the answer.
+/// Examines the first contact and the clearance of a motion of a setting's bodies.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let setting = setting(family, seed);
@@ -62,11 +62,12 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     Ok(examined(&judge, seed.is_multiple_of(SAMPLE), tally)?)
 }
 
+/// Returns the motion of a body at rest.
 fn rest(start: Pose) -> Spin {
     Spin { start, arm: DVec3::ZERO, axis: DVec3::Z, angle: 0.0, way: DVec3::ZERO }
 }
 
-/// The numbers of a motion, and their motion.
+/// Draws a motion: a rotation, a screw, a translation, or a throw. `None` if its numbers are not finite.
 fn spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Random) -> Option<Spin> {
     let axis = random.direction();
     let (from, to) = (start.translation(), other.translation());
@@ -90,12 +91,13 @@ fn spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Random) ->
     (spin.axis.is_finite() && spin.way.is_finite()).then_some(spin)
 }
 
-/// The library's own motion of these numbers.
+/// Builds the library's motion from these numbers; `None` if it is out of range.
 fn motion(spin: &Spin) -> Option<Motion> {
     let Spin { start, arm, axis, angle, way } = spin;
     Motion::about(*start, *arm, *axis, *angle, *way).ok()
 }
 
+/// Computes the first contact, and checks it with the library, and in integer arithmetic if required.
 fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<(), Objection> {
     let [Some(moving), Some(fixed)] = judge.spins.each_ref().map(motion) else { return Ok(()) };
     let cast = MotionCast::new(judge.bodies[0].along(&moving), judge.bodies[1].along(&fixed));
@@ -118,7 +120,8 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
     clearance(judge, &cast, &outcome, judged, tally)
 }
 
-/// How far the body can go: as its proof says, not to the end where a contact is deep, and nowhere deep on the way.
+/// Checks the clearance: its proof holds, it does not extend through a deep contact, and no position on the way
+/// is deep.
 fn clearance(
     judge: &Judge,
     cast: &MotionCast,
@@ -132,7 +135,7 @@ fn clearance(
             tally.count("open");
             return Ok(());
         }
-        // Of bodies that are smaller than rounding.
+        // This occurs if bodies are smaller than rounding errors.
         Err(QueryError::Coarse { .. }) => return Ok(()),
         Err(e) => return Err(Objection(format!("clearance: {e}"))),
     };
@@ -152,7 +155,7 @@ fn clearance(
             if !is_bound || place.lower > place.value || place.value > place.upper {
                 return object("no bounds".into());
             }
-            // What stops it in its true place has not met before the first contact, of which the tolerance is none.
+            // The nominal contact is not before the first contact, unless there is a tolerance.
             let apart = if cast.tolerance() > 0.0 { 0.0 } else { apart_until(first) };
             if place.upper < apart || matches!(first, MotionOutcome::Free(_)) {
                 return object(format!("no contact before {apart}"));
@@ -174,7 +177,7 @@ fn clearance(
     on_the_way(cast, found.time().unwrap_or(0.0), keep)
 }
 
-/// Up to which time a first contact says that the bodies are apart.
+/// Returns the time up to which a first contact proves that the bodies are disjoint.
 fn apart_until(first: &MotionOutcome) -> f64 {
     match first {
         MotionOutcome::Contact(of)
@@ -185,14 +188,15 @@ fn apart_until(first: &MotionOutcome) -> f64 {
     }
 }
 
-/// That a body is nowhere nearer than this, or, of a negative number, deeper, up to a time.
+/// Checks that the bodies are not nearer than `keep` up to a time, or not deeper than `-keep` if it is
+/// negative.
 fn on_the_way(cast: &MotionCast, until: f64, keep: f64) -> Result<(), Objection> {
     for k in 0..=TIMES {
         let time = until * f64::from(k) / f64::from(TIMES);
         let [Ok(p), Ok(q)] = cast.motions().map(|motion| motion.at(time)) else { return Ok(()) };
         let [moving, fixed] = cast.bodies();
         let pair = Pair::new(moving.at(p), fixed.at(q)).map_err(|e| Objection(e.to_string()))?;
-        // Poses in the world are rounded where they are, and have no coordinates that are hardly any.
+        // Poses are rounded relative to their size, and coordinates close to zero are not represented.
         let far = [p, q].map(|pose| pose.translation().length());
         let size = far[0] + far[1] + reach(moving.vertices()) + reach(fixed.vertices());
         let off = 256.0 * f64::EPSILON * size + 4.0 * MIN_MAGNITUDE;

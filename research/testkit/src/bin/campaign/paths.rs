@@ -1,5 +1,5 @@
-//! Arms of one to seven joints on random paths, with convex bodies and with solids: proofs are checked by the library,
-//! answers by plain matrices at many times.
+//! Campaign of arms with one to seven joints on random paths, with convex bodies and with solids. The library
+//! checks the proofs, and the answers are checked by plain matrices at many times.
 
 use colltrans::motion::path::PathOutcome;
 use colltrans_testkit::oracle::path::Arm;
@@ -7,13 +7,13 @@ use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, column_of};
 
-/// With convex bodies alone, and with solids that are not.
+/// With convex bodies only, and with solids that are not convex.
 pub(crate) const FAMILIES: [&str; 2] = ["arms", "arms of solids"];
 
-/// Times at which all pairs are looked at.
+/// Number of times at which all pairs are checked.
 const SAMPLES: [usize; 2] = [60, 10];
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "settings",
     "contacts",
@@ -26,7 +26,7 @@ pub(crate) const COLUMNS: &[&str] = &[
     "widest",
 ];
 
-/// Asks about an arm, and judges the answer.
+/// Queries the path of an arm, and judges the answer.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     tally.count("settings");
     let solids = asked.family == FAMILIES[1];

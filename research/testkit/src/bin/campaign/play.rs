@@ -1,5 +1,5 @@
-//! Convex bodies that turn with little play: screws of two, and arms near a touch. Proofs are checked by the library,
-//! answers at many times before a contact.
+//! Campaign of convex bodies that rotate with little play: pairs of screws, and arms close to contact. The
+//! library checks the proofs, and answers are checked at many times before a contact.
 
 use colltrans::motion::MotionOutcome;
 use colltrans::motion::path::PathOutcome;
@@ -8,13 +8,13 @@ use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, column_of};
 
-/// Families of arms; the others are kinds of screws.
+/// Families of arms. The other families are kinds of screws.
 const ARMS: [&str; 2] = ["arms with a pin", "arms over a table"];
 
-/// Times before a contact at which arms are looked at.
+/// Number of times before a contact at which arms are checked.
 const SAMPLES: usize = 40;
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "settings",
     "contacts",
@@ -26,12 +26,12 @@ pub(crate) const COLUMNS: &[&str] = &[
     "most looks",
 ];
 
-/// Names of all families.
+/// Returns the names of all families.
 pub(crate) fn families() -> Vec<&'static str> {
     KINDS.into_iter().chain(ARMS).collect()
 }
 
-/// Asks about one setting, and judges the answer.
+/// Queries a setting, and judges the answer.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     tally.count("settings");

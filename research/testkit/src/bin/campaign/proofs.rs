@@ -1,4 +1,4 @@
-//! Forged proofs: what the library and `check.py` accept of them, held against the truth.
+//! Campaign of forged proofs: compares what the library and `check.py` accept with the truth.
 
 use std::cell::RefCell;
 
@@ -8,7 +8,7 @@ use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
 
-/// Mutants of a proof, about: to go by their number.
+/// Approximate number of mutants of a proof, from which the number of proofs is computed.
 pub(crate) const MUTANTS: u64 = 50;
 
 thread_local! {
@@ -16,12 +16,12 @@ thread_local! {
     static FRACTIONS: RefCell<Option<Fractions>> = const { RefCell::new(None) };
 }
 
-/// Takes the proof of one seed through its mutants.
+/// Examines the proof of a seed and its mutants.
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Some(kind) = KINDS.iter().find(|kind| kind.name == asked.family) else { return Ok(()) };
     FRACTIONS.with_borrow_mut(|fractions| {
         if fractions.is_none() {
-            let started = Fractions::start().map_err(|e| format!("check.py does not start: {e}"));
+            let started = Fractions::start().map_err(|e| format!("cannot start check.py: {e}"));
             *fractions = Some(started?);
         }
         Campaign::examine(kind, asked.seed, fractions.as_mut(), tally);

@@ -1,5 +1,6 @@
-//! Sequences of settings: bodies held against their input points, every lane of trackers asked at every
-//! step, each answer checked exactly and compared with the one-off answer, a sample solved again.
+//! Campaign of sequences of settings. Bodies are compared with their input points. Each lane of trackers is
+//! queried at every step. Each answer is checked exactly, and compared with that of a single query. The oracle
+//! solves a sample.
 
 use std::mem::discriminant;
 
@@ -11,18 +12,19 @@ use colltrans_testkit::tally::Tally;
 use crate::casts::{self, print_answers};
 use crate::{Asked, print};
 
-/// Steps of a sequence, with the first setting.
+/// Number of steps of a sequence, including the first setting.
 const STEPS: u32 = 60;
 
-/// Lanes at each.
+/// Number of lanes at each step.
 const LANES: u64 = 7;
 
-/// Tracked queries of a sequence.
+/// Number of tracked queries of a sequence.
 pub(crate) const QUERIES: u64 = STEPS as u64 * LANES;
 
-/// One step in so many is solved again.
+/// The oracle solves one step out of this many.
 const ORACLE_EVERY: u32 = 20;
 
+/// Records a finding.
 fn note(walk: &Walk, finding: &Finding, tally: &mut Tally) {
     tally.count("queries");
     if let Ok(outcome) = &finding.answer {
@@ -46,7 +48,7 @@ fn note(walk: &Walk, finding: &Finding, tally: &mut Tally) {
     }
 }
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] = &[
     "queries",
     "contact",
@@ -86,12 +88,14 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     Ok(())
 }
 
+/// Checks whether the kind of the answer changes between two steps.
 fn is_flip(before: &Finding, after: &Finding) -> bool {
     let kind = |finding: &Finding| finding.answer.as_ref().ok().map(discriminant::<Outcome>);
     kind(before) != kind(after)
 }
 
-/// One step of a sequence, with all its numbers and what led there.
+/// Prints and examines one step of a sequence, after replaying the steps before it. Returns whether there are
+/// no disagreements.
 pub(crate) fn replay(family: &str, seed: u64, step: u32) -> bool {
     let mut walk = Walk::new(family, seed);
     let Ok(bodies) = walk.setting.bodies() else {

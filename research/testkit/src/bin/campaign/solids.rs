@@ -1,5 +1,5 @@
-//! Solids: bodies of cubes against exact arithmetic, and convex bodies as solids against the convex
-//! core and against the rule over all pairs of facets.
+//! Campaign of solids: bodies of cubes are compared with exact arithmetic, convex bodies as solids with the
+//! convex core, and with the rule over all pairs of facets.
 
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
@@ -8,20 +8,20 @@ use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
 
-/// One proof in so many is judged in fractions, if the bodies are small.
+/// One proof out of this many is judged in rational arithmetic, if the bodies are small.
 const FRACTIONS_EVERY: u64 = 64;
-/// One convex pair in so many is cast as solids.
+/// One convex pair out of this many is cast as solids.
 const CONVEX_EVERY: u64 = 10;
 
-/// What casts count.
+/// Columns of casts.
 pub(crate) const CASTS: &[&str] =
     &["settings", "overlapping", "free", "touching", "blocked", "skipped"];
-/// What distances count.
+/// Columns of distances.
 pub(crate) const DISTANCES: &[&str] =
     &["settings", "touching", "inside", "near", "apart", "skipped"];
-/// What casts that keep a gap count.
+/// Columns of casts with a minimum gap.
 pub(crate) const KEEPING: &[&str] = &["settings", "nearer", "free", "blocked", "skipped"];
-/// What motions count.
+/// Columns of motions.
 pub(crate) const MOTIONS: &[&str] =
     &["settings", "overlapping", "free", "grazing", "contact", "skipped"];
 
@@ -30,7 +30,7 @@ pub(crate) fn cast_families() -> Vec<String> {
     families(&[])
 }
 
-/// Returns the families of distances and of casts that keep a gap.
+/// Returns the families of distances and of casts with a minimum gap.
 pub(crate) fn mesh_families() -> Vec<String> {
     families(&nearest::MESHES)
 }
@@ -40,12 +40,13 @@ pub(crate) fn motion_families() -> Vec<String> {
     families(&[&nearest::MESHES[..], &turning::FAMILIES].concat())
 }
 
+/// Returns the families of casts, with others.
 fn families(more: &[&str]) -> Vec<String> {
     let known = FAMILIES.iter().chain(&sheets::FAMILIES).chain(more).map(|&name| name.to_owned());
     known.chain(settings::FAMILIES.iter().map(|family| format!("convex-{}", family.0))).collect()
 }
 
-/// Casts bodies of cubes, sheets, or one convex pair in [`CONVEX_EVERY`].
+/// Examines casts of bodies of cubes, of sheets, or of one convex pair out of [`CONVEX_EVERY`].
 pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let found = if let Some(convex) = family.strip_prefix("convex-") {
@@ -68,7 +69,7 @@ pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> 
     })
 }
 
-/// Asks for distances.
+/// Examines distances.
 pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let setting = nearest::Setting::draw(asked.family, asked.seed);
     let found = setting.and_then(|found| found.map(|setting| setting.examine()).transpose());
@@ -80,7 +81,7 @@ pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), Stri
     })
 }
 
-/// Casts with a gap.
+/// Examines casts with a minimum gap.
 pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     note(keep::examine(asked.family, asked.seed), tally, |seen| match seen {
         keep::Seen::Nearer => "nearer",
@@ -89,7 +90,7 @@ pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     })
 }
 
-/// Lets solids turn.
+/// Examines motions.
 pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     note(turning::examine(asked.family, asked.seed), tally, |seen| match seen {
         turning::Seen::Overlapping => "overlapping",
@@ -99,7 +100,7 @@ pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     })
 }
 
-/// Counts what was seen of a setting; bodies that are no solids are skipped.
+/// Counts the outcome of a setting. Bodies that are not solids are counted as skipped.
 fn note<S>(
     found: Result<Option<S>, String>,
     tally: &mut Tally,

@@ -1,5 +1,6 @@
-//! Ways out in several moves: puzzles of cubes, as they are and turned, against all moves of cubes, and boxes with holes
-//! that are large enough, or not, along the axes and slanted. Every leg is looked at in 201 places.
+//! Campaign of removal paths in several moves: puzzles of cubes, axis-aligned and rotated, compared with all
+//! moves of cubes, and boxes with holes that are large enough or not, axis-aligned and rotated. Every leg is
+//! checked at 201 positions.
 
 use colltrans::solid::SolidCast;
 use colltrans::ways::{Order, WayOptions, WayOut, WaysOut};
@@ -11,16 +12,16 @@ use glam::DVec3;
 
 use crate::Asked;
 
-/// The kinds of settings.
+/// The families of settings.
 pub(crate) const FAMILIES: [&str; 4] =
     ["tunnels", "turned tunnels", "boxes with holes", "turned boxes"];
 
-/// Moves, at most.
+/// Maximum number of moves.
 const LEGS: usize = 12;
-/// Places of each leg, without its start.
+/// Number of positions of each leg, without its start.
 const PLACES: u32 = 200;
 
-/// What is counted.
+/// Columns of the table.
 pub(crate) const COLUMNS: &[&str] =
     &["settings", "found", "proven", "open", "legs", "most legs", "places", "refused"];
 
@@ -40,6 +41,7 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     }
 }
 
+/// Examines a puzzle of cubes.
 fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), String> {
     let cubes = Cubes::random(random);
     let solids = cubes.solids();
@@ -59,13 +61,13 @@ fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Str
         (_, Some(level)) => return Err(format!("no way, {level:?} of cubes")),
         _ => (),
     }
-    // Of cubes the judge knows by itself who enters whom.
+    // For cubes the judge computes overlaps without the library.
     let inverse = pose.matrix().transpose();
     let enters = |pair, by: DVec3| cubes.enter(pair, inverse * by, 1.1e-5);
     judged(&placed, &answer, tally, enters)
 }
 
-/// A cube in a box whose roof has a square hole.
+/// Examines a cube in a box whose roof has a square hole.
 fn holes(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), String> {
     let block = |low: [f64; 3], high: [f64; 3]| {
         ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high)).map_err(|e| e.to_string())
@@ -104,7 +106,7 @@ fn holes(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Strin
     judged(&placed, &answer, tally, overlap)
 }
 
-/// Checks proofs, and looks at 201 places of each leg.
+/// Verifies the proof, and checks 201 positions of each leg.
 fn judged(
     placed: &[Placed<'_, Solid>],
     answer: &WaysOut,
@@ -132,7 +134,7 @@ fn judged(
     changed(placed, way, &enters, tally)
 }
 
-/// Who enters whom, and where, if anybody does.
+/// Returns a description of the first overlap on a path; `None` if there is none.
 fn entered(
     way: &WayOut,
     bodies: usize,
@@ -141,7 +143,7 @@ fn entered(
 ) -> Option<String> {
     let mut at = vec![DVec3::ZERO; bodies];
     for (k, leg) in way.legs.iter().enumerate() {
-        // Of the last one as far as everything is long.
+        // The last leg is checked up to a length beyond the extent of all bodies.
         let motion = if k + 1 == way.legs.len() { leg.direction * 20.0 } else { leg.motion };
         for proof in &leg.proofs {
             let [i, j] = proof.bodies;
@@ -160,7 +162,7 @@ fn entered(
     None
 }
 
-/// A leg that is longer than was proven is refused, or the same proofs are good for it and nobody enters anybody.
+/// Checks that a leg which is extended beyond its proof is rejected, or that the extended leg has no overlap.
 fn changed(
     placed: &[Placed<'_, Solid>],
     way: &WayOut,

@@ -13,7 +13,7 @@ const TYPES: [&str; 16] = [
 ];
 
 /// Finds the error in a header; `None` if this module does not recognise it.
-pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
+pub(super) fn header_error(bytes: &[u8]) -> Option<Fault> {
     if bytes.is_empty() {
         return None;
     }
@@ -31,18 +31,18 @@ pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
             ["end_header"] => Some("the header has no line `format`".into()),
             ["format", ..] => {
                 has_format = true;
-                format(&words)
+                format_error(&words)
             }
             ["comment" | "obj_info", ..] => None,
             ["element", ..] => {
                 has_element = true;
-                element(&words)
+                element_error(&words)
             }
             ["property", ..] if !has_element => {
                 Some("`property` before the first `element`".into())
             }
-            ["property", ..] => property(&words),
-            _ => Some(no_keyword(line)),
+            ["property", ..] => property_error(&words),
+            _ => Some(keyword_error(line)),
         };
         if let Some(what) = refused {
             return fault(what);
@@ -53,8 +53,8 @@ pub(super) fn header(bytes: &[u8]) -> Option<Fault> {
     Some(Fault::new(Place::Line(last + 1), what))
 }
 
-/// Checks a line `format`. Returns a message if it is invalid.
-fn format(words: &[&str]) -> Option<String> {
+/// Checks a line `format_error`. Returns a message if it is invalid.
+fn format_error(words: &[&str]) -> Option<String> {
     let known = ["ascii", "binary_little_endian", "binary_big_endian"];
     match words {
         [_, kind, _] if known.contains(kind) => None,
@@ -65,8 +65,8 @@ fn format(words: &[&str]) -> Option<String> {
     }
 }
 
-/// Checks a line `element`. Returns a message if it is invalid.
-fn element(words: &[&str]) -> Option<String> {
+/// Checks a line `element_error`. Returns a message if it is invalid.
+fn element_error(words: &[&str]) -> Option<String> {
     match words {
         [_, _, count] if count.parse::<usize>().is_ok() => None,
         [_, name, count] => {
@@ -76,8 +76,8 @@ fn element(words: &[&str]) -> Option<String> {
     }
 }
 
-/// Checks a line `property`. Returns a message if it is invalid.
-fn property(words: &[&str]) -> Option<String> {
+/// Checks a line `property_error`. Returns a message if it is invalid.
+fn property_error(words: &[&str]) -> Option<String> {
     let types = match words {
         [_, "list", count, value, _] => &[*count, *value][..],
         [_, kind, _] if *kind != "list" => &[*kind][..],
@@ -92,7 +92,7 @@ fn property(words: &[&str]) -> Option<String> {
 }
 
 /// Builds the message for a line with an unknown keyword.
-fn no_keyword(line: &str) -> String {
+fn keyword_error(line: &str) -> String {
     let first = line.split_ascii_whitespace().next().unwrap_or_default();
     if first.parse::<f64>().is_ok() {
         return "a row of numbers in the header; `end_header` is missing before it".into();
@@ -102,15 +102,15 @@ fn no_keyword(line: &str) -> String {
 }
 
 /// Finds the error in a row of an element; `None` if this module does not recognise it.
-pub(super) fn row(line: &str, element: &ElementDef) -> Option<String> {
+pub(super) fn row_error(line: &str, element: &ElementDef) -> Option<String> {
     let mut words = line.split_ascii_whitespace();
     for (name, property) in &element.properties {
         let mut next = |of: &str, kind: &ScalarType| {
             let missing = || format!("the line ends before {of} of {}", quoted(name));
             let word = words.next().ok_or_else(missing)?;
-            if is_number(word, kind) { Ok(word) } else { Err(no_number(word, kind)) }
+            if is_number(word, kind) { Ok(word) } else { Err(number_error(word, kind)) }
         };
-        let told = match &property.data_type {
+        let outcome = match &property.data_type {
             PropertyType::Scalar(kind) => next("the number", kind).map(|_| ()),
             PropertyType::List(count, kind) => next("the length", count).and_then(|length| {
                 let length = length.parse::<u64>().unwrap_or_default();
@@ -119,7 +119,7 @@ pub(super) fn row(line: &str, element: &ElementDef) -> Option<String> {
                 })
             }),
         };
-        if let Err(what) = told {
+        if let Err(what) = outcome {
             return Some(what);
         }
     }
@@ -127,7 +127,7 @@ pub(super) fn row(line: &str, element: &ElementDef) -> Option<String> {
 }
 
 /// Returns the smallest and the largest value of an integer type; `None` for other types.
-fn range(kind: &ScalarType) -> Option<[i64; 2]> {
+fn integer_range(kind: &ScalarType) -> Option<[i64; 2]> {
     match kind {
         ScalarType::Char => Some([i8::MIN.into(), i8::MAX.into()]),
         ScalarType::UChar => Some([0, u8::MAX.into()]),
@@ -141,15 +141,15 @@ fn range(kind: &ScalarType) -> Option<[i64; 2]> {
 
 /// Checks whether a word is a value of this type.
 fn is_number(word: &str, kind: &ScalarType) -> bool {
-    match range(kind) {
+    match integer_range(kind) {
         None => word.parse::<f64>().is_ok(),
         Some([low, high]) => word.parse::<i64>().is_ok_and(|x| (low..=high).contains(&x)),
     }
 }
 
 /// Builds the message for a word that is not a value of this type.
-fn no_number(word: &str, kind: &ScalarType) -> String {
-    match range(kind) {
+fn number_error(word: &str, kind: &ScalarType) -> String {
+    match integer_range(kind) {
         None => format!("{} is not a number", quoted(word)),
         Some([low, high]) => format!("{} is not an integer from {low} to {high}", quoted(word)),
     }

@@ -11,26 +11,26 @@
 //! 4. Facets that are oriented against their neighbours are reversed ([`super::orient`]).
 //!
 //! Invariant: a piece from which facets were removed has only edges with an even number of facets, and the
-//! removed area is at most a hundredth ([`MOST_LEFT_OUT`]). Other pieces remain unchanged.
+//! removed area is at most a hundredth ([`MAX_REMOVED_SHARE`]). Other pieces remain unchanged.
 
 use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::orient::consistent;
+use super::orient::orient_consistently;
 use super::{Left, Note};
 use crate::Mesh;
-use crate::edges::{Use, by_edge, is_flat, normal, uses};
-use crate::sets::Sets;
+use crate::edges::{FacetSide, area_normal, facet_sides, has_no_area, sides_by_edge};
+use crate::sets::OrientedSets;
 
 /// Maximum share of a piece's area to remove. A larger share counts as geometry.
-const MOST_LEFT_OUT: f64 = 0.01;
+const MAX_REMOVED_SHARE: f64 = 0.01;
 /// Maximum number of rounds in which fins, or walls, are removed.
-const MOST_ROUNDS: usize = 16;
+const MAX_ROUNDS: usize = 16;
 
 /// Statistics of the repair of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Healed {
+pub(super) struct RepairCounts {
     /// Facets with the same corners as another one.
     pub(super) doubles: Left,
     /// Facets of fins.
@@ -41,7 +41,7 @@ pub(super) struct Healed {
     pub(super) turned: usize,
 }
 
-impl Healed {
+impl RepairCounts {
     /// Returns the notes on the repair.
     pub(super) fn notes(self) -> impl Iterator<Item = Note> {
         let left = |left: Left, note: fn(Left) -> Note| (left.facets > 0).then(|| note(left));
@@ -57,38 +57,38 @@ impl Healed {
 }
 
 /// Repairs a surface. On a one-sided surface no facets are reversed.
-pub(super) fn heal(mesh: &mut Mesh) -> Healed {
-    let mut healed = leave_out(mesh);
-    healed.turned = consistent(mesh).unwrap_or(0);
-    healed
+pub(super) fn repair(mesh: &mut Mesh) -> RepairCounts {
+    let mut repaired = remove_facets(mesh);
+    repaired.turned = orient_consistently(mesh).unwrap_or(0);
+    repaired
 }
 
 /// Performs steps 1 to 3.
-fn leave_out(mesh: &mut Mesh) -> Healed {
-    let (vertices, faces) = mesh.welded();
+fn remove_facets(mesh: &mut Mesh) -> RepairCounts {
+    let (vertices, faces) = mesh.welded_copy();
     let mut surface = Surface::new(&vertices, &faces);
-    let back_to_back = surface.leave_doubles();
-    surface.leave_fins();
-    surface.leave_walls(&back_to_back);
-    surface.take_back();
-    let mut healed = Healed::default();
-    for (&fate, &area) in surface.fates.iter().zip(&surface.areas) {
-        match fate {
-            Fate::Stays | Fate::Flat => {}
-            Fate::Double => healed.doubles.count(area),
-            Fate::Fin => healed.fins.count(area),
-            Fate::Wall => healed.walls.count(area),
+    let back_to_back = surface.remove_duplicates();
+    surface.remove_fins();
+    surface.remove_walls(&back_to_back);
+    surface.restore_pieces();
+    let mut repaired = RepairCounts::default();
+    for (&state, &area) in surface.states.iter().zip(&surface.areas) {
+        match state {
+            FacetState::Remains | FacetState::Flat => {}
+            FacetState::Double => repaired.doubles.count(area),
+            FacetState::Fin => repaired.fins.count(area),
+            FacetState::Wall => repaired.walls.count(area),
         }
     }
-    let mut fates = surface.fates.into_iter();
-    mesh.faces.retain(|_| matches!(fates.next(), Some(Fate::Stays | Fate::Flat)));
-    healed
+    let mut states = surface.states.into_iter();
+    mesh.faces.retain(|_| matches!(states.next(), Some(FacetState::Remains | FacetState::Flat)));
+    repaired
 }
 
 /// The state of a facet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Fate {
-    Stays,
+enum FacetState {
+    Remains,
     /// It has fewer than three different corners, and does not count as a neighbour.
     Flat,
     Double,
@@ -111,7 +111,7 @@ struct Patch {
 struct Surface<'a> {
     faces: &'a [Vec<u32>],
     areas: Vec<f64>,
-    fates: Vec<Fate>,
+    states: Vec<FacetState>,
     /// For each facet the representative facet of its piece.
     pieces: Vec<usize>,
 }
@@ -119,37 +119,39 @@ struct Surface<'a> {
 impl<'a> Surface<'a> {
     /// Builds a surface with all facets and finds its pieces.
     fn new(vertices: &[DVec3], faces: &'a [Vec<u32>]) -> Self {
-        let areas = faces.iter().map(|face| normal(vertices, face).length() / 2.0).collect();
-        let fate = |face: &Vec<u32>| if is_flat(face) { Fate::Flat } else { Fate::Stays };
-        let fates: Vec<Fate> = faces.iter().map(fate).collect();
-        let mut pieces = Sets::new(faces.len());
-        for edge in by_edge(&uses(faces, |k| fates[k] == Fate::Stays)) {
+        let areas = faces.iter().map(|face| area_normal(vertices, face).length() / 2.0).collect();
+        let state = |face: &Vec<u32>| {
+            if has_no_area(face) { FacetState::Flat } else { FacetState::Remains }
+        };
+        let states: Vec<FacetState> = faces.iter().map(state).collect();
+        let mut pieces = OrientedSets::new(faces.len());
+        for edge in sides_by_edge(&facet_sides(faces, |k| states[k] == FacetState::Remains)) {
             for pair in edge.windows(2) {
                 pieces.join(pair[0].face, pair[1].face, false);
             }
         }
-        let pieces = (0..faces.len()).map(|k| pieces.find(k).0).collect();
-        Self { faces, areas, fates, pieces }
+        let pieces = (0..faces.len()).map(|k| pieces.root(k).0).collect();
+        Self { faces, areas, states, pieces }
     }
 
     /// Returns the sides of the facets that remain.
-    fn uses(&self) -> Vec<Use> {
-        uses(self.faces, |k| self.fates[k] == Fate::Stays)
+    fn remaining_uses(&self) -> Vec<FacetSide> {
+        facet_sides(self.faces, |k| self.states[k] == FacetState::Remains)
     }
 
     /// Performs step 1. Returns for each facet whether its duplicates (itself included) have both orientations
     /// equally often.
-    fn leave_doubles(&mut self) -> Vec<bool> {
+    fn remove_duplicates(&mut self) -> Vec<bool> {
         let mut same: HashMap<Vec<u32>, (usize, i64)> = HashMap::with_capacity(self.faces.len());
         let mut keeps = vec![None; self.faces.len()];
-        for (k, (face, fate)) in self.faces.iter().zip(&mut self.fates).enumerate() {
-            if *fate == Fate::Flat {
+        for (k, (face, state)) in self.faces.iter().zip(&mut self.states).enumerate() {
+            if *state == FacetState::Flat {
                 continue;
             }
-            let (cycle, sign) = cycle(face);
-            let (first, sum) = same.entry(cycle).or_insert((k, 0));
+            let (canonical_cycle, sign) = canonical_cycle(face);
+            let (first, sum) = same.entry(canonical_cycle).or_insert((k, 0));
             if *first != k {
-                *fate = Fate::Double;
+                *state = FacetState::Double;
             }
             *sum += sign;
             keeps[*first] = Some(*sum);
@@ -158,8 +160,8 @@ impl<'a> Surface<'a> {
     }
 
     /// Performs step 2.
-    fn leave_fins(&mut self) {
-        for _ in 0..MOST_ROUNDS {
+    fn remove_fins(&mut self) {
+        for _ in 0..MAX_ROUNDS {
             let patches = self.smaller_patches();
             let mut fins =
                 patches.iter().filter(|p| p.has_free && !p.crowded.is_empty()).peekable();
@@ -167,14 +169,14 @@ impl<'a> Surface<'a> {
                 break;
             }
             for &facet in fins.flat_map(|fin| &fin.facets) {
-                self.fates[facet] = Fate::Fin;
+                self.states[facet] = FacetState::Fin;
             }
         }
     }
 
     /// Performs step 3.
-    fn leave_walls(&mut self, back_to_back: &[bool]) {
-        for _ in 0..MOST_ROUNDS {
+    fn remove_walls(&mut self, back_to_back: &[bool]) {
+        for _ in 0..MAX_ROUNDS {
             let mut walls = self.smaller_patches();
             walls.retain(|p| !p.has_free && !p.crowded.is_empty() && p.is_odd);
             let is_between = |p: &Patch| p.facets.iter().all(|&k| back_to_back[k]);
@@ -189,7 +191,7 @@ impl<'a> Surface<'a> {
                 }
                 touched.extend(&wall.crowded);
                 for &facet in &wall.facets {
-                    self.fates[facet] = Fate::Wall;
+                    self.states[facet] = FacetState::Wall;
                 }
             }
         }
@@ -197,23 +199,23 @@ impl<'a> Surface<'a> {
 
     /// Returns all patches except the largest of each piece.
     fn smaller_patches(&self) -> Vec<Patch> {
-        let uses = self.uses();
-        let mut sets = Sets::new(self.faces.len());
-        for edge in by_edge(&uses) {
+        let facet_sides = self.remaining_uses();
+        let mut sets = OrientedSets::new(self.faces.len());
+        for edge in sides_by_edge(&facet_sides) {
             if let [a, b] = edge {
                 sets.join(a.face, b.face, false);
             }
         }
         let mut patches: HashMap<usize, Patch> = HashMap::new();
-        for k in (0..self.faces.len()).filter(|&k| self.fates[k] == Fate::Stays) {
+        for k in (0..self.faces.len()).filter(|&k| self.states[k] == FacetState::Remains) {
             let first = || Patch { is_odd: true, ..Patch::default() };
-            let patch = patches.entry(sets.find(k).0).or_insert_with(first);
+            let patch = patches.entry(sets.root(k).0).or_insert_with(first);
             patch.facets.push(k);
             patch.area += self.areas[k];
         }
-        for edge in by_edge(&uses).filter(|edge| edge.len() != 2) {
+        for edge in sides_by_edge(&facet_sides).filter(|edge| edge.len() != 2) {
             for used in edge {
-                let Some(patch) = patches.get_mut(&sets.find(used.face).0) else { continue };
+                let Some(patch) = patches.get_mut(&sets.root(used.face).0) else { continue };
                 if edge.len() == 1 {
                     patch.has_free = true;
                 } else {
@@ -231,26 +233,26 @@ impl<'a> Surface<'a> {
     }
 
     /// Restores the invariant: pieces that are not closed, or lost too much area, get back all facets.
-    fn take_back(&mut self) {
+    fn restore_pieces(&mut self) {
         let mut left: HashMap<usize, [f64; 2]> = HashMap::new();
-        for (k, fate) in self.fates.iter().enumerate() {
+        for (k, state) in self.states.iter().enumerate() {
             let [all, out] = left.entry(self.pieces[k]).or_default();
-            match fate {
-                Fate::Flat | Fate::Double => {}
-                Fate::Stays => *all += self.areas[k],
-                Fate::Fin | Fate::Wall => {
+            match state {
+                FacetState::Flat | FacetState::Double => {}
+                FacetState::Remains => *all += self.areas[k],
+                FacetState::Fin | FacetState::Wall => {
                     *all += self.areas[k];
                     *out += self.areas[k];
                 }
             }
         }
-        left.retain(|_, [all, out]| *out > MOST_LEFT_OUT * *all);
-        for edge in by_edge(&self.uses()).filter(|edge| edge.len() % 2 == 1) {
+        left.retain(|_, [all, out]| *out > MAX_REMOVED_SHARE * *all);
+        for edge in sides_by_edge(&self.remaining_uses()).filter(|edge| edge.len() % 2 == 1) {
             left.insert(self.pieces[edge[0].face], [0.0; 2]);
         }
-        for (fate, piece) in self.fates.iter_mut().zip(&self.pieces) {
-            if *fate != Fate::Flat && left.contains_key(piece) {
-                *fate = Fate::Stays;
+        for (state, piece) in self.states.iter_mut().zip(&self.pieces) {
+            if *state != FacetState::Flat && left.contains_key(piece) {
+                *state = FacetState::Remains;
             }
         }
     }
@@ -258,7 +260,7 @@ impl<'a> Surface<'a> {
 
 /// Returns the corners of a facet in a canonical order, which is the same for its duplicates, and 1 or -1 for
 /// its orientation.
-fn cycle(face: &[u32]) -> (Vec<u32>, i64) {
+fn canonical_cycle(face: &[u32]) -> (Vec<u32>, i64) {
     let lowest = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
     let at = |k: usize| face[(lowest + k) % face.len()];
     let (forward, n) = (at(1) <= at(face.len() - 1), face.len());
@@ -275,22 +277,22 @@ mod tests {
     use super::*;
 
     /// Returns the facets as canonical cycles, independent of their order and first corners.
-    fn told(mesh: &Mesh) -> Vec<(Vec<u32>, i64)> {
-        let mut all: Vec<_> = mesh.faces.iter().map(|face| cycle(face)).collect();
+    fn canonical_facets(mesh: &Mesh) -> Vec<(Vec<u32>, i64)> {
+        let mut all: Vec<_> = mesh.faces.iter().map(|face| canonical_cycle(face)).collect();
         all.sort_unstable();
         all
     }
 
-    fn mesh(shape: shapes::Mesh) -> Mesh {
+    fn mesh_from(shape: shapes::Mesh) -> Mesh {
         Mesh::new(shape.vertices, shape.faces)
     }
 
     /// Two spheres and a prism, disjoint, of triangles or of polygons.
-    fn clean(random: &mut Random) -> Mesh {
+    fn clean_mesh(random: &mut Random) -> Mesh {
         let all = ring_sphere(24, 11)
             .joined(&ring_sphere(20, 12).translated(DVec3::X * 4.0))
             .joined(&prism(30, 2.0).translated(DVec3::Y * 5.0));
-        mesh(if random.one_in(2) { all.triangulated() } else { all })
+        mesh_from(if random.one_in(2) { all.triangulated() } else { all })
     }
 
     /// Adds a strip of facets that adjoins an edge, with distances up to `size`.
@@ -314,14 +316,14 @@ mod tests {
     }
 
     #[test]
-    fn what_was_added_goes_again() {
+    fn added_defects_are_repaired() {
         let mut random = Random::new(31);
         for round in 0..300 {
-            let clean = clean(&mut random);
-            let mut spoilt = clean.clone();
+            let clean_mesh = clean_mesh(&mut random);
+            let mut spoilt = clean_mesh.clone();
             let [fins, doubles, turned] = [4, 30, 40].map(|most| random.index(most));
             for _ in 0..doubles {
-                let mut double = spoilt.faces[random.index(clean.faces.len())].clone();
+                let mut double = spoilt.faces[random.index(clean_mesh.faces.len())].clone();
                 double.rotate_left(random.index(3));
                 if random.one_in(2) {
                     double.reverse();
@@ -330,7 +332,7 @@ mod tests {
             }
             // Some facets of the clean mesh are reversed, so that the first of two duplicates may be reversed.
             for _ in 0..turned {
-                let facet = random.index(clean.faces.len());
+                let facet = random.index(clean_mesh.faces.len());
                 spoilt.faces[facet].reverse();
             }
             let before = spoilt.faces.len();
@@ -338,26 +340,30 @@ mod tests {
                 add_fin(&mut spoilt, 0.05, &mut random);
             }
             let of_fins = spoilt.faces.len() - before;
-            let healed = heal(&mut spoilt);
-            let case = format!("round {round}: {fins} fins, {doubles} doubles: {healed:?}");
-            assert_eq!(told(&spoilt), told(&clean), "{case}");
-            assert_eq!((healed.doubles.facets, healed.fins.facets), (doubles, of_fins), "{case}");
-            assert_eq!(healed.walls, Left::default(), "{case}");
+            let repaired = repair(&mut spoilt);
+            let case = format!("round {round}: {fins} fins, {doubles} doubles: {repaired:?}");
+            assert_eq!(canonical_facets(&spoilt), canonical_facets(&clean_mesh), "{case}");
+            assert_eq!(
+                (repaired.doubles.facets, repaired.fins.facets),
+                (doubles, of_fins),
+                "{case}"
+            );
+            assert_eq!(repaired.walls, Left::default(), "{case}");
             assert!(Solid::from_mesh(&spoilt.vertices, &spoilt.faces).is_ok(), "{case}");
         }
     }
 
     /// A square face is present twice, cut along different diagonals: two ways to close one hole.
     #[test]
-    fn one_of_two_ways_to_close_a_hole_is_kept() {
-        let whole = mesh(prism(60, 0.05));
+    fn one_of_two_closings_of_a_hole_remains() {
+        let whole = mesh_from(prism(60, 0.05));
         let side = |mesh: &Mesh| mesh.faces.iter().position(|face| face.len() == 4).unwrap();
         let mut spoilt = whole.clone();
         let square = spoilt.faces.swap_remove(side(&spoilt));
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| square[k]);
         spoilt.faces.extend([vec![a, b, c], vec![a, c, d], vec![b, d, a], vec![b, c, d]]);
-        let healed = heal(&mut spoilt);
-        assert_eq!((healed.walls.facets, healed.fins.facets), (2, 0), "{healed:?}");
+        let repaired = repair(&mut spoilt);
+        assert_eq!((repaired.walls.facets, repaired.fins.facets), (2, 0), "{repaired:?}");
         let solid = Solid::from_mesh(&spoilt.vertices, &spoilt.faces).unwrap();
         assert!(solid.is_closed());
         assert!((spoilt.signed_volume() - whole.signed_volume()).abs() < 1e-12);
@@ -365,11 +371,11 @@ mod tests {
 
     /// The wall between two bodies, of opposite facets, is removed, and not the smaller lid.
     #[test]
-    fn a_wall_between_two_bodies_goes() {
+    fn wall_between_two_bodies_is_removed() {
         let tall = block(DVec3::ZERO, DVec3::new(1.0, 1.0, 80.0));
         let lid = block(DVec3::new(0.0, 0.0, 80.0), DVec3::new(1.0, 1.0, 80.01));
-        let mut both = mesh(tall.joined(&lid));
-        let (vertices, welded) = both.welded();
+        let mut both = mesh_from(tall.joined(&lid));
+        let (vertices, welded) = both.welded_copy();
         let is_wall = |face: &Vec<u32>| face.iter().all(|&v| vertices[v as usize].z == 80.0);
         // A pyramid that points down, larger than the lid.
         let apex = vertices.len() as u32;
@@ -383,8 +389,8 @@ mod tests {
         }
         both = Mesh::new([&vertices[..], &[DVec3::new(0.5, 0.5, 79.0)]].concat(), faces);
         both.faces[0].reverse();
-        let healed = heal(&mut both);
-        assert_eq!((healed.doubles.facets, healed.walls.facets), (4, 4), "{healed:?}");
+        let repaired = repair(&mut both);
+        assert_eq!((repaired.doubles.facets, repaired.walls.facets), (4, 4), "{repaired:?}");
         assert!(Solid::from_mesh(&both.vertices, &both.faces).unwrap().is_closed());
         assert!((both.signed_volume() - 80.01).abs() < 1e-9);
     }
@@ -392,23 +398,23 @@ mod tests {
     /// Large parts are geometry: a sail on a pole, a book of three pages, a box without a lid with a sheet in
     /// it.
     #[test]
-    fn what_is_large_stays() {
-        let mut sail = mesh(prism(60, 1.0));
+    fn large_parts_are_not_removed() {
+        let mut sail = mesh_from(prism(60, 1.0));
         add_fin(&mut sail, 40.0, &mut Random::new(7));
         let page = |k: u32| vec![0, 1, 2 + k];
         let book = Mesh::new(
             vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_Y],
             vec![page(0), page(1), page(2)],
         );
-        let mut open = mesh(block(DVec3::ZERO, DVec3::ONE));
+        let mut open = mesh_from(block(DVec3::ZERO, DVec3::ONE));
         open.faces.pop();
         let side = open.faces[0].clone();
         open.vertices.push(DVec3::splat(0.5));
         open.faces.push(vec![side[0], side[1], open.vertices.len() as u32 - 1]);
         for mesh in [sail, book, open] {
-            let mut healed = mesh.clone();
-            let done = heal(&mut healed);
-            assert_eq!(healed.faces.len(), mesh.faces.len(), "{done:?}");
+            let mut repaired = mesh.clone();
+            let done = repair(&mut repaired);
+            assert_eq!(repaired.faces.len(), mesh.faces.len(), "{done:?}");
         }
     }
 }

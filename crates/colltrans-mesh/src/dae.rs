@@ -503,7 +503,7 @@ fn node_transform(node: &Element) -> Result<DAffine3, Fault> {
     for child in &node.children {
         let own = match child.name.as_str() {
             "matrix" => {
-                let [a, b, c, _] = matrix_rows(&exact_exact_numbers::<16>(child)?);
+                let [a, b, c, _] = matrix_rows(&exact_numbers::<16>(child)?);
                 let matrix = DMat3::from_cols(a.truncate(), b.truncate(), c.truncate()).transpose();
                 DAffine3::from_mat3_translation(matrix, DVec3::new(a.w, b.w, c.w))
             }

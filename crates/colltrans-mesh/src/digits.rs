@@ -112,12 +112,12 @@ enum FixedPlaces {
 
 /// Returns the places that nearly all numbers have in common, if these are two decimals or more and some of the
 /// numbers end in zeros. A single decimal shows nothing, because `1.0` is also the shortest text of a number.
-fn fixed_places<'a>(finite_numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedPlaces> {
+fn fixed_places<'a>(numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedPlaces> {
     // For each number of places, without and with an exponent: how many numbers end in another digit than 0, and
     // how many in 0.
     let mut counts = [[[0; 2]; 2]; 256];
     let mut total = 0;
-    for number in finite_numbers {
+    for number in numbers {
         let count = &mut counts[usize::from(number.places)][usize::from(number.has_exponent)];
         count[usize::from(number.is_padded)] += 1;
         total += 1;
@@ -144,7 +144,7 @@ impl NumberFormat {
         let different = different_numbers(mesh);
         let numbers = finite_numbers(&different, single);
         let rounded: Vec<Decimal> =
-            finite_numbers.iter().filter(|x| x.may_be_rounded).map(|x| x.decimal).collect();
+            numbers.iter().filter(|x| x.may_be_rounded).map(|x| x.decimal).collect();
         let read_as = if single { Self::Single } else { Self::Double };
         let found = Self::of_rounded(&rounded, different.values()).unwrap_or(read_as);
         let largest = largest_magnitude(mesh.vertices_in_use());
@@ -154,10 +154,9 @@ impl NumberFormat {
             [typical_maximum(&rounded, |x| x.digits), typical_maximum(&rounded, |x| x.decimals)];
         let others = [Self::Digits(digits as u32), Self::Decimals(decimals.max(0) as u32)];
         let is_other = || {
-            found == Self::Double
-                && others.into_iter().any(|format| are_singles(&finite_numbers, format))
+            found == Self::Double && others.into_iter().any(|format| are_singles(&numbers, format))
         };
-        let is_single = || is_shortest() || are_singles(&finite_numbers, found) || is_other();
+        let is_single = || is_shortest() || are_singles(&numbers, found) || is_other();
         if Self::Single.precision(largest) > found.precision(largest) && is_single() {
             Self::Single
         } else {
@@ -174,7 +173,7 @@ impl NumberFormat {
             return Self::Double;
         }
         let numbers = finite_numbers(&different, false);
-        if are_singles(&finite_numbers, Self::Double) { Self::Single } else { Self::Double }
+        if are_singles(&numbers, Self::Double) { Self::Single } else { Self::Double }
     }
 
     /// Returns decimals or digits, if numbers that may be rounded show that they are; `None` if they are exact, or
@@ -257,8 +256,8 @@ fn finite_numbers(different: &HashMap<u64, Printed>, single: bool) -> Vec<Number
 }
 
 /// Returns the largest count, except for those of one number in [`OUTLIERS`].
-fn typical_maximum(finite_numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
-    let mut counts: Vec<i32> = finite_numbers.iter().map(count).collect();
+fn typical_maximum(numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
+    let mut counts: Vec<i32> = numbers.iter().map(count).collect();
     counts.sort_unstable_by_key(|count| std::cmp::Reverse(*count));
     counts.get(counts.len() / OUTLIERS).copied().unwrap_or(0)
 }
@@ -271,10 +270,10 @@ fn are_shortest_singles(rounded: &[Decimal]) -> bool {
 }
 
 /// Checks whether nearly all numbers are numbers in single precision, printed in a format, and not by chance.
-fn are_singles(finite_numbers: &[Number], format: NumberFormat) -> bool {
-    let bits = finite_numbers.iter().filter_map(|number| number.single_bits(format));
+fn are_singles(numbers: &[Number], format: NumberFormat) -> bool {
+    let bits = numbers.iter().filter_map(|number| number.single_bits(format));
     let (count, bits) = bits.fold((0, 0.0), |(count, sum), bits| (count + 1, sum + bits));
-    bits >= SURE && is_nearly_all(count, finite_numbers.len())
+    bits >= SURE && is_nearly_all(count, numbers.len())
 }
 
 /// Checks whether a number is one in single precision.
@@ -284,15 +283,14 @@ fn is_single(x: f64) -> bool {
 
 /// Checks whether all numbers are multiples of a number of more than [`GRID`] units in their last decimal: those of a
 /// drawing on a grid, such as 2.54. Rounded numbers have no such divisor.
-fn is_grid(finite_numbers: &[Decimal]) -> bool {
-    let last = finite_numbers.iter().map(|number| number.decimals).max().unwrap_or(0);
+fn is_grid(numbers: &[Decimal]) -> bool {
+    let last = numbers.iter().map(|number| number.decimals).max().unwrap_or(0);
     let units = |number: &Decimal| {
         let power = 10_u64.checked_pow(u32::try_from(last - number.decimals).ok()?)?;
         number.mantissa.checked_mul(power)
     };
-    let divisor = finite_numbers
-        .iter()
-        .try_fold(0, |divisor, number| Some(common_divisor(divisor, units(number)?)));
+    let divisor =
+        numbers.iter().try_fold(0, |divisor, number| Some(common_divisor(divisor, units(number)?)));
     divisor.is_some_and(|divisor| divisor > GRID)
 }
 
@@ -403,18 +401,18 @@ mod tests {
 
     /// Returns the format of numbers that are printed by `print`.
     fn format_of(
-        finite_numbers: impl Iterator<Item = f64>,
+        numbers: impl Iterator<Item = f64>,
         print: impl Fn(f64) -> String,
     ) -> NumberFormat {
-        format_of_words(&finite_numbers.map(print).collect::<Vec<_>>())
+        format_of_words(&numbers.map(print).collect::<Vec<_>>())
     }
 
     fn format_of_words(words: &[String]) -> NumberFormat {
         let mut mesh = Mesh::default();
         for [x, y, z] in words.as_chunks().0 {
-            let finite_numbers = [x, y, z].map(|word| number(word).unwrap());
-            mesh.vertices.push(finite_numbers.map(|(x, _)| x).into());
-            mesh.printed.push(finite_numbers.map(|(_, printed)| printed));
+            let numbers = [x, y, z].map(|word| number(word).unwrap());
+            mesh.vertices.push(numbers.map(|(x, _)| x).into());
+            mesh.printed.push(numbers.map(|(_, printed)| printed));
         }
         NumberFormat::of_text(&mesh, false)
     }
@@ -513,9 +511,8 @@ mod tests {
     #[test]
     fn doubles_that_were_in_single_precision_are_recognised() {
         let mesh = |round: fn(f64) -> f64| {
-            let finite_numbers: Vec<f64> = random_numbers(-20.0, 20.0).map(round).collect();
-            let vertices =
-                finite_numbers.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect();
+            let numbers: Vec<f64> = random_numbers(-20.0, 20.0).map(round).collect();
+            let vertices = numbers.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect();
             NumberFormat::of_doubles(&Mesh::new(vertices, Vec::new()))
         };
         assert_eq!(mesh(|x| f64::from(x as f32)), NumberFormat::Single);
@@ -595,9 +592,9 @@ mod tests {
             &[104.775, 12.7, 25.4, 50.8, 3.175, 88.9, 0.0, 6.35, 19.05],
             &[1.0 / 256.0, 1.0 / 1024.0, 3.0 + 1.0 / 2048.0, 17.0, 0.125, 5.5],
         ];
-        for finite_numbers in cases {
-            let found = format_of(finite_numbers.iter().copied(), |x| x.to_string());
-            assert_eq!(found, NumberFormat::Double, "{finite_numbers:?}");
+        for numbers in cases {
+            let found = format_of(numbers.iter().copied(), |x| x.to_string());
+            assert_eq!(found, NumberFormat::Double, "{numbers:?}");
         }
     }
 
@@ -605,9 +602,8 @@ mod tests {
     fn multiples_of_a_step_are_exact() {
         for step in ["2.54", "1.5875", "0.0254", "0.396875"] {
             let step: f64 = step.parse().unwrap();
-            let finite_numbers = random_numbers(1.0, 60.0).map(|k| k.round() * step);
-            let found =
-                format_of(finite_numbers, |x| format!("{x:.6}").trim_end_matches('0').to_owned());
+            let numbers = random_numbers(1.0, 60.0).map(|k| k.round() * step);
+            let found = format_of(numbers, |x| format!("{x:.6}").trim_end_matches('0').to_owned());
             assert_eq!(found, NumberFormat::Double, "{step}");
         }
     }

@@ -283,7 +283,7 @@ const NONE: u32 = u32::MAX;
 const CELL_TOLERANCES: f64 = 4.0;
 
 /// Returns the length of a vector, also if its square underflows.
-fn scaled_scaled_length(v: DVec3) -> f64 {
+fn scaled_length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest == 0.0 { 0.0 } else { largest * (v / largest).length() }
 }

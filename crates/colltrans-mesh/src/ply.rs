@@ -203,18 +203,17 @@ fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
     let fault = |what: String| Fault::new(Place::Header, what);
     let element = |name: &str| header.elements.iter().find(|(n, _)| n.as_str() == name);
     let (_, vertex) =
-        element("vertex").ok_or_else(|| parser_error("the element `vertex` is missing".into()))?;
+        element("vertex").ok_or_else(|| fault("the element `vertex` is missing".into()))?;
     let mut single = false;
     for coordinate in ["x", "y", "z"] {
         let property = vertex.properties.get(coordinate);
-        let property = property.ok_or_else(|| {
-            parser_error(format!("the element `vertex` has no property `{coordinate}`"))
-        })?;
+        let property = property
+            .ok_or_else(|| fault(format!("the element `vertex` has no property `{coordinate}`")))?;
         match property.data_type {
             PropertyType::Scalar(ScalarType::Float) => single = true,
             PropertyType::Scalar(_) => {}
             PropertyType::List(..) => {
-                return Err(parser_error(format!(
+                return Err(fault(format!(
                     "the property `{coordinate}` of `vertex` is a list; expected a number"
                 )));
             }
@@ -224,19 +223,17 @@ fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
         let mut lists =
             CORNER_PROPERTIES.iter().filter_map(|name| face.properties.get(*name)).peekable();
         if face.count > 0 && lists.peek().is_none() {
-            return Err(parser_error("the element `face` has no list `vertex_indices`".into()));
+            return Err(fault("the element `face` has no list `vertex_indices`".into()));
         }
         if !lists.all(|list| is_list_of_integers(&list.data_type)) {
-            return Err(parser_error(
+            return Err(fault(
                 "the vertex indices of `face` must be a list of integers, with an integer length"
                     .into(),
             ));
         }
     }
     if element("tristrips").is_some() {
-        return Err(parser_error(
-            "triangle strips are not supported; export the mesh as faces".into(),
-        ));
+        return Err(fault("triangle strips are not supported; export the mesh as faces".into()));
     }
     Ok(Precision { single, text })
 }

@@ -87,7 +87,7 @@ fn depth_with_visits(mesh: &Mesh, hull: &ConvexPolyhedron, visits: &mut usize) -
     let mut deepest = noise;
     // Consecutive points of the mesh are near each other, and mostly below the same face.
     let mut near = 0;
-    for p in mesh.faces.iter().flat_map(|face| face_face_samples(mesh, face)) {
+    for p in mesh.faces.iter().flat_map(|face| face_samples(mesh, face)) {
         deepest = deepest.max(planes.least_depth(p - centre, deepest, &mut near, visits));
         if *visits > MAX_VISITS {
             return None;
@@ -100,7 +100,7 @@ fn depth_with_visits(mesh: &Mesh, hull: &ConvexPolyhedron, visits: &mut usize) -
 fn face_samples<'a>(mesh: &'a Mesh, face: &'a [u32]) -> impl Iterator<Item = DVec3> + 'a {
     let at = |v: &u32| mesh.vertices[*v as usize];
     let centre = face.iter().map(at).sum::<DVec3>() / face.len() as f64;
-    let next = face.iter().canonical_cycle().skip(1);
+    let next = face.iter().cycle().skip(1);
     let middles = face.iter().zip(next).map(move |(a, b)| (at(a) + at(b)) * 0.5);
     face.iter().map(at).chain(middles).chain([centre])
 }

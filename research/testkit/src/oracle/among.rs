@@ -1,12 +1,14 @@
-//! One body among many, judged over all obstacles, one by one.
+//! Judges scene queries (one body among many obstacles) by queries of each obstacle.
 //!
-//! - *The rule.* The answer is about the obstacle whose own answer, of a pair or a cast of its own, has the
-//!   least upper bound, and of equal ones about the one that came first: to the bit.
-//! - *Bounds.* Between convex bodies the distance of every obstacle, exactly, is at least the lower bound, and
-//!   that of one at most the upper one; no obstacle is met before the bound of a clearance, by the linear
-//!   programme, unless the bodies slide.
-//! - *The tree plays no part.* Obstacles that came, moved and went answer as those that were put where they are.
-//! - *Proofs.* They hold, and changed ones do not.
+//! - *Selection.* The answer is about the obstacle whose own answer, from a pair or cast, has the smallest
+//!   upper bound. If bounds are equal, it is about the obstacle that was inserted first. Both are compared bit
+//!   by bit.
+//! - *Bounds.* For convex bodies the exact distance of each obstacle is at least the lower bound, and that of
+//!   one obstacle is at most the upper bound. By the linear programme, no obstacle is met before the bound of a
+//!   clearance, unless the bodies slide.
+//! - *The tree has no effect.* Obstacles that were inserted, moved and removed yield the same answers as
+//!   obstacles inserted in their final poses.
+//! - *Proofs.* They are valid, and modified proofs are rejected.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -27,28 +29,28 @@ use crate::random::Random;
 use crate::shapes::random_hull;
 use crate::tally::Tally;
 
-/// Sorts of scenes, by name.
+/// The families of scenes.
 pub const FAMILIES: [&str; 6] = ["rows", "coincident", "hulls", "thin", "far", "mixed"];
 
-/// One linear programme in so many settings.
+/// The linear programme is solved for one setting out of this many.
 const PROGRAMME_EVERY: u64 = 8;
 
-/// What is counted: scenes, obstacles that there were, and those that were asked about for the nearest one; scenes in which
-/// one overlapped the moving body, several had the least upper bound, and the moving body was stopped; changed proofs
-/// that were refused.
+/// Columns: numbers of scenes, of obstacles, of obstacles examined for the nearest one, of scenes with an
+/// overlap, with equal upper bounds, in which the moving body was stopped, and of modified proofs that were
+/// rejected.
 pub const COLUMNS: &[&str] =
     &["scenes", "obstacles", "asked", "overlapped", "tied", "stopped", "refused"];
 
-/// Draws a scene, asks everything, and judges it.
+/// Draws a scene, and judges all its queries.
 ///
 /// # Errors
-/// What is wrong.
+/// A description of the first wrong answer.
 pub fn examine(family: &str, seed: u64, tally: &mut Tally) -> Result<(), String> {
     tally.count("scenes");
     Setting::draw(family, seed)?.examine(tally)
 }
 
-/// A body, and obstacles that came, moved and went.
+/// A body, and obstacles that were inserted, moved and removed.
 #[derive(Debug, Clone)]
 pub struct Setting {
     obstacles: Obstacles,
@@ -61,6 +63,7 @@ pub struct Setting {
 
 type Answer = (f64, ObstacleId);
 
+/// Returns the message of an error.
 fn text(error: &dyn std::fmt::Display) -> String {
     error.to_string()
 }
@@ -75,10 +78,10 @@ macro_rules! require {
 }
 
 impl Setting {
-    /// The setting of a family for a seed.
+    /// Draws the setting of a family with a seed.
     ///
     /// # Errors
-    /// An unknown family; a body that the library refuses.
+    /// A message if the family is unknown, or the library rejects a body.
     pub fn draw(family: &str, seed: u64) -> Result<Self, String> {
         let which = FAMILIES.iter().position(|name| *name == family).ok_or("no such family")?;
         let random = &mut Random::stream(seed, &[which as u64, 0xa303]);
@@ -109,7 +112,7 @@ impl Setting {
         Ok(Self { obstacles, moving, pose, direction, length, seed })
     }
 
-    /// Any body among any obstacles.
+    /// Builds a setting from a body and obstacles.
     pub fn of(
         obstacles: Obstacles,
         moving: AnyBody,
@@ -120,23 +123,23 @@ impl Setting {
         Self { obstacles, moving, pose, direction, length, seed: 0 }
     }
 
-    /// The body among the obstacles.
+    /// Builds the scene query.
     ///
     /// # Errors
-    /// As [`Among::new`].
+    /// The errors of [`Among::new`].
     pub fn asked(&self) -> Result<Among<'_>, QueryError> {
         Among::new(self.moving.at(self.pose), &self.obstacles)
     }
 
-    /// Along which direction, and within which length, it is asked.
+    /// Returns the direction and the length of the queries.
     pub const fn questions(&self) -> (DVec3, f64) {
         (self.direction, self.length)
     }
 
-    /// Asks everything, and judges it.
+    /// Judges all queries.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A description of the first wrong answer.
     pub fn examine(&self, tally: &mut Tally) -> Result<(), String> {
         let asked = self.asked().map_err(|e| text(&e))?;
         tally.add("obstacles", self.obstacles.len() as u64);
@@ -146,7 +149,7 @@ impl Setting {
         self.compare_anew(&asked)
     }
 
-    /// All obstacles but those that are ignored, in the order in which they came.
+    /// Returns the obstacles that are not ignored, in the order of their insertion.
     fn all(&self, ignored: &dyn Fn(ObstacleId) -> bool) -> Vec<(ObstacleId, AnyPlaced<'_>)> {
         let mut all: Vec<_> = self
             .obstacles
@@ -158,6 +161,7 @@ impl Setting {
         all
     }
 
+    /// Judges the queries of the obstacles that are not ignored.
     fn judge(
         &self,
         asked: &Among,
@@ -172,6 +176,7 @@ impl Setting {
         self.judge_clearance(asked, &all, tally).map_err(|e| format!("clearance: {e}"))
     }
 
+    /// Judges the nearest obstacle.
     fn judge_nearest(
         &self,
         asked: &Among,
@@ -192,16 +197,16 @@ impl Setting {
         tally.count_if("tied", tied);
         let found = asked.certified_nearest().map_err(|e| text(&e))?;
         let (Some((answer, proof)), Some(((upper, id), distance))) = (&found, &best) else {
-            require!(found.is_none() && best.is_none(), "an answer about nothing");
+            require!(found.is_none() && best.is_none(), "an answer without obstacles");
             return Ok(());
         };
         require!(answer.obstacle == *id, "{} and not {id}", answer.obstacle);
         require!(answer.distance == *distance, "another distance");
         require!(answer.lower <= answer.distance.lower(), "a lower bound above its own");
-        require!(proof.lower <= answer.lower, "a proof of more");
+        require!(proof.lower <= answer.lower, "the proof has a larger lower bound");
         let noise = answer.distance.upper() - answer.distance.lower();
         require!(answer.lower >= distance.lower() - 2.0 * noise, "a lower bound {}", answer.lower);
-        require!(proof.lower >= answer.lower - noise, "a proof of less: {}", proof.lower);
+        require!(proof.lower >= answer.lower - noise, "the proof has a smaller lower bound: {}", proof.lower);
         for ((id, _), square) in all.iter().zip(squares) {
             let Some(square) = square else { continue };
             require!(is_square_below(answer.lower, square), "{id} is nearer than the lower bound");
@@ -218,6 +223,7 @@ impl Setting {
         Ok(())
     }
 
+    /// Judges the obstacles within a length.
     fn judge_within(
         &self,
         asked: &Among,
@@ -230,7 +236,7 @@ impl Setting {
         for ((id, one), square) in all.iter().zip(squares) {
             let said = (closer.contains(id), undecided.contains(id));
             let own = within(self.moving.at(self.pose), *one, self.length).map_err(|e| text(&e))?;
-            // A box may tell what rounding leaves open to the pair.
+            // The box of an obstacle may decide what rounding leaves open for the pair.
             require!(
                 said == own || (own.1 && said == (false, false)),
                 "{id}: {said:?}, not {own:?}"
@@ -246,11 +252,12 @@ impl Setting {
         if !proof.closer.is_empty() {
             let mut changed = proof.clone();
             changed.closer.pop();
-            require!(asked.verify(&changed).is_err(), "a closer one left out passes");
+            require!(asked.verify(&changed).is_err(), "a proof without a closer obstacle is accepted");
         }
         Ok(())
     }
 
+    /// Judges the clearance.
     fn judge_clearance(
         &self,
         asked: &Among,
@@ -285,7 +292,7 @@ impl Setting {
             require!(a == b, "another clearance");
         }
         require!(answer.lower >= least, "{} and not {least}", answer.lower);
-        require!(proof.lower <= answer.lower, "a proof of more");
+        require!(proof.lower <= answer.lower, "the proof has a larger lower bound");
         tally.count_if("stopped", answer.stop.is_some());
         asked.verify(&proof).map_err(|e| text(&e))?;
         if proof.lower < f64::INFINITY {
@@ -293,7 +300,7 @@ impl Setting {
             higher.lower = proof.lower * 1.001 + 0.001;
             without.passed.retain(|(id, _)| Some(*id) != proof.stop);
             let refused = [higher, without].map(|changed| asked.verify(&changed).is_err());
-            require!(refused == [true; 2], "a changed proof passes: {refused:?}");
+            require!(refused == [true; 2], "a modified proof is accepted: {refused:?}");
             tally.add("refused", 2);
         }
         if self.seed.is_multiple_of(PROGRAMME_EVERY) && answer.distance().is_some() {
@@ -302,7 +309,8 @@ impl Setting {
         self.judge_end(asked, &answer)
     }
 
-    /// Of one of two thin solids nothing is left: it is refused by name, if it is asked about.
+    /// Checks a query with a solid that vanishes when it is shrunk. If the query examines this obstacle, the
+    /// error must name it.
     fn judge_refusal(&self, asked: &Among, thin: ObstacleId) -> Result<(), String> {
         match asked.certified_clearance(self.direction) {
             Ok(_) => Ok(()),
@@ -315,7 +323,7 @@ impl Setting {
         }
     }
 
-    /// By the linear programme.
+    /// Compares the bound with the linear programme.
     fn judge_translations(
         &self,
         all: &[(ObstacleId, AnyPlaced)],
@@ -329,7 +337,7 @@ impl Setting {
         Ok(())
     }
 
-    /// With an end nothing else is said of what is before it.
+    /// Checks that a limit on the translation does not change the results before it.
     fn judge_end(&self, asked: &Among, answer: &colltrans::ClearanceAmong) -> Result<(), String> {
         for end in [0.0, 0.5, 1.0, 4.0] {
             let ended = asked.clearance_before(self.direction, end).map_err(|e| text(&e))?;
@@ -341,7 +349,7 @@ impl Setting {
         Ok(())
     }
 
-    /// That an obstacle is not met between 0 and a translation, unless they slide.
+    /// Checks that an obstacle is not met between 0 and a translation, unless the bodies slide.
     fn not_met_before(
         &self,
         p: colltrans::Placed,
@@ -356,7 +364,7 @@ impl Setting {
         Ok(())
     }
 
-    /// The same obstacles, put where they are.
+    /// Compares with new obstacles in the final poses.
     fn compare_anew(&self, asked: &Among) -> Result<(), String> {
         let mut all: Vec<_> = self.obstacles.iter().collect();
         all.sort_by_key(|(id, ..)| *id);
@@ -366,20 +374,21 @@ impl Setting {
         let other = Among::new(self.moving.at(self.pose), &anew).map_err(|e| text(&e))?;
         let [a, b] = [asked, &other].map(|asked| asked.nearest().ok().flatten());
         let of = |nearest: colltrans::Nearest| (nearest.distance, nearest.lower);
-        require!(a.map(of) == b.map(of), "made anew, another nearest one");
-        require!(a.map(|a| a.obstacle) == b.map(|b| old(b.obstacle)), "made anew, another one");
+        require!(a.map(of) == b.map(of), "with new obstacles, the distance of the nearest one differs");
+        require!(a.map(|a| a.obstacle) == b.map(|b| old(b.obstacle)), "with new obstacles, the nearest one differs");
         let [a, b] = [asked, &other].map(|asked| asked.within(self.length).map_err(|e| text(&e)));
         let (a, b) = (a?, b?);
         let closer: Vec<_> = b.closer.iter().map(|(id, near)| (old(*id), *near)).collect();
-        require!(a.closer == closer, "made anew, others are closer");
+        require!(a.closer == closer, "with new obstacles, the closer ones differ");
         let [a, b] = [asked, &other].map(|asked| asked.clearance(self.direction).ok());
         let of = |answer: colltrans::ClearanceAmong| answer.stop.map(|(_, stop)| upper_of(&stop));
-        require!(a.map(of) == b.map(of), "made anew, another clearance");
+        require!(a.map(of) == b.map(of), "with new obstacles, the clearance differs");
         Ok(())
     }
 }
 
-/// Changes a proof, and counts how many changed ones are refused: all that do not hold.
+/// Modifies a proof in several ways, and returns the number of rejected proofs. All invalid ones must be
+/// rejected.
 fn refused(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
     let changes: [&dyn Fn(&mut NearestProof); 4] = [
         &|proof| proof.lower = proof.lower * 1.001 + 0.001,
@@ -395,20 +404,20 @@ fn refused(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
             continue;
         }
         let refused = asked.verify(&changed).is_err();
-        require!(refused || k == 3 && boxes_tell(asked, proof), "change {k} passes");
+        require!(refused || k == 3 && boxes_tell(asked, proof), "the proof with change {k} is accepted");
         count += u64::from(refused);
     }
     Ok(count)
 }
 
-/// Whether boxes tell of all obstacles that a proof names: then it would do without.
+/// Checks whether the boxes exclude all obstacles of a proof, so that it is valid without their entries.
 fn boxes_tell(asked: &Among, proof: &NearestProof) -> bool {
     let mut bare = proof.clone();
     bare.apart.clear();
     asked.verify(&bare).is_ok()
 }
 
-/// Bodies that the obstacles of a scene are.
+/// Returns the bodies from which obstacles of a scene are drawn.
 fn bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String> {
     let cuboid = |low: DVec3, high: DVec3| {
         ConvexPolyhedron::cuboid(low, high).map(AnyBody::from).map_err(|e| text(&e))
@@ -438,7 +447,7 @@ fn bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String> {
     })
 }
 
-/// A place: on a grid where ties are wanted.
+/// Draws a pose, on a grid in families with ties.
 fn place_for(family: &str, random: &mut Random) -> Result<Pose, String> {
     let quarter = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
     let (rotation, at) = match family {
@@ -453,7 +462,7 @@ fn place_for(family: &str, random: &mut Random) -> Result<Pose, String> {
     Pose::new(rotation, at).map_err(|e| text(&e))
 }
 
-/// One comes, moves or goes.
+/// Inserts, moves or removes an obstacle.
 fn change(
     family: &str,
     bodies: &[AnyBody],
@@ -481,6 +490,7 @@ fn change(
     moved.map_err(|e| text(&e))
 }
 
+/// Builds the pair of two bodies of either kind.
 fn pair<'a>(
     p: AnyPlaced<'a>,
     q: AnyPlaced<'a>,
@@ -493,6 +503,7 @@ fn pair<'a>(
     })
 }
 
+/// Returns the distance of two bodies.
 fn distance_of(p: AnyPlaced, q: AnyPlaced) -> Result<AnyDistance, QueryError> {
     Ok(match pair(p, q)? {
         ByKind::Convex(pair) => ByKind::Convex(pair.distance()?),
@@ -500,7 +511,7 @@ fn distance_of(p: AnyPlaced, q: AnyPlaced) -> Result<AnyDistance, QueryError> {
     })
 }
 
-/// Whether it is closer, and whether that is undecided.
+/// Returns whether the bodies are closer than a length, and whether that is undecided.
 fn within(p: AnyPlaced, q: AnyPlaced, length: f64) -> Result<(bool, bool), QueryError> {
     Ok(match pair(p, q)? {
         ByKind::Convex(pair) => match pair.within(length)? {
@@ -516,6 +527,7 @@ fn within(p: AnyPlaced, q: AnyPlaced, length: f64) -> Result<(bool, bool), Query
     })
 }
 
+/// Returns the clearance of two bodies.
 fn clearance_of(p: AnyPlaced, q: AnyPlaced, d: DVec3) -> Result<AnyClearance, QueryError> {
     Ok(match (p, q) {
         (ByKind::Convex(p), ByKind::Convex(q)) => ByKind::Convex(Cast::new(p, q, d)?.clearance()?),
@@ -529,7 +541,8 @@ fn clearance_of(p: AnyPlaced, q: AnyPlaced, d: DVec3) -> Result<AnyClearance, Qu
     })
 }
 
-/// The upper bound of where it stops the body.
+/// Returns the upper bound of the blocking contact; negative infinity for an overlap, infinity if the body is
+/// free.
 fn upper_of(clearance: &AnyClearance) -> f64 {
     match clearance {
         ByKind::Convex(Clearance::Blocked { contact, .. }) => contact.certificate.upper,
@@ -539,7 +552,7 @@ fn upper_of(clearance: &AnyClearance) -> f64 {
     }
 }
 
-/// The square of the distance of two convex bodies, exactly.
+/// Returns the exact squared distance of two convex bodies; `None` for solids.
 fn square(p: &AnyPlaced, q: &AnyPlaced) -> Option<Ratio> {
     let (ByKind::Convex(p), ByKind::Convex(q)) = (p, q) else { return None };
     let [p, q] =
@@ -547,7 +560,7 @@ fn square(p: &AnyPlaced, q: &AnyPlaced) -> Option<Ratio> {
     Some(distance(&p, &q).square)
 }
 
-/// Whether a length is at most one whose square this is.
+/// Checks whether a length is at most the root of a square.
 fn is_square_below(length: f64, square: &Ratio) -> bool {
     let length = Ratio::from_f64(length);
     length.times(&length) <= *square

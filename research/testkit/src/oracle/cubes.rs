@@ -1,9 +1,9 @@
-//! The judge of burrs: pieces of unit cubes that move by whole units, all moves tried.
+//! Judges puzzles (burrs) of unit cubes by trying all moves by whole units.
 //!
-//! A state is how far each piece is displaced; one piece stays. A move takes any of the others, as one, some units
-//! along an axis, and ends where it would hit. Breadth first, so the first move after which a group is wholly beyond
-//! the others' box has the fewest moves before it. Between whole places nothing changes: a cube that moves by one unit
-//! passes through the two cells it begins and ends in and no others.
+//! A state is the displacement of each piece; one piece stays. A move translates any set of the others by some
+//! units along an axis, until it would collide. The search is breadth-first, so the first move that takes a
+//! group beyond the box of the others has the fewest predecessors. Intermediate positions need no check,
+//! because a cube that moves by one unit occupies only its first and its last cell.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -14,25 +14,25 @@ use crate::random::Random;
 
 type Cell = [i32; 3];
 
-/// Pieces of unit cubes, by their lowest corners.
+/// Pieces of unit cubes, given by their lowest corners.
 #[derive(Debug, Clone)]
 pub struct Cubes {
     /// The cells of each piece.
     pub pieces: Vec<Vec<Cell>>,
 }
 
-/// A group of pieces that leaves, after so many moves, its own included.
+/// A group of pieces that leaves the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Leaves {
-    /// The moves.
+    /// The number of moves, including the last one.
     pub moves: usize,
-    /// The pieces, a bit each.
+    /// The pieces as a bit set.
     pub group: u32,
 }
 
 impl Cubes {
-    /// A block with a tunnel that a random walk has cut, and one or two bars of one or two cubes in it; the block comes
-    /// last.
+    /// Draws a block with a tunnel along a random walk, and one or two bars of one or two cubes in it. The
+    /// block is the last piece.
     pub fn random(random: &mut Random) -> Self {
         let size = [5, 5, 4];
         let step = |cell: Cell, random: &mut Random| {
@@ -76,10 +76,10 @@ impl Cubes {
         Self { pieces }
     }
 
-    /// Each piece as a solid.
+    /// Returns each piece as a solid.
     ///
     /// # Panics
-    /// Never: pieces of cubes are solids.
+    /// Never, because pieces of cubes are valid solids.
     pub fn solids(&self) -> Vec<Solid> {
         let cube = |cell: &Cell| {
             let low = DVec3::from(cell.map(f64::from));
@@ -92,7 +92,7 @@ impl Cubes {
         self.pieces.iter().map(piece).collect()
     }
 
-    /// Whether two pieces, the first displaced, enter each other by more than a length.
+    /// Checks whether two pieces, the first one displaced, overlap by more than a length.
     pub fn enter(&self, [a, b]: [usize; 2], by: DVec3, depth: f64) -> bool {
         self.pieces[a].iter().any(|p| {
             let p = DVec3::from(p.map(f64::from)) + by;
@@ -102,20 +102,21 @@ impl Cubes {
         })
     }
 
-    /// The fewest moves after which some pieces have left the others; `None` if no moves do that.
+    /// Returns the smallest number of moves after which some pieces have left the others; `None` if that is
+    /// impossible.
     pub fn level(&self) -> Option<Leaves> {
         let all: Vec<usize> = (0..self.pieces.len()).collect();
         self.level_among(&all, usize::MAX)
     }
 
-    /// Whether everything can be taken apart, piece by piece and group by group.
+    /// Checks whether the pieces can be separated completely, piece by piece and group by group.
     pub fn comes_apart(&self) -> bool {
         let mut groups = vec![(0..self.pieces.len()).collect::<Vec<_>>()];
         while let Some(group) = groups.pop() {
             if group.len() < 2 {
                 continue;
             }
-            // With what has left gone, whatever could be done with it can be done without it.
+            // Any move that is possible with the removed group is possible without it.
             let Some(Leaves { group: gone, .. }) = self.level_among(&group, usize::MAX) else {
                 return false;
             };
@@ -125,7 +126,8 @@ impl Cubes {
         true
     }
 
-    /// The same of some pieces, with at most so many moves.
+    /// Returns the smallest number of moves, at most `most`, after which some of the pieces `among` have left
+    /// the others; `None` if that is impossible.
     pub fn level_among(&self, among: &[usize], most: usize) -> Option<Leaves> {
         let count = among.len();
         if count < 2 {
@@ -138,7 +140,7 @@ impl Cubes {
             if moves == most {
                 continue;
             }
-            // The last one stays.
+            // The last piece stays.
             for group in 1..(1_u32 << (count - 1)) {
                 for (axis, sign) in (0..3).flat_map(|axis| [(axis, 1), (axis, -1)]) {
                     let mut to = at.clone();
@@ -164,12 +166,13 @@ impl Cubes {
         None
     }
 
+    /// Returns the extent of all pieces.
     fn extent(&self) -> i32 {
         let all = || self.pieces.iter().flatten().flatten();
         all().max().unwrap_or(&0) - all().min().unwrap_or(&0) + 1
     }
 
-    /// Whether a piece of a group has a cell in common with one outside.
+    /// Checks whether a piece of the group has a common cell with a piece outside of it.
     fn hits(&self, among: &[usize], at: &[Cell], group: u32) -> bool {
         let cells = |inside: bool| {
             let own = (0..among.len()).filter(move |k| (group >> k & 1 == 1) == inside);
@@ -201,7 +204,7 @@ mod tests {
     fn closed_forms() {
         let beside = Cubes { pieces: vec![bar([0, 0, 0], [1, 1, 1]), bar([1, 0, 0], [2, 1, 1])] };
         assert_eq!(beside.level(), Some(Leaves { moves: 1, group: 1 }));
-        // A key in a slot: along it, and then up.
+        // A key in a slot moves along it, then up.
         let mut slot = bar([0, 0, 0], [7, 3, 3]);
         let hollow = |c: &Cell| {
             let inside = (1..6).contains(&c[0]) && c[1] == 1;
@@ -211,7 +214,7 @@ mod tests {
         let key = Cubes { pieces: vec![bar([1, 1, 1], [3, 2, 2]), slot.clone()] };
         assert_eq!(key.level(), Some(Leaves { moves: 2, group: 1 }));
         assert!(key.comes_apart());
-        // Longer than the opening.
+        // The key is longer than the opening.
         let stuck = Cubes { pieces: vec![bar([1, 1, 1], [4, 2, 2]), slot] };
         assert_eq!(stuck.level(), None);
         assert!(!stuck.comes_apart());

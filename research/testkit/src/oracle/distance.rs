@@ -1,24 +1,19 @@
-//! The distance of two convex bodies, exactly, with its proof.
+//! Computes the exact distance of two convex bodies, with its proof.
 //!
-//! Notation. `P` is the moving body, `Q` the fixed one, both the convex hulls of their vertices;
-//! `M = {q - p}`, and `v` is the point of `M` nearest to the origin. The distance is `|v|`, and `v`
-//! is the nearest point if and only if
+//! Notation. `P` is the moving body, `Q` the fixed one, both the convex hulls of their vertices. `M = {q - p}`,
+//! and `v` is the point of `M` nearest to the origin. The distance is `|v|`. A point `v` is the nearest one if
+//! and only if
 //!
-//! ```text
-//! v = sum w_i m_i  with w_i >= 0, sum w_i = 1, m_i differences of vertices   (v belongs to M)
-//! v . m >= v . v   for all differences m of vertices                         (nothing is nearer)
-//! ```
+//! - `v = sum w_i m_i` with `w_i >= 0`, `sum w_i = 1` and differences of vertices `m_i` (`v` is in `M`),
+//! - `v . m >= v . v` for all differences of vertices `m` (no point is nearer).
 //!
-//! [`distance`] looks for `v` as Wolfe does ("Finding the nearest point in a polytope",
-//! Mathematical Programming 11, 1976): while some `m` violates the second line, the lowest such `m`
-//! joins the simplex, whose nearest point is found by trying *all* of its faces. `|v|` decreases
-//! strictly, so no simplex returns. Every number is exact, so what it ends with satisfies both
-//! lines without an error, whatever way led there. Only vertices are read: no faces, no edges.
+//! [`distance`] uses the algorithm of Wolfe ("Finding the nearest point in a polytope", Mathematical
+//! Programming 11, 1976). While some `m` violates the second condition, the lowest such `m` is added to the
+//! simplex, whose nearest point is found by trying all its faces. `|v|` decreases strictly, so the algorithm
+//! terminates. All numbers are exact, so the result satisfies both conditions exactly. Only vertices are used,
+//! no faces or edges. Divisions are avoided by `v = V / D` with `D > 0`, both dyadic.
 //!
-//! Divisions are put off: `v = V / D` with `D > 0`, both dyadic.
-//!
-//! [`brute_force`] shares nothing with that: it compares all pairs of vertices and triangles and of
-//! edges, in `f64`.
+//! [`brute_force`] is independent: it compares all pairs of vertices and triangles, and of edges, in `f64`.
 
 use colltrans::{ConvexPolyhedron, Pose};
 use glam::DVec3;
@@ -35,22 +30,22 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// Whether the bodies have a point in common, exactly.
+    /// Checks whether the bodies have a common point, exactly.
     pub fn intersects(&self) -> bool {
         self.square.is_zero()
     }
 
-    /// The nearest `f64`, up to a few rounding errors; 0 only if the bodies meet or the distance is
-    /// below all `f64`.
+    /// Returns the nearest `f64`, up to a few rounding errors. It is 0 only if the bodies meet or the distance
+    /// is below the range of `f64`.
     pub fn to_f64(&self) -> f64 {
         self.square.sqrt_to_f64()
     }
 }
 
-/// The exact distance of two placed bodies of any dimension.
+/// Returns the exact distance of two placed bodies of any dimension.
 ///
-/// The nine entries of a pose's matrix and its translation, as exact numbers, say where a body is.
-/// Takes `O(n)` long products a step: fit for thousands of vertices.
+/// The position of a body is defined by the nine entries of its rotation matrix and by its translation, as
+/// exact numbers. A step takes `O(n)` long products, which is feasible for thousands of vertices.
 pub fn distance_of_bodies(
     (moving, moving_pose): (&ConvexPolyhedron, &Pose),
     (fixed, fixed_pose): (&ConvexPolyhedron, &Pose),
@@ -61,15 +56,15 @@ pub fn distance_of_bodies(
     distance(&put(moving, moving_pose), &put(fixed, fixed_pose))
 }
 
-/// The exact distance of a point of the world, as it is written, from a placed body.
+/// Returns the exact distance of a point in the world from a placed body.
 pub fn distance_of_point(point: DVec3, (body, pose): (&ConvexPolyhedron, &Pose)) -> Distance {
     distance(&[Vector::new(point)], &place(pose.matrix(), pose.translation(), body.vertices()))
 }
 
-/// The exact distance of the convex hulls of two sets of points.
+/// Returns the exact distance of the convex hulls of two sets of points.
 ///
 /// # Panics
-/// If one of them is empty.
+/// If a set is empty.
 pub fn distance(moving: &[Vector], fixed: &[Vector]) -> Distance {
     let mut simplex = vec![fixed[0].minus(&moving[0])];
     loop {
@@ -84,14 +79,14 @@ pub fn distance(moving: &[Vector], fixed: &[Vector]) -> Distance {
     }
 }
 
-/// A vertex difference `m` with the least `direction . m`.
+/// Returns a vertex difference `m` with the smallest `direction . m`.
 fn lowest_difference(moving: &[Vector], fixed: &[Vector], direction: &Vector) -> Vector {
     let farthest = moving.iter().max_by_key(|p| direction.dot(p)).expect("a body has a point");
     let nearest = fixed.iter().min_by_key(|q| direction.dot(q)).expect("a body has a point");
     nearest.minus(farthest)
 }
 
-/// A point `numerator / denominator`, the denominator positive.
+/// A point `numerator / denominator` with a positive denominator.
 #[derive(Debug, Clone)]
 struct Fraction {
     numerator: Vector,
@@ -99,14 +94,17 @@ struct Fraction {
 }
 
 impl Fraction {
+    /// Returns the squared length of the numerator.
     fn square_of_numerator(&self) -> Dyadic {
         self.numerator.dot(&self.numerator)
     }
 
+    /// Returns the squared length.
     fn square(&self) -> Ratio {
         Ratio::new(self.square_of_numerator(), &self.denominator * &self.denominator)
     }
 
+    /// Converts to a distance.
     fn into_distance(self) -> Distance {
         let coordinate = |x: Dyadic| Ratio::new(x, self.denominator.clone()).to_f64();
         Distance {
@@ -116,8 +114,8 @@ impl Fraction {
     }
 }
 
-/// The point of a simplex of up to four corners nearest to the origin, and the corners of a face
-/// that it is an inner point of.
+/// Returns the point of a simplex of up to four corners nearest to the origin, and the corners of the face that
+/// has it in its interior.
 fn nearest_of_simplex(corners: &[Vector]) -> (Fraction, Vec<Vector>) {
     let faces = (1..1_usize << corners.len()).map(|face| {
         let chosen = corners.iter().enumerate().filter(move |(i, _)| face >> i & 1 == 1);
@@ -131,9 +129,9 @@ fn nearest_of_simplex(corners: &[Vector]) -> (Fraction, Vec<Vector>) {
     (nearest, face)
 }
 
-/// The point nearest to the origin of the plane, line or point that the corners span, if it is an
-/// inner point of their hull: Cramer's rule for `G w = b` with `G_ij = e_i . e_j`, `b_i = -e_i .
-/// a_0`, `e_i = a_i - a_0`. None as well if the corners depend on each other: a face does as well.
+/// Returns the point nearest to the origin on the plane, line or point that the corners span, if it is in the
+/// interior of their hull. Solves `G w = b` by Cramer's rule with `G_ij = e_i . e_j`, `b_i = -e_i . a_0`, `e_i
+/// = a_i - a_0`. `None` also if the corners are dependent, because then a face has the same nearest point.
 fn nearest_inside(corners: &[Vector]) -> Option<Fraction> {
     let (first, rest) = corners.split_first().expect("no empty face");
     let edges: Vec<Vector> = rest.iter().map(|a| a.minus(first)).collect();
@@ -146,7 +144,7 @@ fn nearest_inside(corners: &[Vector]) -> Option<Fraction> {
     }
     let weights: Vec<Dyadic> = (0..edges.len())
         .map(|i| {
-            // G is symmetric: rows will do for columns.
+            // G is symmetric, so rows may replace columns.
             let mut replaced = gram.clone();
             replaced[i].clone_from(&right_side);
             determinant(&replaced)
@@ -163,7 +161,7 @@ fn nearest_inside(corners: &[Vector]) -> Option<Fraction> {
     Some(Fraction { numerator, denominator: whole })
 }
 
-/// Of a matrix of up to three rows, along its first row.
+/// Returns the determinant of a matrix of up to three rows, expanded along the first row.
 fn determinant(rows: &[Vec<Dyadic>]) -> Dyadic {
     let Some((first, others)) = rows.split_first() else { return Dyadic::new(1.0) };
     let mut sum = Dyadic::ZERO;
@@ -179,15 +177,16 @@ fn determinant(rows: &[Vec<Dyadic>]) -> Dyadic {
     sum
 }
 
-/// The distance of the *surfaces* of two placed bodies, up to rounding errors of some `1e-15` of
-/// the size: all vertices against all triangles and all edges against all edges.
+/// Returns the distance of the *surfaces* of two placed bodies, up to rounding errors of some `1e-15` of the
+/// size. Compares all vertices with all triangles, and all edges with all edges.
 ///
-/// For separated bodies that is their distance; for bodies that overlap it is of no use.
+/// For disjoint bodies it is their distance. For overlapping bodies it is meaningless.
 pub fn brute_force(
     (moving, moving_pose): (&ConvexPolyhedron, &Pose),
     (fixed, fixed_pose): (&ConvexPolyhedron, &Pose),
 ) -> f64 {
-    // Relative to the fixed body's frame origin: a common displacement costs no accuracy.
+    // Coordinates are relative to the origin of the fixed body, so that a common displacement does not reduce
+    // accuracy.
     let offset = moving_pose.translation() - fixed_pose.translation();
     let moving = Soup::new(moving, |v| moving_pose.transform_vector(v) + offset);
     let fixed = Soup::new(fixed, |v| fixed_pose.transform_vector(v));
@@ -207,7 +206,7 @@ pub fn brute_force(
         .min(one_way(&fixed.points, &moving.triangles))
 }
 
-/// A body as loose vertices, edges and triangles; a point is an edge of length 0 as well.
+/// A body as vertices, edges and triangles. A point also counts as an edge of length 0.
 struct Soup {
     points: Vec<DVec3>,
     edges: Vec<[DVec3; 2]>,
@@ -215,6 +214,7 @@ struct Soup {
 }
 
 impl Soup {
+    /// Builds the lists of a body after a transformation.
     fn new(body: &ConvexPolyhedron, put: impl Fn(DVec3) -> DVec3) -> Self {
         let points: Vec<DVec3> = body.vertices().iter().map(|v| put(*v)).collect();
         let mut edges: Vec<[DVec3; 2]> = Vec::new();
@@ -236,7 +236,8 @@ impl Soup {
     }
 }
 
-/// Infinite if the foot of the point lies outside: an edge is nearer then.
+/// Returns the distance of a point from a triangle; infinite if the foot of the perpendicular is outside,
+/// because then an edge is nearer.
 fn point_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let inside =
@@ -248,20 +249,21 @@ fn point_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     }
 }
 
-/// The distance of a point from a triangle, up to rounding.
+/// Returns the distance of a point from a triangle, up to rounding.
 pub(crate) fn point_to_triangle_or_edges(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let edges = [[a, b], [b, c], [c, a]].map(|edge| point_to_segment(point, edge));
     edges.into_iter().fold(point_to_triangle(point, [a, b, c]), f64::min)
 }
 
-/// The least of: inner points of both, if the lines' feet are inner points, and each end against
-/// the other segment.
+/// Returns the distance of two segments: the minimum of the distance of the lines, if its feet are on both
+/// segments, and of the distances of each end from the other segment.
 fn segment_to_segment([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
     let (along, other) = (b - a, d - c);
     let normal = along.cross(other);
     let square = normal.length_squared();
     let (s, t) = ((c - a).cross(other).dot(normal), (c - a).cross(along).dot(normal));
-    // The product of edges that are parallel to rounding points anywhere; their ends tell.
+    // For edges that are parallel up to rounding the cross product is meaningless, and the ends determine the
+    // distance.
     let parallel = (64.0 * f64::EPSILON).powi(2) * along.length_squared() * other.length_squared();
     let crossing =
         if square > parallel && (0.0..=square).contains(&s) && (0.0..=square).contains(&t) {
@@ -276,6 +278,7 @@ fn segment_to_segment([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
         .min(point_to_segment(d, [a, b]))
 }
 
+/// Returns the distance of a point from a segment.
 fn point_to_segment(point: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     let (edge, to_point) = (b - a, point - a);
     let square = edge.length_squared();
@@ -348,7 +351,7 @@ mod tests {
         assert!((is - 1e60).abs() <= 1e45);
     }
 
-    /// Two ways that have nothing in common, in every family of settings.
+    /// Compares two independent algorithms in every family of settings.
     #[test]
     fn agrees_with_all_pairs_of_features() {
         let (mut apart, mut met) = (0, 0);
@@ -360,7 +363,7 @@ mod tests {
                 let fixed = (&bodies.fixed, &setting.fixed_pose);
                 let exact = distance_of_bodies(moving, fixed);
                 let brute = brute_force(moving, fixed);
-                // What the hull left outside a face or put inside one counts as well.
+                // Points outside or inside faces, because of the hull error, also contribute.
                 let size = setting.judge(&bodies).scene.size;
                 let hull = bodies.moving.hull_error() + bodies.fixed.hull_error();
                 let tolerance = 64.0 * f64::EPSILON * size + 2.0 * hull;
@@ -378,7 +381,7 @@ mod tests {
         assert!(apart > 300 && met > 100, "{apart} {met}");
     }
 
-    /// Overlap has a proof of its own: a point that is exactly in both.
+    /// An overlap is proven by a point that is exactly in both bodies.
     #[test]
     fn inner_points_are_inside() {
         let cloud = body(&cuboid(DVec3::new(0.3, 1.7, 0.9)).vertices);

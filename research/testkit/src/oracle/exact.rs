@@ -1,5 +1,5 @@
-//! Exact numbers: every finite `f64` is an integer times a power of two, and so are all sums,
-//! differences and products of such numbers. Only a final comparison ever divides.
+//! Exact numbers `m 2^e` with integers `m` and `e`. Every finite `f64` has this form, and so do sums,
+//! differences and products. Only the final comparison needs a quotient.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -8,7 +8,7 @@ use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 use glam::{DMat3, DVec3};
 
-/// `mantissa * 2^exponent`, exactly.
+/// The exact number `mantissa * 2^exponent`.
 #[derive(Debug, Clone)]
 pub struct Dyadic {
     mantissa: IBig,
@@ -19,7 +19,7 @@ impl Dyadic {
     /// The number zero.
     pub const ZERO: Self = Self { mantissa: IBig::ZERO, exponent: 0 };
 
-    /// The value of a finite `f64`, exactly.
+    /// Converts a finite `f64` exactly.
     ///
     /// # Panics
     /// If `x` is not finite.
@@ -39,36 +39,36 @@ impl Dyadic {
         Self { mantissa, exponent: exponent + zeros }
     }
 
-    /// Whether it is zero.
+    /// Checks whether the number is zero.
     pub fn is_zero(&self) -> bool {
         self.mantissa.is_zero()
     }
 
-    /// Whether it is greater than zero.
+    /// Checks whether the number is positive.
     pub fn is_positive(&self) -> bool {
         self.mantissa > IBig::ZERO
     }
 
-    /// Whether it is less than zero.
+    /// Checks whether the number is negative.
     pub fn is_negative(&self) -> bool {
         self.mantissa < IBig::ZERO
     }
 
-    /// Its absolute value.
+    /// Returns the absolute value.
     #[must_use]
     pub fn abs(self) -> Self {
         if self.is_negative() { -self } else { self }
     }
 
-    /// The power of two it is an integer multiple of.
+    /// Returns the exponent `e` of the representation `m 2^e`.
     pub fn exponent(&self) -> i32 {
         self.exponent
     }
 
-    /// Itself as a multiple of `2^exponent`.
+    /// Returns the number as a multiple of `2^exponent`.
     ///
     /// # Panics
-    /// If it is no integer multiple.
+    /// If it is not an integer multiple.
     pub fn in_units_of(&self, exponent: i32) -> IBig {
         if self.is_zero() {
             return IBig::ZERO;
@@ -77,32 +77,32 @@ impl Dyadic {
         &self.mantissa << shift
     }
 
-    /// From a multiple of `2^exponent`.
+    /// Builds the number `mantissa * 2^exponent`.
     pub fn from_units(mantissa: IBig, exponent: i32) -> Self {
         Self { mantissa, exponent }
     }
 
-    /// The leading 62 bits as `(m, e)`: the value is `m 2^e` up to a relative error of `2^-61`.
+    /// Returns the leading 62 bits as `(m, e)`. The value is `m 2^e` up to a relative error of `2^-61`.
     fn leading(&self) -> (f64, i32) {
         let surplus = self.mantissa.bit_len().saturating_sub(62);
         let m = i64::try_from(&self.mantissa >> surplus).expect("at most 62 bits");
         (m as f64, self.exponent + surplus as i32)
     }
 
-    /// The nearest `f64`, up to one rounding error.
+    /// Returns the nearest `f64`, up to one rounding error.
     pub fn to_f64(&self) -> f64 {
         let (m, e) = self.leading();
         scale(m, e)
     }
 }
 
-/// `m 2^e`, in two steps so that neither factor overflows on its own.
+/// Returns `m 2^e`. Two factors are used, so that neither overflows alone.
 fn scale(m: f64, e: i32) -> f64 {
     let half = e / 2;
     m * 2.0_f64.powi(half) * 2.0_f64.powi(e - half)
 }
 
-/// Two numbers in units of the finer of their two powers of two.
+/// Converts two numbers to multiples of the smaller of their powers of two. Returns both and the exponent.
 fn aligned(a: &Dyadic, b: &Dyadic) -> (IBig, IBig, i32) {
     let exponent = a.exponent.min(b.exponent);
     (a.in_units_of(exponent), b.in_units_of(exponent), exponent)
@@ -169,7 +169,7 @@ impl Ord for Dyadic {
     }
 }
 
-/// `numerator / denominator` with a positive denominator.
+/// The quotient `numerator / denominator` with a positive denominator.
 #[derive(Debug, Clone)]
 pub struct Ratio {
     numerator: Dyadic,
@@ -177,7 +177,7 @@ pub struct Ratio {
 }
 
 impl Ratio {
-    /// A quotient.
+    /// Builds a quotient.
     ///
     /// # Panics
     /// If the denominator is zero.
@@ -190,19 +190,19 @@ impl Ratio {
         }
     }
 
-    /// A finite `f64`, exactly.
+    /// Converts a finite `f64` exactly.
     pub fn from_f64(x: f64) -> Self {
         Self { numerator: Dyadic::new(x), denominator: Dyadic::new(1.0) }
     }
 
-    /// The nearest `f64`, up to a few rounding errors.
+    /// Returns the nearest `f64`, up to a few rounding errors.
     pub fn to_f64(&self) -> f64 {
         let ((n, i), (d, j)) = (self.numerator.leading(), self.denominator.leading());
         scale(n / d, i - j)
     }
 
-    /// The nearest `f64` of the square root, up to a few rounding errors, however small or large
-    /// the number itself is.
+    /// Returns the square root as the nearest `f64`, up to a few rounding errors. The number itself may be
+    /// outside of the range of `f64`.
     ///
     /// # Panics
     /// If the number is negative.
@@ -213,7 +213,7 @@ impl Ratio {
         scale((n / d * f64::from(1 + odd)).sqrt(), (i - j - odd) / 2)
     }
 
-    /// `self - other`, exactly.
+    /// Returns `self - other`, exactly.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         Self {
@@ -223,7 +223,7 @@ impl Ratio {
         }
     }
 
-    /// `self * other`, exactly.
+    /// Returns `self * other`, exactly.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         Self {
@@ -232,23 +232,23 @@ impl Ratio {
         }
     }
 
-    /// Whether it is zero.
+    /// Checks whether the number is zero.
     pub fn is_zero(&self) -> bool {
         self.numerator.is_zero()
     }
 
-    /// Whether it is less than zero.
+    /// Checks whether the number is negative.
     pub fn is_negative(&self) -> bool {
         self.numerator.is_negative()
     }
 
-    /// The absolute value.
+    /// Returns the absolute value.
     #[must_use]
     pub fn abs(self) -> Self {
         Self { numerator: self.numerator.abs(), denominator: self.denominator }
     }
 
-    /// Whether the absolute value is at most `bound`, exactly.
+    /// Checks whether the absolute value is at most `bound`, exactly.
     pub fn is_within(&self, bound: f64) -> bool {
         self.clone().abs() <= Self::from_f64(bound)
     }
@@ -279,49 +279,49 @@ impl Ord for Ratio {
 pub struct Vector(pub [Dyadic; 3]);
 
 impl Vector {
-    /// The vector of three `f64`, exactly.
+    /// Converts three `f64` exactly.
     pub fn new(v: DVec3) -> Self {
         Self(v.to_array().map(Dyadic::new))
     }
 
-    /// The scalar product.
+    /// Returns the scalar product.
     pub fn dot(&self, other: &Self) -> Dyadic {
         let [a, b, c] = [0, 1, 2].map(|i| &self.0[i] * &other.0[i]);
         &(&a + &b) + &c
     }
 
-    /// The vector product.
+    /// Returns the cross product.
     #[must_use]
     pub fn cross(&self, other: &Self) -> Self {
         let ([a, b, c], [x, y, z]) = (&self.0, &other.0);
         Self([&(b * z) - &(c * y), &(c * x) - &(a * z), &(a * y) - &(b * x)])
     }
 
-    /// The difference.
+    /// Returns the difference.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         Self([0, 1, 2].map(|i| &self.0[i] - &other.0[i]))
     }
 
-    /// The sum.
+    /// Returns the sum.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self([0, 1, 2].map(|i| &self.0[i] + &other.0[i]))
     }
 
-    /// A multiple.
+    /// Returns the multiple by a factor.
     #[must_use]
     pub fn times(&self, factor: &Dyadic) -> Self {
         Self([0, 1, 2].map(|i| &self.0[i] * factor))
     }
 
-    /// The nearest `f64` vector.
+    /// Returns the nearest `f64` vector.
     pub fn to_f64(&self) -> DVec3 {
         DVec3::from_array([0, 1, 2].map(|i| self.0[i].to_f64()))
     }
 }
 
-/// `R v + t`, exactly, for points `v` of a body.
+/// Returns the points `R v + t`, exactly, for points `v` of a body.
 pub fn place(rotation: DMat3, translation: DVec3, points: &[DVec3]) -> Vec<Vector> {
     let rows = rotation.transpose();
     let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(Vector::new);

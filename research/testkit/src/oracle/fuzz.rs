@@ -1,9 +1,7 @@
-//! What the fuzz targets do with their bytes. The corpora run through the same functions as
-//! ordinary tests.
+//! Implements the fuzz targets. Tests run the corpora through the same functions.
 //!
-//! Bytes become bodies in one of two ways, chosen by the first byte: as the bits of `f64` numbers,
-//! which reaches every special value and magnitude, or as small whole numbers, which reaches every
-//! tie.
+//! The first byte selects how bytes are converted to numbers: as bits of `f64`, which yields all special values
+//! and magnitudes, or as small integers, which yields all ties.
 
 mod motions;
 mod pairs;
@@ -28,17 +26,18 @@ use crate::oracle::tracked::{Finding, Lanes};
 pub use motions::motion;
 pub use pairs::{among, depth, distance, keep, within};
 
-/// Points of a body: more would only make a run slower.
+/// Maximum number of points of a body. More points would only slow down a run.
 const MOST_POINTS: usize = 64;
-/// Points of a body that is judged in exact arithmetic.
+/// Maximum number of points of a body that is judged in exact arithmetic.
 const MOST_JUDGED: usize = 10;
-/// Settings of a sequence.
+/// Maximum number of settings of a sequence.
 const MOST_STEPS: usize = 24;
 
-/// The files of a target's corpus, each printed before it is given out: who fails has named it.
+/// Returns the contents of the files of a target's corpus. Each name is printed first, so that a failure shows
+/// it.
 ///
 /// # Panics
-/// If there are fewer files than there should be.
+/// If there are fewer than `at_least` files.
 pub fn corpus(target: &str, at_least: usize) -> impl Iterator<Item = Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(target);
     let mut files: Vec<_> = fs::read_dir(&folder)
@@ -53,7 +52,7 @@ pub fn corpus(target: &str, at_least: usize) -> impl Iterator<Item = Vec<u8>> {
     })
 }
 
-/// Bytes, read one number after the other; zeros after the end.
+/// A reader of bytes as numbers. After the end it returns zeros.
 #[derive(Debug, Clone)]
 pub struct Reader<'a> {
     bytes: &'a [u8],
@@ -61,22 +60,25 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The first byte says how to read the others.
+    /// Builds a reader. The first byte selects the conversion.
     pub fn new(bytes: &'a [u8]) -> Self {
         let (mode, bytes) = bytes.split_first().unwrap_or((&0, &[]));
         Self { bytes, whole: mode % 2 == 1 }
     }
 
+    /// Checks whether all bytes were read.
     fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
+    /// Reads a byte.
     fn byte(&mut self) -> u8 {
         let (first, rest) = self.bytes.split_first().unwrap_or((&0, &[]));
         self.bytes = rest;
         *first
     }
 
+    /// Reads a number.
     fn number(&mut self) -> f64 {
         if self.whole {
             return f64::from(self.byte().cast_signed());
@@ -86,15 +88,18 @@ impl<'a> Reader<'a> {
         f64::from_le_bytes(bits)
     }
 
+    /// Reads a vector.
     fn vector(&mut self) -> DVec3 {
         DVec3::new(self.number(), self.number(), self.number())
     }
 
+    /// Reads up to `most` points.
     fn points(&mut self, most: usize) -> Vec<DVec3> {
         let count = usize::from(self.byte()) % (most + 1);
         (0..count).map(|_| self.vector()).collect()
     }
 
+    /// Reads a rotation.
     fn rotation(&mut self) -> DQuat {
         let bytes = [0; 4].map(|_| f64::from(self.byte().cast_signed()));
         let q = DQuat::from_array(bytes);
@@ -102,11 +107,11 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The convex hull of any points is a body that is the same when it is built again, whose vertices are
-/// among the points, and that leaves none farther away than it says.
+/// Checks the convex hull of any points: a second construction yields the same body, its vertices are among the
+/// points, and no point is farther from it than its hull error.
 ///
 /// # Panics
-/// If it is not.
+/// If a check fails.
 pub fn hull(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let mut points = Vec::new();
@@ -120,10 +125,10 @@ pub fn hull(bytes: &[u8]) {
     input::judge(&points, &body).unwrap_or_else(|e| panic!("{e}"));
 }
 
-/// A mesh is refused, or is a body with a closed surface whose vertices are its own.
+/// Checks that a mesh is rejected, or yields a body with a closed surface and the vertices of the mesh.
 ///
 /// # Panics
-/// If it is neither.
+/// If a check fails.
 pub fn from_mesh(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let tolerance = if reader.byte().is_multiple_of(2) { 0.0 } else { reader.number() };
@@ -140,10 +145,10 @@ pub fn from_mesh(bytes: &[u8]) {
     check_surface(&body);
 }
 
-/// A cast is refused, or its answer is approved by the exact judge, whatever the solver.
+/// Checks that a cast is rejected, or that its answer with every solver is approved by the exact judge.
 ///
 /// # Panics
-/// If an answer is wrong.
+/// If a check fails.
 pub fn cast(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((setting, bodies)) = read_setting(&mut reader) else { return };
@@ -160,11 +165,11 @@ pub fn cast(bytes: &[u8]) {
     }
 }
 
-/// Trackers with every focus and solver give the answers of one-off casts along a sequence of
+/// Checks that trackers with every focus and solver give the answers of single casts, along a sequence of
 /// changes of poses, direction and graze tolerance.
 ///
 /// # Panics
-/// If an answer is wrong, or one way of asking is refused and the other is not.
+/// If an answer is wrong, or only one of the queries is rejected.
 pub fn track(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((mut setting, bodies)) = read_setting(&mut reader) else { return };
@@ -181,11 +186,12 @@ pub fn track(bytes: &[u8]) {
     }
 }
 
-/// The faces of the difference give the answers of ordinary casts along a sequence of changes of places, direction
-/// and graze tolerance, and where a body has been turned, for which they are not.
+/// Checks that bulk casts by the faces of the difference give the answers of normal casts, along a sequence of
+/// changes of poses, direction and graze tolerance. The changes include rotations, for which the faces do not
+/// apply.
 ///
 /// # Panics
-/// If an answer is wrong, or one way of asking is refused and the other is not.
+/// If an answer is wrong, or only one of the queries is rejected.
 pub fn bulk(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((mut setting, bodies)) = read_setting(&mut reader) else { return };
@@ -208,8 +214,8 @@ pub fn bulk(bytes: &[u8]) {
     }
 }
 
-/// A clearance between solids is proven, with its proof approved in fractions and the distance that of
-/// the rule over all pairs of facets where both are few and not shrunk.
+/// Checks that a clearance between solids is proven. If the facets are few and not shrunk, the proof is checked
+/// in rational arithmetic, and the distance is compared with the rule over all pairs of facets.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -238,7 +244,7 @@ pub fn solids(bytes: &[u8]) {
         return;
     }
     let size = size([a.vertices(), b.vertices()], [&s, &t]);
-    // The distance of facets that are steep is accurate to so much of the size.
+    // The distance of steep facets is accurate to this fraction of the size.
     let slack = 1e-9 * size / direction.length();
     approve(&cast, &certificate, slack).unwrap_or_else(|e| panic!("{answer:?}: {e}"));
     let placed = |solid: &Solid, pose: &Pose| {
@@ -256,7 +262,7 @@ pub fn solids(bytes: &[u8]) {
     }
 }
 
-/// A convex body, a closed mesh or an open one.
+/// Reads a convex body, a closed mesh or an open one as a solid; `None` if it is invalid.
 fn read_solid(reader: &mut Reader) -> Option<Solid> {
     let kind = reader.byte() % 3;
     if kind == 0 {
@@ -271,7 +277,7 @@ fn read_solid(reader: &mut Reader) -> Option<Solid> {
     built(&vertices, &facets).ok()
 }
 
-/// Two bodies, their poses and a direction; the first byte says which body is turned.
+/// Reads two bodies, their poses and a direction. The first byte selects the rotated bodies.
 fn read_setting(reader: &mut Reader) -> Option<(Setting, Bodies)> {
     let turned = reader.byte();
     let (moving, fixed) = (reader.points(MOST_JUDGED), reader.points(MOST_JUDGED));
@@ -295,7 +301,7 @@ fn read_setting(reader: &mut Reader) -> Option<(Setting, Bodies)> {
     Some((setting, bodies))
 }
 
-/// One change of a setting; a pose that is out of range stays as it was.
+/// Changes a setting. A pose that is out of range remains unchanged.
 fn change(setting: &mut Setting, reader: &mut Reader) {
     match reader.byte() % 8 {
         0 => setting.direction = reader.vector(),
@@ -321,11 +327,12 @@ fn change(setting: &mut Setting, reader: &mut Reader) {
     }
 }
 
+/// Replaces a pose if the result is valid.
 fn replace(pose: &mut Pose, by: Result<Pose, PoseError>) {
     *pose = by.unwrap_or(*pose);
 }
 
-/// The surface is a sphere: Euler's formula, and every edge in two faces.
+/// Checks that the surface is a sphere: Euler's formula, and two faces at every edge.
 fn check_surface(body: &ConvexPolyhedron) {
     let (vertices, edges, faces) = (body.vertices().len(), body.edge_count(), body.face_count());
     match body.dimension() {

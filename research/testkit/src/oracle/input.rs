@@ -1,29 +1,24 @@
-//! Whether a body is the convex hull of the points that it was made of, within what it says.
+//! Compares a body with the convex hull of its input points.
 //!
-//! Notation. `I` is the convex hull of the input points, `K` that of the body's vertices, `h` its
-//! [`hull_error`](ConvexPolyhedron::hull_error). What is claimed of a body is
+//! Notation. `I` is the convex hull of the input points, `K` that of the body's vertices, and `h` its
+//! [`hull_error`](ConvexPolyhedron::hull_error). [`judge`] checks in exact arithmetic:
 //!
-//! ```text
-//! K <= I              (a) every vertex is one of the points, bit by bit
-//! I <= K + B(h)       (b) no point is farther from K than h
-//! ```
+//! - (a) `K <= I`: every vertex equals an input point, bit by bit.
+//! - (b) `I <= K + B(h)`: no point is farther from `K` than `h`. It suffices to check the points, because the
+//!   distance from a convex set is convex.
 //!
-//! [`judge`] holds both against exact arithmetic. (b) is asked of the points alone, as the distance from
-//! a convex set is convex: in `I` it is greatest at a point.
+//! Let `M_K` and `M_I` be the differences `{q - p}` of both bodies, and `h` the sum of their errors. Then `M_K
+//! <= M_I <= M_K + B(h)`, with the following consequences for the input:
 //!
-//! What this makes of the answers about `K`, which [`check`](crate::oracle::check) judges exactly: with `M_K`
-//! and `M_I` the differences `{q - p}` of both bodies and `h` the sum of their errors, `M_K <= M_I
-//! <= M_K + B(h)`. So:
+//! - *Upper bound.* A point of `M_K` on the line is a point of `M_I`, so the bound is exact for the input.
+//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`. Answers state `L
+//!   - h / n.d`, so their lower bounds are exact for the input.
+//! - *Separation.* If the shadow of `M_K` has a distance `margin` from the line, that of `M_I` has at least
+//!   `margin - h`. Answers state this value, and report `separated` if it is positive.
+//! - *Grazing.* The lateral overlap of the input is that of `K`, or up to `h` more.
 //!
-//! - *Upper bound.* A point of `M_K` on the line is one of `M_I`: it holds for the input exactly.
-//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`. Answers state
-//!   `L - h / n.d`, so their lower bounds hold for the input exactly.
-//! - *Separation.* Shadows of `M_K` that are a margin away from the line are at least `margin - h` away
-//!   for `M_I`. Answers state that, and call a positive one separated.
-//! - *Grazing.* The sideways overlap of the input is that of `K`, or up to `h` more.
-//!
-//! (a), (b) and the exact judgement of `K` are therefore a complete judgement of the input. For a sample
-//! the four consequences are held against the linear programme over the input points as well
+//! Therefore (a), (b) and the exact check of `K` judge the input completely. For a sample, the consequences are
+//! also compared with the linear programme over the input points
 //! ([`Judge::compare_with_oracle`](crate::oracle::check::Judge::compare_with_oracle)).
 
 use colltrans::ConvexPolyhedron;
@@ -33,24 +28,24 @@ use crate::oracle::check::Objection;
 use crate::oracle::distance::{distance, point_to_triangle_or_edges};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 
-/// The largest hull error that rounding explains, in multiples of the largest coordinate: 16
-/// tolerances of 64 roundings.
+/// Maximum hull error that rounding explains, in multiples of the largest coordinate: 16 tolerances of 64
+/// roundings.
 pub const ROUNDING: f64 = 512.0 * f64::EPSILON;
 
-/// How a body keeps its input.
+/// How far a body represents its input points.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kept {
-    /// Points that are no vertices.
+    /// Number of points that are not vertices.
     pub dropped: usize,
-    /// No dropped point is farther from the body than this, in the unit of the input.
+    /// The largest distance of a dropped point from the body, in the unit of the input.
     pub farthest: f64,
 }
 
-/// Holds a body against the points that it was made of.
+/// Compares a body with its input points.
 ///
 /// # Errors
-/// A vertex that is no point, a point that is farther from the body than it says, or an error that is
-/// larger than rounding makes it.
+/// [`Objection`] if a vertex is not an input point, a point is farther from the body than its hull error, or
+/// the hull error is larger than rounding explains.
 pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objection> {
     let claimed = body.hull_error();
     let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -81,7 +76,7 @@ pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objectio
     Ok(kept)
 }
 
-/// The points that are no vertices.
+/// Returns the indices of the points that are not vertices.
 fn dropped(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Vec<usize>, Objection> {
     let bits = |v: &DVec3| v.to_array().map(f64::to_bits);
     let mut is_vertex = vec![false; points.len()];
@@ -94,14 +89,14 @@ fn dropped(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Vec<usize>, Obje
     Ok((0..points.len()).filter(|&i| !is_vertex[i]).collect())
 }
 
-/// The squared distance of a point from the hull of others, exactly.
+/// Returns the exact squared distance of a point from the hull of other points.
 fn square_from(point: DVec3, others: &[DVec3]) -> Ratio {
     let others: Vec<Vector> = others.iter().map(|v| Vector::new(*v)).collect();
     distance(&[Vector::new(point)], &others).square
 }
 
-/// The faces as triangles. They only help to guess which vertices are near a point: what these prove is
-/// proven whether they make a surface or not.
+/// Returns the faces as triangles. They serve only to guess vertices near a point. The resulting proofs are
+/// valid even if the triangles do not form a surface.
 fn triangles(body: &ConvexPolyhedron) -> Vec<[DVec3; 3]> {
     let fan = |face: u32| {
         let corners: Vec<DVec3> =
@@ -112,8 +107,8 @@ fn triangles(body: &ConvexPolyhedron) -> Vec<[DVec3; 3]> {
     (0..body.face_count() as u32).flat_map(fan).collect()
 }
 
-/// The squared distance from the triangle that is nearest up to rounding, exactly: no less than that from
-/// the body.
+/// Returns the exact squared distance from the triangle that is nearest up to rounding. It is at least the
+/// squared distance from the body.
 fn square_from_nearest(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]]) -> Ratio {
     let away = |triangle: &&[DVec3; 3]| point_to_triangle_or_edges(point, **triangle);
     let nearest = triangles.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
@@ -121,8 +116,8 @@ fn square_from_nearest(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]
     square_from(point, nearest.map_or(vertices, |t| t))
 }
 
-/// Whether a point is in the tetrahedron of the farthest vertex and the triangle that is opposite up to
-/// rounding, exactly: then it is in the body.
+/// Checks exactly whether a point is in the tetrahedron of the farthest vertex and of the triangle that is
+/// opposite up to rounding. If so, it is in the body.
 fn is_in_some_tetrahedron(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]]) -> bool {
     let farther = |a: &&DVec3, b: &&DVec3| a.distance(point).total_cmp(&b.distance(point));
     let Some(&apex) = vertices.iter().max_by(farther) else { return false };
@@ -137,12 +132,12 @@ fn is_in_some_tetrahedron(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3;
     found.is_some_and(|&[b, c, d]| is_in_tetrahedron(point, [apex, b, c, d]))
 }
 
-/// The tetrahedron with each of its corners replaced by a point.
+/// Returns the tetrahedron with each of its corners in turn replaced by a point.
 fn faces_with(point: DVec3, corners: [DVec3; 4]) -> [[DVec3; 4]; 4] {
     std::array::from_fn(|k| std::array::from_fn(|i| if i == k { point } else { corners[i] }))
 }
 
-/// Exactly; never in one without a volume.
+/// Checks exactly whether a point is in a tetrahedron. A tetrahedron without volume contains no points.
 fn is_in_tetrahedron(point: DVec3, corners: [DVec3; 4]) -> bool {
     let volume = |corners: [DVec3; 4]| {
         let [a, b, c, d] = corners.map(Vector::new);

@@ -1,14 +1,14 @@
-//! Judges casts that keep a gap, in exact arithmetic.
+//! Judges casts with a minimum gap in exact arithmetic.
 //!
-//! Notation: `D(t)` is the distance of the bodies after a translation by `t d`, a convex function, from
-//! [`distance()`]; `g` is the gap, `m` the distance of the bodies' shadows along `d`, the least `D`. All numbers of an answer and of a
-//! proof are taken as exact.
+//! Notation. `D(t)` is the distance of the bodies after a translation by `t d`, a convex function, from
+//! [`distance()`]. `g` is the gap, and `m` the distance of the bodies' shadows along `d`, the minimum of `D`.
+//! All numbers of an answer or proof are taken as exact.
 //!
-//! - *Contact.* `D(lower) >= g >= D(upper)` and `lower <= upper`: as `D` is convex, the first `t` with `D(t) <= g` lies
-//!   between them, and nothing before `lower` has to be looked at.
-//! - *Plane.* `min_Q n.q - max_P n.p - lower n.d >= g |n|`, as squares.
-//! - *Apart.* `m > g`, and the plane says so.
-//! - Which of them it is, is for `m` to say, to within what rounding may decide.
+//! - *Contact.* `D(lower) >= g >= D(upper)` and `lower <= upper`. Because `D` is convex, the first `t` with
+//!   `D(t) <= g` is between them, and no value before `lower` needs to be checked.
+//! - *Plane.* `min_Q n.q - max_P n.p - lower n.d >= g |n|`, compared as squares.
+//! - *Separation.* `m > g`, and the plane proves it.
+//! - `m` determines the outcome, up to what rounding may decide.
 
 use colltrans::{Cast, Clearance, Contact, Outcome, Separation, WhyFree};
 use glam::DVec3;
@@ -27,10 +27,10 @@ macro_rules! require {
     };
 }
 
-/// How many noises rounding may take an outcome from what the shadows say.
+/// Maximum number of noises by which rounding may change the outcome given by the shadows.
 const UNSURE: f64 = 12.0;
 
-/// The truth about a cast.
+/// The exact data of a cast, with which answers are compared.
 #[derive(Debug)]
 pub struct Judge<'a> {
     cast: Cast<'a>,
@@ -39,19 +39,19 @@ pub struct Judge<'a> {
     fixed: Vec<Vector>,
     /// The distance of the shadows.
     pub shadows: f64,
-    /// What the library states as its rounding error, of the size with the gap.
+    /// The noise of the library, for the size including the gap.
     pub noise: f64,
 }
 
-/// What was seen of a contact's bounds.
+/// The difference of the bounds of a contact.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Width {
-    /// How far they are apart, in noises over `n.d`.
+    /// The difference of the bounds, in noises over `n.d`.
     pub noises: f64,
 }
 
 impl<'a> Judge<'a> {
-    /// Of answers to a cast.
+    /// Computes the exact data of a cast.
     pub fn new(cast: Cast<'a>) -> Self {
         let [p, q] = [cast.moving_pose(), cast.fixed_pose()];
         let moving = place(p.matrix(), p.translation(), cast.moving().vertices());
@@ -63,10 +63,10 @@ impl<'a> Judge<'a> {
         Self { cast, keep, moving, fixed, shadows, noise }
     }
 
-    /// Everything that an outcome says; how far apart its bounds are.
+    /// Checks an outcome with its proof. Returns the difference of its bounds.
     ///
     /// # Errors
-    /// The first statement of it that is not true.
+    /// [`Objection`] with the first statement that is false.
     pub fn check(&self, outcome: &Outcome) -> Result<Width, Objection> {
         let (m, g) = (self.shadows, self.keep);
         let tolerance = self.cast.options().graze_tolerance.max(8.0 * self.noise);
@@ -91,10 +91,10 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The same of a clearance.
+    /// Checks a clearance with its proof.
     ///
     /// # Errors
-    /// As [`Self::check`].
+    /// [`Objection`] with the first statement that is false.
     pub fn check_clearance(&self, clearance: &Clearance) -> Result<(), Objection> {
         let back = self.cast.reversed();
         let now = self.distance_at(&self.cast, 0.0);
@@ -116,12 +116,13 @@ impl<'a> Judge<'a> {
                 self.check_contact(&self.cast, &of.first)?;
                 self.check_contact(&back, &of.last)?;
                 let nearer = now < gap || self.is_slight() && now <= gap;
-                require!(nearer, "as far apart as the gap, and nearer is said");
+                require!(nearer, "not nearer than the gap, but reported as nearer");
             }
         }
         Ok(())
     }
 
+    /// Checks a contact with its proof.
     fn check_contact(&self, cast: &Cast, contact: &Contact) -> Result<Width, Objection> {
         let proof = contact.certificate;
         let [lower, upper] = [proof.lower, proof.upper];
@@ -134,7 +135,8 @@ impl<'a> Judge<'a> {
         if !upper.is_finite() {
             return Ok(Width::default());
         }
-        // Of a slight gap the end is that of the bodies as they are, which thin ones may have left again there.
+        // For a gap below the noise, the end is that of the nominal bodies, which thin bodies may already have
+        // left.
         let near = self.is_slight() || self.distance_at(cast, upper) <= gap;
         require!(near, "not as near as the gap at {upper:e}");
         require!(verified.is_finite(), "no end is verified");
@@ -142,18 +144,20 @@ impl<'a> Judge<'a> {
         Ok(Width { noises: (upper - lower) * slope / self.noise })
     }
 
-    /// Whether rounding leaves no room in the gap: there the upper bound is judged as that of an ordinary cast is.
+    /// Checks whether the gap is below the touching distance. Then the upper bound is judged as that of an
+    /// ordinary cast.
     fn is_slight(&self) -> bool {
         self.keep <= 8.0 * self.noise
     }
 
-    /// The square of the distance after a translation.
+    /// Returns the squared distance after a translation.
     fn distance_at(&self, cast: &Cast, t: f64) -> Ratio {
         let by = Vector::new(cast.direction()).times(&Dyadic::new(t));
         let moved: Vec<Vector> = self.moving.iter().map(|p| p.plus(&by)).collect();
         distance(&moved, &self.fixed).square
     }
 
+    /// Checks that a plane proves a lower bound.
     fn check_plane(&self, cast: &Cast, normal: DVec3, lower: f64) -> Result<(), Objection> {
         let n = Vector::new(normal);
         let along = n.dot(&Vector::new(cast.direction()));
@@ -164,6 +168,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
+    /// Checks that a plane proves a separation.
     fn check_separation(&self, of: &Separation) -> Result<(), Objection> {
         let n = Vector::new(of.normal);
         let along = self.along(&n);
@@ -174,7 +179,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// `min_Q n.q - max_P n.p`.
+    /// Returns `min_Q n.q - max_P n.p`.
     fn along(&self, n: &Vector) -> Dyadic {
         let nearest = self.fixed.iter().map(|q| n.dot(q)).min();
         let farthest = self.moving.iter().map(|p| n.dot(p)).max();
@@ -182,9 +187,9 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// The distance of the shadows along a direction, rounded once.
+/// Returns the distance of the shadows along a direction, rounded once.
 fn shadows(moving: &[Vector], fixed: &[Vector], direction: DVec3) -> f64 {
-    // Of a size near 1, that squares stay in range.
+    // Scaled to a length near 1, so that squares are in range.
     let scale = 2.0_f64.powi(-(direction.abs().max_element().log2().floor() as i32));
     let d = Vector::new(direction * scale);
     let square = d.dot(&d);
@@ -194,10 +199,12 @@ fn shadows(moving: &[Vector], fixed: &[Vector], direction: DVec3) -> f64 {
     distance(&flat(moving), &flat(fixed)).to_f64() / square.to_f64()
 }
 
+/// Returns the exact square.
 fn squared(x: f64) -> Dyadic {
     &Dyadic::new(x) * &Dyadic::new(x)
 }
 
+/// Returns the exact square as a ratio.
 fn square(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }

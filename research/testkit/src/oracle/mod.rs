@@ -1,15 +1,14 @@
-//! What the tests of `colltrans` are judged by: an oracle in exact rational arithmetic, an exact
-//! checker of certificates, and settings that are hard on purpose.
+//! Computes correct answers for the tests of `colltrans` in exact rational arithmetic.
 //!
-//! Data flow: [`settings`] -> the library -> [`input`], which holds bodies against the points that
-//! they were made of -> [`check`], which reads the answer against the
-//! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
-//! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
-//! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
-//! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
-//! turn by [`motion`], such that do not, asked in bulk, by [`still`], bodies that joints carry by [`path`], with little play by
-//! [`play`], burrs by
-//! [`cubes`]. Saved proofs, forged ones too, are judged by [`proofs`].
+//! A setting ([`settings`]) is given to the library. [`input`] compares its bodies with their input points.
+//! [`check`] compares the answer with the [`scene`] in exact coordinates ([`exact`]), and for a sample with the
+//! linear programme ([`simplex`]) and the exact lateral overlap ([`shadow`]). Other modules judge:
+//!
+//! - [`distance`] the algorithms for distances, [`nearest`] the library's distances and depths, [`keep`] casts
+//!   with a minimum gap,
+//! - [`among`] scene queries, [`still`] bulk casts without rotation,
+//! - [`motion`] rotating bodies, [`path`] bodies moved by joints, [`play`] both with little play,
+//! - [`cubes`] puzzles of cubes, [`proofs`] saved and forged proofs.
 
 pub mod among;
 pub mod check;

@@ -1,14 +1,14 @@
-//! Judges first contacts of bodies that turn, with the motion as the real function of its numbers.
+//! Judges first contacts of rotating bodies, with the motion as a real function of its numbers.
 //!
-//! Numbers are whole multiples of `2^-480`: sums are exact, products, roots, sine and cosine are off by a few
-//! of these units, which is nothing beside the `2^-60` of a size that an answer leaves. Nothing of the
-//! library is used but answers and vertices.
+//! Numbers are integer multiples of `2^-480`. Sums are exact. Products, roots, sine and cosine have errors of a
+//! few units, which are negligible compared with the accuracy of answers, `2^-60` of the size. Only the answers
+//! and the vertices of the library are used.
 //!
-//! - *Planes.* Each has the gap that is claimed of it, at its time.
-//! - *In between.* At times between two of them the plane between both, `(1 - x) n_a + x n_b`, the first one as
-//!   the moving body carries it along, or the one that is to prove it alone, parts the bodies.
-//! - *Meeting.* All triangles of the surface that proves a depth have the origin below them, where the real
-//!   motion has the bodies: as they surround it where they were computed, they do on the way from there.
+//! - *Planes.* Each plane has the claimed gap at its time.
+//! - *Intervals.* At times between two planes, the bodies are separated by the plane `(1 - x) n_a + x n_b`, by
+//!   the first plane rotated with the moving body, or by the plane that is marked as sufficient alone.
+//! - *Meeting.* The origin is below all triangles of the surface that proves a depth, in the positions of the
+//!   real motion. Because they enclose the origin in the computed positions, they do so continuously.
 
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
@@ -21,10 +21,10 @@ use glam::DVec3;
 use crate::oracle::check::Objection;
 use crate::oracle::exact::{self, Dyadic};
 
-/// Fractional bits.
+/// Number of fractional bits.
 const BITS: usize = 480;
 
-/// Times in between two planes that are looked at.
+/// Number of intervals between two planes at whose ends they are checked.
 const BETWEEN: i64 = 6;
 
 /// A multiple of `2^-480`.
@@ -32,6 +32,7 @@ const BETWEEN: i64 = 6;
 pub struct Fixed(IBig);
 
 impl Fixed {
+    /// Converts an `f64`. Bits below `2^-480` are cut off if there are any.
     fn new(x: f64) -> Self {
         let exact = Dyadic::new(x);
         let finest = -(BITS as i32);
@@ -41,23 +42,27 @@ impl Fixed {
         Self(IBig::ZERO)
     }
 
+    /// Converts an integer.
     fn whole(n: i64) -> Self {
         Self(IBig::from(n) << BITS)
     }
 
+    /// Returns the nearest `f64`.
     fn to_f64(&self) -> f64 {
         self.0.to_f64().value() * 2.0_f64.powi(-(BITS as i32))
     }
 
+    /// Returns zero.
     fn zero() -> Self {
         Self(IBig::ZERO)
     }
 
+    /// Returns the quotient.
     fn over(&self, by: &Self) -> Self {
         Self((self.0.clone() << BITS) / by.0.clone())
     }
 
-    /// Newton's method on whole numbers, from above.
+    /// Returns the square root, by Newton's method on integers, from above.
     fn sqrt(&self) -> Self {
         let target = self.0.clone() << BITS;
         if target <= IBig::ZERO {
@@ -104,26 +109,32 @@ impl Mul for &Fixed {
 
 type Vector = [Fixed; 3];
 
+/// Converts a vector.
 fn vector(v: DVec3) -> Vector {
     v.to_array().map(Fixed::new)
 }
 
+/// Returns the sum.
 fn plus(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|k| a[k].clone() + b[k].clone())
 }
 
+/// Returns the difference.
 fn minus(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|k| a[k].clone() - b[k].clone())
 }
 
+/// Returns the multiple by a factor.
 fn times(a: &Vector, by: &Fixed) -> Vector {
     a.each_ref().map(|x| x * by)
 }
 
+/// Returns the scalar product.
 fn dot(a: &Vector, b: &Vector) -> Fixed {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
+/// Returns the cross product.
 fn cross(a: &Vector, b: &Vector) -> Vector {
     let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
     [part(1, 2), part(2, 0), part(0, 1)]
@@ -143,7 +154,7 @@ static PI: LazyLock<Fixed> = LazyLock::new(|| {
     &Fixed::whole(16) * &arctan(5) - &Fixed::whole(4) * &arctan(239)
 });
 
-/// Sine and cosine, by Taylor's series of what whole turns leave.
+/// Returns sine and cosine, by their Taylor series after removing full turns.
 fn sin_cos(angle: &Fixed) -> [Fixed; 2] {
     let turn = &Fixed::whole(2) * &PI;
     let turns: IBig = angle.0.clone() / turn.0.clone();
@@ -158,28 +169,29 @@ fn sin_cos(angle: &Fixed) -> [Fixed; 2] {
     sums
 }
 
-/// What a body does, by the numbers that define it: from `start` it turns about an axis through a point that
-/// is `arm` back from the origin of its frame, by `angle`, and moves by `way`, in a unit of time.
+/// The motion of a body, by the numbers that define it. From `start` the body rotates by `angle` about an axis,
+/// and translates by `way`, in a unit of time. The vector `arm` leads from a point of the axis to the origin of
+/// the body's frame.
 #[derive(Debug, Clone)]
 pub struct Spin {
-    /// Where it is at time 0.
+    /// The pose at time 0.
     pub start: Pose,
-    /// From a point of the axis to the origin of the body's frame.
+    /// The vector from a point of the axis to the origin of the body's frame.
     pub arm: DVec3,
-    /// Of any length near 1.
+    /// The axis, with a length near 1.
     pub axis: DVec3,
-    /// In radians.
+    /// The angle in radians.
     pub angle: f64,
-    /// Of the axis.
+    /// The translation of the axis.
     pub way: DVec3,
 }
 
-/// How a body turns a vector in a span of time.
+/// Returns the rotation of a body in a time span.
 fn turned_by(spin: &Spin, span: &Fixed) -> impl Fn(&Vector) -> Vector + use<> {
     turn_about(spin.axis, &(&Fixed::new(spin.angle) * span))
 }
 
-/// The rotation about an axis, of any length near 1, by an angle.
+/// Returns the rotation about an axis of a length near 1 by an angle.
 fn turn_about(axis: DVec3, angle: &Fixed) -> impl Fn(&Vector) -> Vector + use<> {
     let axis = vector(axis);
     let length = dot(&axis, &axis).sqrt();
@@ -192,12 +204,12 @@ fn turn_about(axis: DVec3, angle: &Fixed) -> impl Fn(&Vector) -> Vector + use<> 
     }
 }
 
-/// The vertices of a body where the real motion has them.
+/// Returns the vertices of a body at a time of the real motion.
 fn placed(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
     moved(body.vertices(), spin, &Fixed::new(time))
 }
 
-/// Points of a body where the real motion has them, so long after it has begun.
+/// Returns points of a body at the time `t` after the start of the real motion.
 fn moved(points: &[DVec3], spin: &Spin, t: &Fixed) -> Vec<Vector> {
     let turned = turned_by(spin, t);
     let arm = vector(spin.arm);
@@ -211,33 +223,33 @@ fn moved(points: &[DVec3], spin: &Spin, t: &Fixed) -> Vec<Vector> {
     points.iter().map(place).collect()
 }
 
-/// Fractional bits of points that others calculate with.
+/// Number of fractional bits of returned points.
 const CUT: usize = 200;
 
-/// Numbers without their last bits, for arithmetic that is exact and not longer than it has to be.
+/// Rounds numbers to fewer bits, which shortens later exact arithmetic.
 fn cut(points: Vec<Vector>) -> Vec<exact::Vector> {
     let short = |x: Fixed| Dyadic::from_units(x.0 >> (BITS - CUT), -(CUT as i32));
     points.into_iter().map(|p| exact::Vector(p.map(short))).collect()
 }
 
-/// Returns points of a body where the real motion has them at a time, which has begun at another one: to `2^-200`.
+/// Returns points of a body at a time of the real motion, which starts at `since`, to `2^-200`.
 pub fn points_at(points: &[DVec3], spin: &Spin, since: f64, time: f64) -> Vec<exact::Vector> {
     cut(moved(points, spin, &(Fixed::new(time) - Fixed::new(since))))
 }
 
-/// A joint on the way to a body.
+/// A joint in the chain that moves a body.
 #[derive(Debug, Clone)]
 pub struct Stage {
-    /// Where it is in what it stands on.
+    /// The pose of the joint in its parent.
     pub origin: Pose,
-    /// Its axis, and whether it turns: none if it is fixed.
+    /// The axis, and whether the joint rotates; `None` if it is fixed.
     pub axis: Option<(DVec3, bool)>,
-    /// Its value at a row and at the next one.
+    /// The values of the joint at a row and at the next one.
     pub values: [f64; 2],
 }
 
-/// Returns points of a body that joints carry, the last of which it has a pose on, at a share of the way from a row to
-/// the next one: to `2^-200`.
+/// Returns points of a body moved by joints, at a fraction of the way from a row to the next one, to `2^-200`.
+/// The body has `pose` in the frame of the last joint.
 pub fn points_carried(
     points: &[DVec3],
     pose: &Pose,
@@ -271,28 +283,30 @@ pub fn points_carried(
     cut(all)
 }
 
-/// Two bodies and what they do.
+/// Two bodies and their motions.
 #[derive(Debug)]
 pub struct Judge<'a> {
     /// The moving and the fixed body.
     pub bodies: [&'a ConvexPolyhedron; 2],
     /// Their motions.
     pub spins: [Spin; 2],
-    /// The gap to be kept; negative a depth that is tolerated.
+    /// The minimum gap; if negative, the tolerated depth.
     pub keep: f64,
 }
 
 impl Judge<'_> {
+    /// Returns the vertices of both bodies at a time.
     fn places(&self, time: f64) -> [Vec<Vector>; 2] {
         [0, 1].map(|k| placed(self.bodies[k], &self.spins[k], time))
     }
 
-    /// Whether a normal of any length leaves more than the gap to be kept, and so much more.
+    /// Checks whether a plane with this normal leaves at least the minimum gap plus `more`.
     fn parts(&self, places: &[Vec<Vector>; 2], normal: &Vector, more: f64) -> bool {
         self.left(places, normal, more).is_some_and(|left| left >= Fixed::zero())
     }
 
-    /// What a normal leaves beside the gap to be kept, and so much more, times its length.
+    /// Returns the remaining distance along a normal beyond the minimum gap plus `more`, times the length of
+    /// the normal.
     fn left(&self, [p, q]: &[Vec<Vector>; 2], normal: &Vector, more: f64) -> Option<Fixed> {
         let low = q.iter().map(|x| dot(normal, x)).reduce(|a, b| if b < a { b } else { a });
         let high = p.iter().map(|x| dot(normal, x)).reduce(|a, b| if b > a { b } else { a });
@@ -301,10 +315,10 @@ impl Judge<'_> {
         Some(low - high - asked)
     }
 
-    /// Whether an answer is right, by its proof.
+    /// Checks an answer by its proof.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// [`Objection`] with the first statement that is false.
     pub fn check(&self, outcome: &MotionOutcome) -> Result<(), Objection> {
         let proof = outcome.proof();
         let object = |what: String| Err(Objection(what));
@@ -314,7 +328,7 @@ impl Judge<'_> {
                 let left = left.map_or(f64::NEG_INFINITY, |left| left.to_f64());
                 if left < 0.0 {
                     return object(format!(
-                        "the plane at {} has no gap of {:e}: {left:e} is left",
+                        "the plane at {} does not have a gap of {:e}: {left:e} remains",
                         plane.time, plane.gap
                     ));
                 }
@@ -343,6 +357,7 @@ impl Judge<'_> {
         }
     }
 
+    /// Checks the interval between two planes.
     fn between(&self, a: &PlaneAt, b: &PlaneAt) -> Result<(), Objection> {
         for k in 1..BETWEEN {
             let share = k as f64 / BETWEEN as f64;
@@ -363,15 +378,16 @@ impl Judge<'_> {
                 self.parts(&places, &mixed, 0.0) || self.parts(&places, &carried(), 0.0)
             };
             if !parts {
-                return Err(Objection(format!("no plane parts the bodies at {time}")));
+                return Err(Objection(format!("no plane separates the bodies at {time}")));
             }
         }
         Ok(())
     }
 
+    /// Checks the proof of a meeting.
     fn meets(&self, meeting: Option<&Meeting>) -> Result<(), Objection> {
         let Some(Meeting { time, met }) = meeting else {
-            return Err(Objection("that the bodies meet is not proven".into()));
+            return Err(Objection("the proof of the meeting is missing".into()));
         };
         let places = self.places(*time);
         let difference = |pair: &colltrans::VertexPair| {

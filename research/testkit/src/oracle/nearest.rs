@@ -1,13 +1,14 @@
-//! Judges answers about distance and depth, in exact arithmetic.
+//! Judges distances and depths in exact arithmetic.
 //!
-//! Notation as in [`mod@distance`]. Every number of an answer and of a proof is taken as exact.
+//! Notation as in [`mod@distance`]. Every number of an answer or proof is taken as exact.
 //!
 //! - *Bounds.* `lower^2 <= |v|^2 <= upper^2`, with `v` from [`distance()`].
-//! - *Plane.* `min_Q n.q - max_P n.p >= gap |n|`, as squares.
-//! - *Points.* The weighted means of the pairs are at most the stated distance apart; of a distance of 0 the
+//! - *Plane.* `min_Q n.q - max_P n.p >= gap |n|`, compared as squares.
+//! - *Points.* The weighted means of the pairs are at most the stated distance apart. For a distance of 0 the
 //!   pairs enclose the origin.
-//! - *Depth.* `M` has a face across one of the products of two differences of vertices, of `P`, of `Q` or
-//!   one of each; so the least of `max_M n.m / |n|` over all of them, both ways, is the depth.
+//! - *Depth.* The normal of a face of `M` is the cross product of two differences of vertices, of `P`, of `Q`
+//!   or one of each. Therefore the minimum of `max_M n.m / |n|` over all such products, with both signs, is the
+//!   depth.
 
 use colltrans::{Depth, Distance, NearPoints, Pair, PlaneGap, VertexPair, Within};
 
@@ -27,7 +28,7 @@ macro_rules! require {
     };
 }
 
-/// The truth about two placed bodies.
+/// The exact distance of two placed bodies, with which answers are compared.
 #[derive(Debug)]
 pub struct Judge<'a> {
     pair: Pair<'a>,
@@ -35,12 +36,12 @@ pub struct Judge<'a> {
     fixed: Vec<Vector>,
     /// The exact distance.
     pub truth: distance::Distance,
-    /// What the library states as its rounding error, `32 u S`.
+    /// The noise of the library, `32 u S`.
     pub noise: f64,
 }
 
 impl<'a> Judge<'a> {
-    /// Of answers about a pair.
+    /// Computes the exact distance of a pair.
     pub fn new(pair: Pair<'a>) -> Self {
         let [p, q] = [pair.moving_pose(), pair.fixed_pose()];
         let moving = place(p.matrix(), p.translation(), pair.moving().vertices());
@@ -51,10 +52,10 @@ impl<'a> Judge<'a> {
         Self { pair, moving, fixed, truth, noise }
     }
 
-    /// Everything that an answer says; how far apart its bounds are, in noises.
+    /// Checks a distance with its proof. Returns the difference of its bounds in noises.
     ///
     /// # Errors
-    /// The first statement of it that is not true.
+    /// [`Objection`] with the first statement that is false.
     pub fn check(&self, answer: &Distance) -> Result<f64, Objection> {
         let [lower, upper] = answer.bounds();
         require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e}");
@@ -81,10 +82,10 @@ impl<'a> Judge<'a> {
         Ok((upper - lower) / self.noise)
     }
 
-    /// An answer to whether the bodies are closer than a length.
+    /// Checks the answer whether the bodies are closer than a length.
     ///
     /// # Errors
-    /// As [`Self::check`].
+    /// [`Objection`] with the first statement that is false.
     pub fn check_within(&self, length: f64, answer: &Within) -> Result<(), Objection> {
         let truth = self.truth.to_f64();
         match answer {
@@ -106,10 +107,10 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Both bounds of a depth, and their proof; how far apart they are, in noises.
+    /// Checks the bounds of a depth and their proof. Returns the difference of the bounds in noises.
     ///
     /// # Errors
-    /// As [`Self::check`].
+    /// [`Objection`] with the first statement that is false.
     pub fn check_depth(&self, answer: &Depth) -> Result<f64, Objection> {
         let [lower, upper] = answer.bounds();
         require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e} of a depth");
@@ -126,10 +127,10 @@ impl<'a> Judge<'a> {
         Ok((upper - lower) / self.noise)
     }
 
-    /// The same against the truth, for small bodies.
+    /// Compares the bounds of a depth with the exact depth, for small bodies.
     ///
     /// # Errors
-    /// As [`Self::check`].
+    /// [`Objection`] with the bound that is false.
     pub fn compare_depth(&self, answer: &Depth) -> Result<(), Objection> {
         let truth = if self.truth.intersects() {
             depth(&self.moving, &self.fixed, self.noise)
@@ -143,6 +144,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
+    /// Checks the plane of a lower bound.
     fn check_plane(&self, plane: &PlaneGap) -> Result<(), Objection> {
         let PlaneGap { normal, gap } = *plane;
         require!((normal.length() - 1.0).abs() < 1e-14, "the normal {normal} is not a unit vector");
@@ -159,11 +161,12 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// `min_Q n.q - max_P n.p`.
+    /// Returns `min_Q n.q - max_P n.p`.
     fn along(&self, n: &Vector) -> Dyadic {
         along([&self.moving, &self.fixed], n)
     }
 
+    /// Checks the points of an upper bound.
     fn check_points(&self, near: &NearPoints) -> Result<(), Objection> {
         let NearPoints { pairs, weights, distance } = near;
         let differences = pairs.map(|pair| self.difference(pair));
@@ -189,13 +192,14 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
+    /// Returns the difference `q - p` of a pair of vertices.
     fn difference(&self, pair: VertexPair) -> Vector {
         self.fixed[pair.fixed.index()].minus(&self.moving[pair.moving.index()])
     }
 }
 
-/// Returns the square of the depth of bodies that meet, by all products of two differences of vertices; `noise` is one of
-/// their rounding errors.
+/// Returns the squared depth of intersecting bodies, from all cross products of two differences of vertices.
+/// `noise` is their rounding error.
 ///
 /// # Panics
 /// If a body has no points.
@@ -208,7 +212,7 @@ pub fn depth(moving: &[Vector], fixed: &[Vector], noise: f64) -> Ratio {
     let all: Vec<&Vector> = p.iter().chain(&q).collect();
     let [near_by, far_off] = [moving, fixed]
         .map(|body| body.iter().map(|x| x.minus(&moving[0]).to_f64()).collect::<Vec<_>>());
-    // What rounding leaves far above the least need not be looked at exactly.
+    // Candidates that exceed the minimum by more than rounding are not evaluated exactly.
     let reach = |n: DVec3| {
         let far = far_off.iter().map(|x| n.dot(*x)).fold(f64::NEG_INFINITY, f64::max);
         let near = near_by.iter().map(|x| n.dot(*x)).fold(f64::INFINITY, f64::min);
@@ -236,7 +240,7 @@ pub fn depth(moving: &[Vector], fixed: &[Vector], noise: f64) -> Ratio {
     depth.unwrap_or_else(|| Ratio::from_f64(0.0))
 }
 
-/// The lesser of a depth and that along a normal.
+/// Returns the smaller of a squared depth and that along a normal.
 fn least_along(bodies: [&[Vector]; 2], depth: Option<Ratio>, n: &Vector) -> Option<Ratio> {
     let square = n.dot(n);
     if square.is_zero() {
@@ -248,14 +252,14 @@ fn least_along(bodies: [&[Vector]; 2], depth: Option<Ratio>, n: &Vector) -> Opti
     Some(depth.map_or(here.clone(), |depth| depth.min(here)))
 }
 
-/// `min_Q n.q - max_P n.p`.
+/// Returns `min_Q n.q - max_P n.p`.
 fn along([moving, fixed]: [&[Vector]; 2], n: &Vector) -> Dyadic {
     let nearest = fixed.iter().map(|q| n.dot(q)).min();
     let farthest = moving.iter().map(|p| n.dot(p)).max();
     &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
 }
 
-/// Whether a tetrahedron that is not flat contains the origin.
+/// Checks whether a tetrahedron with a volume contains the origin.
 fn enclose([a, b, c, d]: &[Vector; 4]) -> bool {
     let volumes = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]].map(|[x, y, z]| x.dot(&y.cross(z)));
     let some = volumes.iter().any(|v| !v.is_zero());
@@ -263,6 +267,7 @@ fn enclose([a, b, c, d]: &[Vector; 4]) -> bool {
     some && (none_less || volumes.iter().all(|v| !v.is_positive()))
 }
 
+/// Returns the exact square.
 fn square(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }

@@ -1,8 +1,8 @@
-//! Random arms on random paths, and a judge of what is said of them: many times, one by one.
+//! Draws random arms on random paths, and judges the answers at many times.
 //!
-//! Places are products of plain matrices with the sine and cosine of the platform, so they are off by some 1e-15 of
-//! the size; nothing of the library's chains is used. At each time before `lower` all pairs have to be apart, at
-//! `upper` the one that is named has to overlap.
+//! Positions are products of plain matrices with the sine and cosine of the platform, with errors of some 1e-15
+//! of the size. The kinematic chains of the library are not used. Before `lower` all pairs must be disjoint. At
+//! `upper` the reported pair must overlap.
 
 use std::borrow::Cow;
 
@@ -17,40 +17,40 @@ use crate::random::Random;
 use crate::shapes::{Mesh, random_hull};
 use crate::solids::{bumpy_ball, washer};
 
-/// How much less than what is claimed is believed: what the judge's own places are off, in sizes of some units.
+/// Tolerance for the errors of the judge's own positions.
 const OFF: f64 = 1e-12;
 
 /// A body of either kind.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "a mechanism has a few of them")]
+#[expect(clippy::large_enum_variant, reason = "a mechanism has few bodies")]
 pub enum Body {
-    /// A convex one.
+    /// A convex body.
     Convex(ConvexPolyhedron),
-    /// Any other.
+    /// A solid.
     Solid(Solid),
 }
 
 /// A mechanism with bodies, on a path.
 #[derive(Debug, Clone)]
 pub struct Arm {
-    /// Frames and joints.
+    /// The frames with their joints.
     pub frames: Vec<Frame>,
-    /// Values of the joints.
+    /// The values of the joints, one row each.
     pub rows: Vec<Vec<f64>>,
-    /// Frames, none for the world, and bodies where they are in these.
+    /// The bodies, each with its frame (`None` is the world) and its pose in it.
     pub bodies: Vec<(Option<usize>, Body, Pose)>,
-    /// Which are not to meet.
+    /// The pairs of bodies to check.
     pub pairs: Vec<[usize; 2]>,
-    /// The gap to be kept.
+    /// The minimum gap.
     pub keep: f64,
 }
 
 impl Arm {
-    /// An arm of one to seven joints, turning and sliding, on a path of a few rows through a few obstacles; of solids
-    /// that are not convex, if those are asked for.
+    /// Draws an arm of one to seven joints, rotating and sliding, on a path of a few rows through a few
+    /// obstacles. With `solids`, bodies may be solids that are not convex.
     ///
     /// # Panics
-    /// Never: what is made is a body, or a pose.
+    /// Never, because all numbers yield valid bodies and poses.
     pub fn random(seed: u64, solids: bool) -> Self {
         let mut random = Random::new(seed ^ 0x0a23_77f1);
         let count = 1 + random.index(7);
@@ -94,7 +94,7 @@ impl Arm {
         let carried = bodies.len();
         let mut arm = Self { frames, rows: all, bodies, pairs: Vec::new(), keep: 0.0 };
         for _ in 0..=random.index(3) {
-            // Where a body comes by, more or less.
+            // The obstacle is near a position of a body on the path.
             let size = random.pick(&[0.02, 0.2, 0.5]);
             let place = Place { row: random.index(rows), share: random.unit() };
             let frame = arm.bodies[random.index(carried)].0.unwrap_or(0);
@@ -112,7 +112,7 @@ impl Arm {
         arm
     }
 
-    /// Where all frames are, by plain matrices.
+    /// Returns the transformation of each frame, by plain matrices.
     pub fn places(&self, place: Place) -> Vec<DAffine3> {
         let rows = &self.rows;
         let next = &rows[(place.row + 1).min(rows.len() - 1)];
@@ -138,10 +138,11 @@ impl Arm {
         found
     }
 
-    /// By how much two bodies are apart, or overlap if that is negative; solids that overlap by an infinite depth.
+    /// Returns the distance of two bodies, or the negative depth if they overlap. For overlapping solids it is
+    /// negative infinity.
     ///
     /// # Errors
-    /// No pose, or no answer of the library.
+    /// [`Objection`] if a pose is invalid, or the library has no answer.
     pub fn gap(&self, pair: [usize; 2], place: Place) -> Result<f64, Objection> {
         let places = self.places(place);
         let pose = |k: usize| {
@@ -172,10 +173,10 @@ impl Arm {
         }
     }
 
-    /// Asks, and judges the answer at so many times before a contact.
+    /// Computes the first contact, and judges the answer at `samples` times before it.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// [`Objection`] with the first statement that is false.
     pub fn judge(&self, samples: usize) -> Result<PathOutcome, Objection> {
         let object = |what: &dyn std::fmt::Display| Objection(what.to_string());
         let mechanism = Mechanism::new(self.frames.clone()).map_err(|e| object(&e))?;
@@ -225,6 +226,7 @@ impl Arm {
 }
 
 impl Body {
+    /// Returns the body as a solid.
     fn solid(&self) -> Cow<'_, Solid> {
         match self {
             Self::Convex(body) => Cow::Owned(Solid::from_convex(body).expect("a solid")),
@@ -233,6 +235,7 @@ impl Body {
     }
 }
 
+/// Draws a body of about this size.
 fn body(random: &mut Random, size: f64, solids: bool) -> Body {
     let mesh: Mesh = match random.index(if solids { 4 } else { 2 }) {
         0 | 1 => {

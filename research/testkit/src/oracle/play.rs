@@ -1,7 +1,8 @@
-//! Convex bodies that turn with little play between them: long screws of two bodies, and arms of joints near a touch.
+//! Draws convex bodies that rotate with little play: pairs in long screw motions, and arms near contact.
 //!
-//! Each setting leaves a play of 1e-2 to 1e-9 between bodies of size 1, for 1 to 100 turns. A plane that parts them has
-//! no room to wait in, so a search that goes from time to time takes steps as short as the root of the play.
+//! Each setting has a play of 1e-2 to 1e-9 between bodies of size 1, for 1 to 100 turns. A separating plane is
+//! therefore valid for short times only, so a search through time steps has steps of the order of the root of
+//! the play.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +16,7 @@ use crate::oracle::path::{Arm, Body};
 use crate::random::Random;
 use crate::shapes::{prism, random_hull};
 
-/// Kinds of screws.
+/// The kinds of screw motions.
 pub const KINDS: [&str; 8] = [
     "one rigid motion",
     "one spin, sliding along the axis",
@@ -27,50 +28,52 @@ pub const KINDS: [&str; 8] = [
     "one above the other",
 ];
 
-/// Plays.
+/// The plays.
 const PLAYS: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 
-/// Numbers of turns.
+/// The numbers of turns.
 const TURNS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 50.0, 100.0];
 
-/// Times before a contact at which a judge looks.
+/// Number of times before a contact at which answers are checked.
 const SAMPLES: u32 = 40;
 
-/// Two convex bodies that turn with little play.
+/// Two convex bodies that rotate with little play.
 #[derive(Debug, Clone)]
 pub struct Screw {
     /// The moving and the fixed body.
     pub bodies: [ConvexPolyhedron; 2],
-    /// What they do.
+    /// Their motions.
     pub motions: [Motion; 2],
-    /// The play when the motion begins.
+    /// The play at the start of the motion.
     pub play: f64,
     /// The number of turns of the moving body.
     pub turns: f64,
 }
 
+/// Draws a pin of radius 0.5 along z.
 fn pin(random: &mut Random) -> ConvexPolyhedron {
     let sides = random.pick(&[12, 30, 48, 64]);
     let mesh = prism(sides, 1.0).mapped(|v| v * DVec3::new(0.5, 0.5, 1.0));
     ConvexPolyhedron::from_points(&mesh.vertices).expect("a pin")
 }
 
+/// Returns the unit cube centred at the origin.
 fn cube() -> ConvexPolyhedron {
     ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).expect("a cube")
 }
 
 impl Screw {
-    /// One of a kind.
+    /// Draws a setting of a kind.
     ///
     /// # Panics
-    /// Never: all numbers make bodies and motions.
+    /// Never, because all numbers yield valid bodies and motions.
     pub fn random(kind: usize, seed: u64) -> Self {
         let mut random = Random::stream(seed, &[0x5c_4e77, kind as u64]);
         let (play, turns) = (random.pick(&PLAYS), random.pick(&TURNS));
         let angle = TAU * turns * random.pick(&[-1.0, 1.0]);
         let (rise, q) = (random.range(-1.0, 1.0), random.rotation());
         let place = Pose::new(q, random.vector()).expect("a pose");
-        // Poses and axes are given in the frame of the place.
+        // Poses and axes are given in the frame of `place`.
         let pose =
             |t: DVec3, turn: DQuat| Pose::new(q * turn, place.transform_point(t)).expect("a pose");
         let screw = |start: Pose, point: DVec3, axis: DVec3, angle: f64, rise: f64| {
@@ -130,10 +133,10 @@ impl Screw {
         Self { bodies, motions, play, turns }
     }
 
-    /// Asks, checks the proof and looks at times before a contact.
+    /// Computes the first contact, verifies the proof, and checks times before the contact.
     ///
     /// # Errors
-    /// What is wrong with the answer.
+    /// [`Objection`] with the first statement that is false.
     pub fn judge(&self) -> Result<MotionOutcome, Objection> {
         let object = |what: &dyn std::fmt::Display| Objection(what.to_string());
         let [p, q] = &self.bodies;
@@ -149,7 +152,7 @@ impl Screw {
             _ => [1.0, f64::INFINITY],
         };
         if said != proven {
-            return Err(Objection(format!("said is {said:?}, proven {proven:?}")));
+            return Err(Objection(format!("reported {said:?}, proven {proven:?}")));
         }
         for k in 0..SAMPLES {
             let time = said[0] * f64::from(k) / f64::from(SAMPLES);
@@ -167,10 +170,11 @@ impl Screw {
     }
 }
 
-/// An arm of one to seven joints about parallel axes, whose last link slides over a table with little play.
+/// Draws an arm of one to seven joints about parallel axes, whose last link slides above a table with little
+/// play.
 ///
 /// # Panics
-/// Never: all numbers make an arm.
+/// Never, because all numbers yield a valid arm.
 pub fn slider(seed: u64) -> Arm {
     let mut random = Random::stream(seed, &[0x511d_e400]);
     let (play, most) = (random.pick(&PLAYS), random.pick(&[0.3, 1.0, 3.0, 6.0]));
@@ -194,7 +198,7 @@ pub fn slider(seed: u64) -> Arm {
     let table =
         ConvexPolyhedron::cuboid(DVec3::new(-9.0, -9.0, top - 1.0), DVec3::new(9.0, 9.0, top))
             .expect("a table");
-    // All stand aslant, so that nothing is along an axis of the world.
+    // The setting is rotated, so that nothing is parallel to an axis of the world.
     let slant = Pose::new(random.rotation(), random.vector()).expect("a pose");
     let base = Frame { parent: None, origin: slant, joint: Joint::Fixed };
     let shifted = |frame: Frame| Frame { parent: Some(frame.parent.map_or(0, |k| k + 1)), ..frame };
@@ -212,11 +216,11 @@ pub fn slider(seed: u64) -> Arm {
     }
 }
 
-/// An arm near a touch: its last joint turns a pin beside a plate by many turns, the others rest or, with the plate on
-/// the frame before, move. The play is between pin and plate.
+/// Draws an arm near contact. Its last joint rotates a pin next to a plate by many turns. The other joints
+/// rest, or move if the plate is attached to the frame before. The play is between pin and plate.
 ///
 /// # Panics
-/// Never: all numbers make an arm.
+/// Never, because all numbers yield a valid arm.
 pub fn chain(seed: u64) -> Arm {
     let mut random = Random::stream(seed, &[0x00c4_a125]);
     let (play, turns) = (random.pick(&PLAYS), random.pick(&[0.1, 0.5, 1.0, 3.0]));
@@ -232,7 +236,8 @@ pub fn chain(seed: u64) -> Arm {
     let last = frames.len();
     let origin = Pose::new(random.rotation(), random.vector()).expect("a pose");
     frames.push(Frame { parent: last.checked_sub(1), origin, joint: Joint::Turning(DVec3::Z) });
-    // The plate stands in the frame before the last, which the last one's origin leads to.
+    // The pose of the plate is given in the frame before the last one, to which the origin of the last one
+    // refers.
     let carried = random.one_in(2);
     let plate =
         ConvexPolyhedron::cuboid(DVec3::new(0.5 + play, -1.0, -1.5), DVec3::new(0.8, 1.0, 1.5))

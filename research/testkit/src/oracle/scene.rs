@@ -1,9 +1,9 @@
 //! A setting in exact coordinates: both bodies in the world, and the direction.
 //!
-//! Notation. `P` moves along `d`, `Q` is fixed; `M = {q - p}`. A body stands where the nine entries
-//! of its pose's matrix and its translation, all taken as exact numbers, put it. A *shadow* is what
-//! is left of a point modulo `d`. With `k` an axis where `d_k != 0` and `i, j` the other two, its
-//! coordinates here are `s_i = m_i d_k - m_k d_i` and `s_j` alike: exact, zero along `d`, an affine
+//! Notation. `P` moves along `d`, `Q` is fixed, `M = {q - p}`. The position of a body is defined by the nine
+//! entries of its rotation matrix and by its translation, all taken as exact numbers. The *shadow* of a point
+//! is its residue modulo `d`. Let `k` be an axis with `d_k != 0`, and `i, j` the others. The coordinates of a
+//! shadow are `s_i = m_i d_k - m_k d_i`, and `s_j` analogously. They are exact, zero along `d`, and an affine
 //! image of the orthogonal projection.
 
 use colltrans::{Cast, Pose};
@@ -16,20 +16,19 @@ use crate::shapes::reach;
 /// Two bodies in the world and a direction.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// Vertices of the moving body in the world.
+    /// The vertices of the moving body in the world.
     pub moving: Vec<Vector>,
-    /// Vertices of the fixed body in the world.
+    /// The vertices of the fixed body in the world.
     pub fixed: Vec<Vector>,
     /// The direction.
     pub direction: Vector,
-    /// Size `S` of the configuration: no vertices of the two bodies are farther apart.
+    /// The size `S` of the configuration. The distance of two vertices is at most `S`.
     pub size: f64,
-    /// What the library states as its rounding error: `32 u S`, with `u = 2^-53`.
+    /// The noise of the library: `32 u S` with `u = 2^-53`.
     pub noise: f64,
-    /// The sideways overlap up to which the library calls a contact grazing by itself: `8` times
-    /// that.
+    /// The touching distance, 8 noises: the lateral overlap up to which a contact is grazing by default.
     pub touching: f64,
-    /// The axis `k` along which `d` is largest.
+    /// The axis `k` along which `d` has the largest component.
     pub(crate) main_axis: usize,
 }
 
@@ -55,43 +54,44 @@ impl Scene {
         }
     }
 
-    /// The scene of a query: its bodies' vertices are what counts.
+    /// Builds the scene of a cast from the vertices of its bodies.
     pub fn of(cast: &Cast) -> Self {
         let (moving, fixed) = (cast.moving().vertices(), cast.fixed().vertices());
         let (moving_pose, fixed_pose) = (cast.moving_pose(), cast.fixed_pose());
         Self::new((moving, &moving_pose), (fixed, &fixed_pose), cast.direction())
     }
 
-    /// All points `q - p` for vertices `p, q`.
+    /// Returns the differences `q - p` of all pairs of vertices `p, q`.
     pub fn differences(&self) -> Vec<Vector> {
         self.fixed.iter().flat_map(|q| self.moving.iter().map(move |p| q.minus(p))).collect()
     }
 
-    /// The shadow coordinates of a point.
+    /// Returns the shadow coordinates of a point.
     pub fn shadow(&self, point: &Vector) -> [Dyadic; 2] {
         let (k, d) = (self.main_axis, &self.direction.0);
         [(k + 1) % 3, (k + 2) % 3].map(|i| &(&point.0[i] * &d[k]) - &(&point.0[k] * &d[i]))
     }
 
-    /// `t |d_k|` of a point on the line `t d`.
+    /// Returns `t |d_k|` of a point on the line `t d`.
     pub(crate) fn height(&self, point: &Vector) -> Dyadic {
         let k = self.main_axis;
         if self.direction.0[k].is_negative() { -point.0[k].clone() } else { point.0[k].clone() }
     }
 
-    /// `|d_k|`.
+    /// Returns `|d_k|`.
     pub(crate) fn height_unit(&self) -> Dyadic {
         self.direction.0[self.main_axis].clone().abs()
     }
 }
 
-/// Returns the size `S` of two placed bodies by their vertices: the sum of how far they reach and how far they are apart.
+/// Returns the size `S` of two placed bodies: the sum of their largest vertex distances from their origins and
+/// of the distance of the origins.
 pub fn size(vertices: [&[DVec3]; 2], poses: [&Pose; 2]) -> f64 {
     let offset = poses[1].translation() - poses[0].translation();
     reach(vertices[0]) + reach(vertices[1]) + offset.length()
 }
 
-/// The numbers as integers in one common unit `2^exponent`.
+/// Returns the numbers as integers in a common unit `2^exponent`, and the exponent.
 pub(crate) fn in_common_unit(numbers: &[Dyadic]) -> (Vec<IBig>, i32) {
     let exponent = numbers.iter().filter(|x| !x.is_zero()).map(Dyadic::exponent).min().unwrap_or(0);
     (numbers.iter().map(|x| x.in_units_of(exponent)).collect(), exponent)

@@ -1,9 +1,9 @@
-//! Sequences of settings: the same two bodies, asked again after each of many changes of poses,
-//! direction and graze tolerance.
+//! Draws sequences of settings: the same two bodies after each of many changes of poses, direction and graze
+//! tolerance.
 //!
-//! A *walk* is a function of a family's name and a seed, as its first setting is, so that
-//! `FAMILY:SEED:STEP` in a report is enough to replay it. A change is drawn together with how often
-//! it is repeated, so that some runs are smooth motions and others jump about.
+//! A *walk* is a function of the family's name and a seed, so that `FAMILY:SEED:STEP` in a report suffices to
+//! replay it. Each change is drawn with a number of repetitions, so that some parts of a walk are smooth
+//! motions and others jump.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -14,16 +14,16 @@ use glam::{DQuat, DVec3};
 use crate::oracle::settings::{Setting, setting};
 use crate::random::Random;
 
-/// Times at most that a change is repeated.
+/// Maximum number of repetitions of a change.
 const LONGEST_RUN: i64 = 8;
 
-/// Seeds of a walk's other configurations: far from those that walks begin with.
+/// Offset of the seeds of other configurations of a walk, far from the seeds of walks.
 const OTHER_SEEDS: u64 = 1 << 60;
 
-/// Corners of a shadow nearer to each other than this share of it are one.
+/// Corners of a shadow that are nearer than this fraction of its size count as one.
 const SAME: f64 = 1e-9;
 
-/// Where the bodies are, and the direction.
+/// The poses of the bodies, and the direction.
 #[derive(Debug, Clone, Copy)]
 struct Configuration {
     moving: Pose,
@@ -31,41 +31,41 @@ struct Configuration {
     direction: DVec3,
 }
 
-/// From one setting to the next.
+/// A change from one setting to the next.
 #[derive(Debug, Clone, Copy)]
 enum Change {
-    /// None.
+    /// No change.
     Repeat,
-    /// The bodies change to another configuration and, next time, back.
+    /// Exchanges the configuration with another one.
     Alternate,
-    /// A body turns about its middle and is displaced.
+    /// Rotates a body about its centre and translates it.
     Motion { of_moving: bool, turn: DQuat, displacement: DVec3 },
-    /// The direction turns.
+    /// Rotates the direction.
     Turn(DQuat),
-    /// Another direction.
+    /// Sets the direction.
     Direction(DVec3),
-    /// The direction is turned around.
+    /// Reverses the direction.
     Reverse,
-    /// The poses and the direction of another setting of the family.
+    /// Sets the poses and the direction of another setting of the family.
     Other(u64),
-    /// Somewhere else, in a ball of so many diameters about the fixed body.
+    /// Moves to a position relative to the fixed body.
     Jump { rotation: DQuat, to: DVec3 },
-    /// Sideways to where the shadows of the two bodies only touch, or overlap by this much.
+    /// Moves the moving body laterally so that the shadows touch, or overlap by this length.
     Rim { toward: DVec3, along: f64, overlap: f64 },
-    /// Another graze tolerance.
+    /// Sets the graze tolerance.
     Tolerance(f64),
 }
 
 /// A random walk of settings.
 #[derive(Debug, Clone)]
 pub struct Walk {
-    /// Where it is.
+    /// The current setting.
     pub setting: Setting,
-    /// Changes so far.
+    /// The number of changes so far.
     pub step: u32,
     other: Configuration,
     change: Change,
-    /// How often the change is still to be repeated.
+    /// The number of remaining repetitions of the change.
     left: i64,
     rng: Random,
 }
@@ -77,10 +77,10 @@ impl fmt::Display for Walk {
 }
 
 impl Walk {
-    /// Begins with the setting of a family with a seed.
+    /// Starts with the setting of a family with a seed.
     ///
     /// # Panics
-    /// If there is no such family.
+    /// If the family is unknown.
     pub fn new(family: &str, seed: u64) -> Self {
         let setting = setting(family, seed);
         let other = Configuration::of(&setting);
@@ -88,7 +88,7 @@ impl Walk {
         Self { setting, step: 0, other, change: Change::Repeat, left: 0, rng }
     }
 
-    /// One change more.
+    /// Performs a change.
     pub fn advance(&mut self) {
         if self.left == 0 {
             self.change = self.draw();
@@ -99,6 +99,7 @@ impl Walk {
         self.apply();
     }
 
+    /// Draws a change.
     fn draw(&mut self) -> Change {
         let size = self.size();
         let rng = &mut self.rng;
@@ -121,7 +122,8 @@ impl Walk {
         }
     }
 
-    /// A displacement, a turn, a screw or a step on a grid, tiny or small or along the direction.
+    /// Draws a translation, a rotation, a screw motion or a step on a grid, which is tiny, small, or along the
+    /// direction.
     fn motion(&mut self, size: f64) -> Change {
         let setting = &self.setting;
         let rng = &mut self.rng;
@@ -141,7 +143,7 @@ impl Walk {
                 (DQuat::from_axis_angle(rng.pick(&DVec3::AXES), quarters), DVec3::ZERO)
             }
             _ => {
-                // Whole steps of a power of two along the fixed body's axes: ties stay ties.
+                // Steps of powers of two along the axes of the fixed body preserve ties.
                 let unit = size.log2().floor().exp2() * rng.pick(&[0.125, 0.25, 1.0]);
                 (DQuat::IDENTITY, setting.fixed_pose.matrix() * (rng.grid(-1, 1) * unit))
             }
@@ -149,6 +151,7 @@ impl Walk {
         Change::Motion { of_moving: !rng.one_in(4), turn, displacement }
     }
 
+    /// Applies the change to the setting.
     fn apply(&mut self) {
         let setting = &mut self.setting;
         match self.change {
@@ -172,7 +175,7 @@ impl Walk {
                 self.other = Configuration::of(setting);
                 Configuration::of(&crate::oracle::settings::setting(setting.family, seed))
                     .place(setting);
-                // The same change does not change it again.
+                // Repeating this change has no effect.
                 self.left = 0;
             }
             Change::Jump { rotation, to } => {
@@ -191,7 +194,7 @@ impl Walk {
         }
     }
 
-    /// The larger diameter of one of the bodies or, for two points, something else to step by.
+    /// Returns the larger or the smaller diameter of the bodies, or 1 for two points.
     fn size(&mut self) -> f64 {
         let (moving, fixed) = (diameter(&self.setting.moving), diameter(&self.setting.fixed));
         let (large, small) = (moving.max(fixed), moving.min(fixed));
@@ -206,11 +209,13 @@ impl Walk {
 }
 
 impl Configuration {
+    /// Returns the configuration of a setting.
     fn of(setting: &Setting) -> Self {
         let Setting { moving_pose, fixed_pose, direction, .. } = *setting;
         Self { moving: moving_pose, fixed: fixed_pose, direction }
     }
 
+    /// Sets the configuration of a setting.
     fn place(self, setting: &mut Setting) {
         setting.moving_pose = self.moving;
         setting.fixed_pose = self.fixed;
@@ -218,16 +223,17 @@ impl Configuration {
     }
 }
 
-/// Ten to a power between two exponents.
+/// Draws a power of ten with an exponent in a range.
 fn ten_to(rng: &mut Random, [low, high]: [f64; 2]) -> f64 {
     10.0_f64.powf(rng.range(low, high))
 }
 
+/// Draws a rotation about a random axis, by an angle whose exponent is in a range.
 fn turn(rng: &mut Random, exponents: [f64; 2]) -> DQuat {
     DQuat::from_axis_angle(rng.direction(), ten_to(rng, exponents))
 }
 
-/// An axis, a diagonal of the grid, or any direction.
+/// Draws an axis, a diagonal of the grid, or any direction.
 fn any_direction(rng: &mut Random) -> DVec3 {
     let grid = rng.grid(-1, 1);
     let grid = if grid == DVec3::ZERO { DVec3::Z } else { grid };
@@ -235,7 +241,7 @@ fn any_direction(rng: &mut Random) -> DVec3 {
     rng.pick(&[grid, any])
 }
 
-/// Shares of a body's size by which shadows overlap: nothing, rounding error, a little, more.
+/// Draws an overlap of shadows as a fraction of the body's size: zero, a rounding error, or more.
 fn overlap(rng: &mut Random) -> f64 {
     let sign = rng.pick(&[1.0, -1.0]);
     let digits = ten_to(rng, [-16.0, -12.0]);
@@ -243,24 +249,26 @@ fn overlap(rng: &mut Random) -> f64 {
     sign * rng.pick(&[0.0, digits, digits, little])
 }
 
-/// Components that rounding has left out of the exact range become zero.
+/// Replaces components below the exact range, which result from rounding, by zero.
 fn significant(v: DVec3) -> DVec3 {
     DVec3::from_array(v.to_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }))
 }
 
+/// Returns the mean of points.
 fn middle(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len() as f64
 }
 
+/// Returns twice the largest distance from the mean.
 fn diameter(points: &[DVec3]) -> f64 {
     let middle = middle(points);
     2.0 * points.iter().map(|v| v.distance(middle)).fold(0.0, f64::max)
 }
 
-/// A body turned about its middle and displaced.
+/// Returns the pose of a body after a rotation about its centre and a translation.
 fn moved(points: &[DVec3], pose: &Pose, turn: DQuat, displacement: DVec3) -> Pose {
     if turn == DQuat::IDENTITY {
-        // Nothing but the displacement: a body on a grid stays there.
+        // Without a rotation, a body on a grid remains on it.
         let at = significant(pose.translation() + displacement);
         return Pose::new(pose.rotation(), at).expect("in range");
     }
@@ -270,9 +278,9 @@ fn moved(points: &[DVec3], pose: &Pose, turn: DQuat, displacement: DVec3) -> Pos
     Pose::new(rotation, significant(at)).expect("in range")
 }
 
-/// What brings a point of the rim of the shadow of `M = {q - p}` onto the line, or `overlap` inside
-/// of it: on the side between the corner of the shadow farthest `toward` somewhere and the next, a
-/// share `along` of the way.
+/// Returns the translation that moves a boundary point of the shadow of `M = {q - p}` onto the line, or
+/// `overlap` beyond it. The point is at the fraction `along` of the side from the corner farthest in the
+/// direction `toward` to the next corner.
 fn rim_displacement(setting: &Setting, toward: DVec3, along: f64, overlap: f64) -> DVec3 {
     let unit = setting.direction.normalize();
     let place = |points: &[DVec3], pose: &Pose| -> Vec<DVec3> {
@@ -283,10 +291,10 @@ fn rim_displacement(setting: &Setting, toward: DVec3, along: f64, overlap: f64) 
     let shadows = || fixed.iter().flat_map(|q| moving.iter().map(move |p| *q - *p));
     let farther = |a: DVec3, b: DVec3| if b.dot(toward) > a.dot(toward) { b } else { a };
     let Some(corner) = shadows().reduce(farther) else { return DVec3::ZERO };
-    // Other pairs that give the same corner do so up to rounding only.
+    // Other pairs yield the same corner only up to rounding.
     let size = shadows().map(|s| s.distance(corner)).fold(0.0, f64::max);
     let others = shadows().filter(|s| s.distance(corner) > SAME * size);
-    // Gift wrapping: all the others are on one side of the way to the next.
+    // Gift wrapping: all other points are on one side of the line to the next corner.
     let side = |a: DVec3, b: DVec3| (a - corner).cross(b - corner).dot(unit);
     let next = others.reduce(|a, b| if side(a, b) < 0.0 { b } else { a }).unwrap_or(corner);
     let inward = unit.cross(next - corner).normalize_or_zero();

@@ -1,5 +1,5 @@
-//! How far the line runs inside or outside the shadow of `M`: the exact sideways overlap of two
-//! bodies.
+//! Computes the exact lateral overlap of two bodies, the signed distance of the line from the boundary of the
+//! shadow of `M`.
 
 use std::cmp::Ordering;
 
@@ -8,23 +8,23 @@ use dashu_int::IBig;
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::oracle::scene::{Scene, in_common_unit};
 
-/// A distance with a sign: `sign sqrt(square)`.
+/// A signed distance, `sign sqrt(square)`.
 #[derive(Debug, Clone)]
 pub struct SignedDistance {
     /// `Greater` inside, `Equal` on the boundary, `Less` outside.
     pub sign: Ordering,
-    /// The distance squared.
+    /// The squared distance.
     pub square: Ratio,
 }
 
 impl SignedDistance {
-    /// The nearest `f64`, up to a few rounding errors.
+    /// Returns the nearest `f64`, up to a few rounding errors.
     pub fn to_f64(&self) -> f64 {
         let distance = self.square.to_f64().sqrt();
         if self.sign == Ordering::Less { -distance } else { distance }
     }
 
-    /// Whether it is greater than `bound`, exactly.
+    /// Checks whether the distance is greater than `bound`, exactly.
     pub fn exceeds(&self, bound: f64) -> bool {
         let square = Ratio::new(&Dyadic::new(bound) * &Dyadic::new(bound), Dyadic::new(1.0));
         match (self.sign, bound < 0.0) {
@@ -36,11 +36,11 @@ impl SignedDistance {
     }
 }
 
-/// The distance of the line from the boundary of the shadow of `M`, in world units: positive if the
-/// shadows of the two bodies overlap by that much, negative if they are that far apart.
+/// Returns the distance of the line from the boundary of the shadow of `M`, in world units. It is positive if
+/// the shadows of the two bodies overlap by this distance, and negative if they are disjoint by it.
 ///
 /// # Panics
-/// If a body has no points, which no polyhedron lacks.
+/// If a body has no points, which is impossible for polyhedra.
 pub fn sideways_overlap(scene: &Scene) -> SignedDistance {
     let points = scene.differences();
     let coordinates: Vec<Dyadic> = points.iter().flat_map(|m| scene.shadow(m)).collect();
@@ -72,7 +72,7 @@ pub fn sideways_overlap(scene: &Scene) -> SignedDistance {
     SignedDistance { sign, square: distance.times(&unit) }
 }
 
-/// Squared distance of the origin from a segment.
+/// Returns the squared distance of the origin from a segment.
 fn squared_distance_to_segment(a: &Vector, b: &Vector) -> Ratio {
     let edge = b.minus(a);
     let (length, along) = (edge.dot(&edge), -a.dot(&edge));
@@ -87,12 +87,12 @@ fn squared_distance_to_segment(a: &Vector, b: &Vector) -> Ratio {
     }
 }
 
-/// The side of `a -> b` on which `c` lies: `Greater` is left.
+/// Returns the side of `a -> b` on which `c` is: `Greater` is left.
 fn turn(a: [&IBig; 2], b: [&IBig; 2], c: [&IBig; 2]) -> Ordering {
     ((b[0] - a[0]) * (c[1] - a[1])).cmp(&((b[1] - a[1]) * (c[0] - a[0])))
 }
 
-/// Indices of the strict corners of the convex hull, in counter-clockwise order (Andrew's monotone
+/// Returns the indices of the strict corners of the convex hull, in counter-clockwise order (Andrew's monotone
 /// chain).
 fn convex_hull(points: &[[&IBig; 2]]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();

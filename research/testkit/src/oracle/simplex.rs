@@ -1,22 +1,21 @@
-//! The oracle: the linear programme that *is* the problem, solved by the textbook's simplex method.
+//! The oracle: solves the linear programme that is equivalent to the problem by the simplex method.
 //!
 //! ```text
 //! minimise    sum x_j h_j            over x >= 0, one x_j per difference m_j = q - p of vertices
-//! subject to  sum x_j s_j = (0, 0)   (the shadow of the point lies on the line)
+//! subject to  sum x_j s_j = (0, 0)   (the shadow of the point is on the line)
 //!             sum x_j     = 1
 //! ```
 //!
-//! Two phases, Bland's rule, a full tableau of integers: after each pivot all entries have the
-//! pivot as their common denominator, and the division by the previous one leaves no remainder
-//! (Edmonds, Bareiss). Nothing is rounded, nothing is clever, and nothing is shared with the
-//! library.
+//! The method has two phases, Bland's rule, and a full tableau of integers. After each pivot all entries have
+//! the pivot as their common denominator, and the division by the previous one has no remainder (Edmonds,
+//! Bareiss). Nothing is rounded, and no code is shared with the library.
 
 use dashu_int::IBig;
 
 use crate::oracle::exact::{Dyadic, Ratio};
 use crate::oracle::scene::{Scene, in_common_unit};
 
-/// The collision translation, exactly; `None` if the bodies never meet.
+/// Returns the exact collision translation; `None` if the bodies never meet.
 pub fn collision_translation(scene: &Scene) -> Option<Ratio> {
     let points = scene.differences();
     let (shadows, heights): (Vec<_>, Vec<_>) =
@@ -31,14 +30,15 @@ pub fn collision_translation(scene: &Scene) -> Option<Ratio> {
     Some(Ratio::new(Dyadic::from_units(value, unit), denominator))
 }
 
+/// Number of constraints.
 const CONSTRAINTS: usize = 3;
-/// Row of the objective of the first phase: the sum of the artificial variables.
+/// Index of the objective of the first phase: the sum of the artificial variables.
 const ARTIFICIAL: usize = 3;
-/// Row of the objective.
+/// Index of the objective.
 const COST: usize = 4;
 
-/// Rows `[constraints; objectives]`, columns `[variables; right side]`. Artificial variables,
-/// numbered after the others, have no columns, since they never enter the basis again.
+/// A tableau with the rows `[constraints; objectives]` and the columns `[variables; right side]`. Artificial
+/// variables are numbered after the others. They have no columns, because they never enter the basis again.
 struct Tableau {
     rows: [Vec<IBig>; 5],
     denominator: IBig,
@@ -47,7 +47,7 @@ struct Tableau {
 }
 
 impl Tableau {
-    /// `right_side` must not be negative.
+    /// Builds the initial tableau. The `right_side` must not be negative.
     fn new(mut a: [Vec<IBig>; 3], right_side: [IBig; 3], mut costs: Vec<IBig>) -> Self {
         let variables = costs.len();
         for (row, b) in a.iter_mut().zip(right_side) {
@@ -64,7 +64,7 @@ impl Tableau {
         }
     }
 
-    /// The least cost as a fraction, or `None` if there is no solution.
+    /// Returns the minimum cost as a fraction; `None` if there is no solution.
     fn solve(mut self) -> Option<(IBig, IBig)> {
         self.minimise(ARTIFICIAL);
         if !self.rows[ARTIFICIAL][self.variables].is_zero() {
@@ -75,6 +75,7 @@ impl Tableau {
         Some((-self.rows[COST][self.variables].clone(), self.denominator))
     }
 
+    /// Minimises an objective by pivoting.
     fn minimise(&mut self, objective: usize) {
         while let Some(column) = (0..self.variables).find(|&j| self.rows[objective][j] < IBig::ZERO)
         {
@@ -83,7 +84,8 @@ impl Tableau {
         }
     }
 
-    /// The row with the least ratio; among equals, the one whose basic variable comes first.
+    /// Returns the row with the smallest ratio. If ratios are equal, returns the row whose basic variable has
+    /// the smallest index.
     fn leaving_row(&self, column: usize) -> Option<usize> {
         let b = self.variables;
         (0..CONSTRAINTS).filter(|&i| self.rows[i][column] > IBig::ZERO).min_by(|&i, &j| {
@@ -93,8 +95,8 @@ impl Tableau {
         })
     }
 
-    /// Artificial variables that are still in the basis are zero: exchanges them, or leaves them
-    /// where their constraint is void.
+    /// Removes artificial variables, which are zero, from the basis. One remains if its constraint is
+    /// redundant.
     fn drive_out_artificials(&mut self) {
         for row in 0..CONSTRAINTS {
             if self.basis[row] < self.variables {
@@ -102,7 +104,7 @@ impl Tableau {
             }
             if let Some(column) = (0..self.variables).find(|&j| !self.rows[row][j].is_zero()) {
                 if self.rows[row][column] < IBig::ZERO {
-                    // Its right side is zero, so the equation may be turned around.
+                    // Because its right side is zero, the equation may be negated.
                     for entry in &mut self.rows[row] {
                         *entry = -std::mem::take(entry);
                     }
@@ -112,6 +114,7 @@ impl Tableau {
         }
     }
 
+    /// Exchanges the basic variable of a row for that of a column.
     fn pivot(&mut self, row: usize, column: usize) {
         let pivot_row = std::mem::take(&mut self.rows[row]);
         let pivot = pivot_row[column].clone();

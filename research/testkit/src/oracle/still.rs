@@ -1,7 +1,7 @@
-//! Casts of bodies that do not turn, by the faces of their difference, against the ordinary cast.
+//! Compares casts without rotation, by the faces of the Minkowski difference, with normal casts.
 //!
-//! Places and directions are made of a setting's own: near it and far, and such that the line passes a vertex of
-//! `M`, the middle of two or the middle of many, which is where ties are.
+//! Positions and directions are derived from a setting: near it and far from it, and so that the line passes a
+//! vertex of `M`, or the mean of two or four points of `M`, where ties occur.
 
 use colltrans::{Approach, Cast, FixedRotations, Outcome, Pose, QueryError};
 use glam::DVec3;
@@ -12,17 +12,18 @@ use crate::oracle::tracked::{Agreement, judge_answer};
 use crate::random::Random;
 use crate::shapes::reach;
 
-/// What is asked of one setting, itself among them.
+/// Number of casts for a setting, including its own.
 pub const CASTS: usize = 8;
 
-/// Who answered what, and whether it is right.
+/// The method, its outcome, and the verdict.
 pub type Finding = (&'static str, Outcome, Result<Agreement, Objection>);
 
-/// What both ways of asking for a cast answer. All answers are checked exactly, and solved again if `with_oracle` or
-/// where the certificate alone does not prove them.
+/// Answers a cast by both bulk methods. All answers are checked exactly. The oracle solves the cast if
+/// `with_oracle`, or if the certificate alone does not prove an answer.
 ///
 /// # Errors
-/// Where one way has no answer and the ordinary cast has; if neither has, there is nothing to judge.
+/// [`Objection`] if a method has no answer and the normal cast has one. If neither has an answer, nothing is
+/// judged.
 pub fn ask<'a>(
     rotations: &FixedRotations<'a>,
     approach: &Approach<'_, 'a>,
@@ -53,7 +54,7 @@ pub fn ask<'a>(
     Ok(findings)
 }
 
-/// Bounds of both have the true translation between them, so they overlap.
+/// Checks that the bounds of both answers overlap, because both contain the exact translation.
 fn overlapping(
     answer: &Outcome,
     ordinary: &Outcome,
@@ -72,10 +73,10 @@ fn overlapping(
     Ok(agreement)
 }
 
-/// One cast of a setting's bodies as they are turned: the first is the setting's own.
+/// Derives cast number `which` from a setting, with the same rotations. Number 0 is the setting's own.
 ///
 /// # Errors
-/// A place or a direction out of range.
+/// [`QueryError`] if a position or direction is out of range.
 pub fn cast<'a>(
     setting: &Setting,
     bodies: &'a Bodies,
@@ -88,7 +89,7 @@ pub fn cast<'a>(
         let [v, w] = [p, q].map(|body| body.vertices()[random.index(body.vertices().len())]);
         fixed_pose.transform_vector(w) - moving_pose.transform_vector(v)
     };
-    // From whose frames the line through a point of `M` is the axis.
+    // Returns the translation for which the line of the cast passes a point of `M`.
     let through = |point: DVec3| fixed_pose.translation() + point;
     let size = reach(p.vertices()) + reach(q.vertices());
     let (place, along) = match which {

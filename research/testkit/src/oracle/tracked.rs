@@ -1,8 +1,8 @@
-//! Trackers against one-off queries: the same question asked of both, along a sequence of settings.
+//! Compares trackers with single queries along a sequence of settings.
 //!
-//! A *lane* is a tracker with one focus and one solver that lives through the whole sequence. Its
-//! answer must be the one-off answer: the same outcome, translations that agree, and a certificate
-//! that holds by itself.
+//! A *lane* is a tracker with one focus and one sequence of solvers, which is used for the whole sequence of
+//! settings. Its answer must equal that of a single query: the same outcome, translations that agree, and a
+//! valid certificate.
 
 use colltrans::{
     Contact, Focus, Grazing, Outcome, QueryError, Solver, StartedFrom, Steps, Tracker, cta,
@@ -12,18 +12,18 @@ use crate::oracle::check::{Judge, Objection, Proof, same};
 use crate::oracle::settings::{Bodies, Setting};
 use crate::shapes::reach;
 
-/// A tracker's solver and focus.
+/// A tracker's solvers and focus.
 #[derive(Debug, Clone, Copy)]
 pub struct Lane {
-    /// Its name in reports.
+    /// The name in reports.
     pub name: &'static str,
-    /// One solver after the other.
+    /// The solvers, used in turn.
     pub solvers: &'static [Solver],
     /// The focus.
     pub focus: Focus,
 }
 
-/// The lanes for bodies with this reach: the region of a fixed size is a part of it.
+/// Returns the lanes for bodies with this reach, which determines the size of the fixed region.
 pub fn lanes(reach: f64) -> [Lane; 7] {
     let (auto, cta) = (&[Solver::Auto][..], &[Solver::Cta][..]);
     let lane = |name, solvers, features, region| {
@@ -41,28 +41,28 @@ pub fn lanes(reach: f64) -> [Lane; 7] {
     ]
 }
 
-/// What a lane's answer was found to be.
+/// The answer of a lane with its verdict.
 #[derive(Debug, Clone)]
 pub struct Finding {
     /// The lane.
     pub lane: &'static str,
-    /// The solver that it was given.
+    /// The solver.
     pub solver: Solver,
     /// The answer.
     pub answer: Result<Outcome, QueryError>,
-    /// What is right about it, or wrong.
+    /// The verdict.
     pub verdict: Result<Agreement, Objection>,
 }
 
-/// An answer that is right.
+/// The properties of a correct answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
-    /// What the search began with.
+    /// The data with which the search started.
     pub path: StartedFrom,
-    /// What the answer proves.
+    /// The properties of its proof.
     pub proof: Proof,
-    /// It is not the one-off outcome, or not its value, and both are admissible: the shadows' rim
-    /// is where rounding decides.
+    /// Whether outcome or value differ from those of the single query, and both are admissible, because
+    /// rounding decides at the boundary of the shadows.
     pub rounding_decides: bool,
 }
 
@@ -75,10 +75,10 @@ pub struct Lanes<'a> {
 }
 
 impl<'a> Lanes<'a> {
-    /// All trackers new.
+    /// Builds all trackers.
     ///
     /// # Panics
-    /// Never: the regions have a size.
+    /// Never, because the regions have a positive size.
     pub fn new(bodies: &'a Bodies) -> Self {
         let reach = reach(bodies.moving.vertices()).max(reach(bodies.fixed.vertices()));
         let tracker = |lane: Lane| {
@@ -88,11 +88,10 @@ impl<'a> Lanes<'a> {
         Self { bodies, trackers: lanes(reach).map(tracker).to_vec(), asked: 0 }
     }
 
-    /// Asks every lane about a setting, and says what is to be said of the answers. All are checked
-    /// exactly; they are solved again by the oracle if `with_oracle`, and where outcome and value
-    /// are not proven by the certificate alone.
+    /// Queries every lane, and judges the answers. All are checked exactly. The oracle solves a query if
+    /// `with_oracle`, or if outcome and value are not proven by the certificate alone.
     ///
-    /// A setting that makes no query is not asked about.
+    /// Returns an empty list if the setting is not a valid query.
     pub fn ask(&mut self, setting: &Setting, with_oracle: bool) -> Vec<Finding> {
         let bodies = self.bodies;
         let Ok(cast) = setting.query(bodies) else { return Vec::new() };
@@ -104,7 +103,7 @@ impl<'a> Lanes<'a> {
         let find = |(lane, tracker): &mut (Lane, Tracker<'a>)| {
             let solver = lane.solvers[asked % lane.solvers.len()];
             let answer = tracker.first_contact(&cast.with_solver(solver));
-            // Portal is what Auto stands for.
+            // `Auto` stands for `Portal`.
             let one_off = &from_scratch[usize::from(solver == Solver::Cta)];
             let verdict = judge_tracked(&judge, &answer, one_off, with_oracle);
             Finding { lane: lane.name, solver, answer, verdict }
@@ -113,10 +112,10 @@ impl<'a> Lanes<'a> {
     }
 }
 
-/// A tracker's answer about a setting.
+/// Returns the answer of a tracker for a setting.
 ///
 /// # Errors
-/// As [`Setting::query`] and [`Tracker::first_contact`].
+/// The errors of [`Setting::query`] and [`Tracker::first_contact`].
 pub fn track<'a>(
     tracker: &mut Tracker<'a>,
     setting: &Setting,
@@ -126,6 +125,7 @@ pub fn track<'a>(
     tracker.first_contact(&setting.query(bodies)?.with_solver(solver))
 }
 
+/// Judges an answer of a tracker.
 fn judge_tracked(
     judge: &Judge,
     answer: &Result<Outcome, QueryError>,
@@ -141,7 +141,7 @@ fn judge_tracked(
     })
 }
 
-/// Everything that an answer says, by itself.
+/// Judges an answer by itself.
 fn judge_alone(judge: &Judge, answer: &Outcome, with_oracle: bool) -> Result<Proof, Objection> {
     let proof = judge.check(answer)?;
     verify(judge, answer)?;
@@ -151,7 +151,7 @@ fn judge_alone(judge: &Judge, answer: &Outcome, with_oracle: bool) -> Result<Pro
     Ok(proof)
 }
 
-/// An answer that was not found by the ordinary way, beside one that was.
+/// Judges an answer by itself, and compares it with that of a single query.
 pub(crate) fn judge_answer(
     judge: &Judge,
     answer: &Outcome,
@@ -169,9 +169,9 @@ pub(crate) fn judge_answer(
     Ok(Agreement { path: answer.steps().started_from, proof, rounding_decides })
 }
 
-/// The library's own check of an answer's certificate, and the gap that it states.
+/// Checks the certificate with the library, and the gap that it states.
 fn verify(judge: &Judge, answer: &Outcome) -> Result<(), Objection> {
-    let refused = |e| Objection(format!("refused by verify: {e}"));
+    let refused = |e| Objection(format!("rejected by verify: {e}"));
     match answer {
         Outcome::Contact(Contact { certificate, .. })
         | Outcome::Grazing(Grazing { contact: Contact { certificate, .. }, .. }) => {
@@ -189,8 +189,8 @@ fn verify(judge: &Judge, answer: &Outcome) -> Result<(), Objection> {
     }
 }
 
-/// An answer without the account of the work done for it: what has to be the same bits where the
-/// same work was done in the same order.
+/// Returns an answer without its statistics. The remaining bits must be equal if the same work was done in the
+/// same order.
 #[must_use]
 pub fn without_steps(outcome: &Outcome) -> Outcome {
     let mut outcome = *outcome;

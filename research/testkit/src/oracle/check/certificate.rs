@@ -1,20 +1,19 @@
-//! What the certificate of an answer proves, and whether that is what it says.
+//! Checks what the certificate of an answer proves.
 //!
 //! Notation as in [`scene`](crate::oracle::scene). Every number of a certificate is taken as exact.
 //!
-//! - *Lower bound.* `L = (min_Q n.q - max_P n.p) / n.d` over all vertices; the one stated must not be
-//!   larger, exactly.
-//! - *Upper bound.* If the line passes through the triangle of the three differences `q - p`,
-//!   exactly, it does so at `U`, and the bodies provably meet. Then `L <= coll <= U`, `U - L`
-//!   is the gap that is proven, and the upper bound stated must not be less than `U`, exactly. Rounding can make the line miss a triangle that ends at it (a
-//!   contact at a vertex, an edge or the rim), or cross one without area somewhere else; the answer
-//!   is then *near*: its witness points miss each other by a residual, which must be rounding
-//!   error, and outcome and value have to be decided by the oracle.
-//! - *Separation.* `n' = n (d.d) - d (n.d)` is exactly orthogonal to `d`; `min_Q n'.q > max_P n'.p`
-//!   proves that the bodies never meet. Nothing depends on how well `n` itself is orthogonal.
-//! - *Grazing.* `n'` from the separating direction bounds the overlap from above, the residual of
-//!   the witness points from below: two bodies whose witness points come within `r` overlap by at
-//!   least `-r`.
+//! - *Lower bound.* `L = (min_Q n.q - max_P n.p) / n.d` over all vertices. The stated bound must not exceed
+//!   `L`.
+//! - *Upper bound.* If the line intersects the triangle of the three differences `q - p`, exactly, at `U`, the
+//!   bodies provably meet. Then `L <= coll <= U`, `U - L` is the proven gap, and the stated bound must not be
+//!   less than `U`. Rounding may make the line miss a triangle that ends at it (a contact at a vertex, an edge
+//!   or the boundary of the shadow), or intersect a triangle without area at a different place. Then the answer
+//!   is *near*: its witness points differ by a residual, which must be a rounding error, and the oracle decides
+//!   outcome and value.
+//! - *Separation.* `n' = n (d.d) - d (n.d)` is exactly orthogonal to `d`, and `min_Q n'.q > max_P n'.p` proves
+//!   that the bodies never meet. The orthogonality of `n` itself is not used.
+//! - *Grazing.* `n'` of the separating direction bounds the overlap from above, and the residual of the witness
+//!   points from below: two bodies whose witness points differ by `r` overlap by at least `-r`.
 
 use colltrans::{
     Certificate, Contact, Feature, Grazing, Separated, VertexId, VertexPair, WitnessPoints,
@@ -24,26 +23,27 @@ use glam::DVec3;
 use super::{Judge, Objection, Proof, TWO_ROUNDINGS};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 
-/// How many units of rounding error a margin may be rounded down by: one for its own, two for what
-/// either body may reach beyond its support point.
+/// Maximum rounding of a margin in noises: one for itself, two for the excess of each body beyond its support
+/// point.
 const MARGIN_ROUNDINGS: f64 = 5.0;
 
-/// How many units of rounding error the witness points of a contact may miss each other by: each of
-/// the two is allowed one.
+/// Maximum residual of the witness points of a contact in noises: one for each point.
 const RESIDUAL_ROUNDINGS: f64 = 2.0;
 
-/// The same for a grazing contact, whose bodies the library widens by up to 33 units along either
-/// lateral axis.
+/// Maximum residual of the witness points of a grazing contact in noises. The library widens such bodies by up
+/// to 33 noises along each lateral axis.
 const GRAZING_RESIDUAL_ROUNDINGS: f64 = 48.0;
 
-/// Relative error that computing a unit vector may leave.
+/// Maximum relative error of the length of a unit vector.
 const UNIT_ERROR: f64 = 16.0 * f64::EPSILON;
 
 impl Judge<'_> {
+    /// Checks a contact with its certificate, points and features.
     pub(super) fn check_contact(&self, contact: &Contact) -> Result<Proof, Objection> {
         self.check_contact_within(contact, RESIDUAL_ROUNDINGS)
     }
 
+    /// Checks a contact whose witness points differ by at most `roundings` noises.
     fn check_contact_within(&self, contact: &Contact, roundings: f64) -> Result<Proof, Objection> {
         let certificate = &contact.certificate;
         require!(contact.normal == certificate.normal, "two different normals");
@@ -60,6 +60,7 @@ impl Judge<'_> {
         Ok(proof)
     }
 
+    /// Checks the certificate of a contact.
     fn check_certificate(
         &self,
         certificate: &Certificate,
@@ -75,7 +76,7 @@ impl Judge<'_> {
         let off = exact_lower.minus(&Ratio::from_f64(lower));
         require!(
             off.is_within(tolerance) && exact_lower >= Ratio::from_f64(lower),
-            "lower bound {lower:e} is {:e} below what the plane proves (tolerated: {tolerance:e})",
+            "lower bound {lower:e} is {:e} below the value that the plane proves (tolerated: {tolerance:e})",
             off.to_f64()
         );
 
@@ -84,16 +85,16 @@ impl Judge<'_> {
             residual <= roundings,
             "the witness points miss each other by {residual} roundings"
         );
-        // An infinite one claims nothing: what is widened meets earlier than what is not.
+        // An infinite upper bound claims nothing, because widened bodies meet earlier than the nominal ones.
         let claimed_upper = Ratio::from_f64(if upper.is_finite() { upper } else { translation });
         let crossing = self.crossing(&certificate.pairs);
         if let Some(crossing) = &crossing {
             require!(*crossing >= exact_lower, "the bounds contradict each other");
         }
-        // A triangle without area to speak of crosses the line anywhere: it proves nothing.
+        // A triangle almost without area may intersect the line anywhere, and proves nothing.
         let crossing = crossing.filter(|u| u.minus(&claimed_upper).is_within(tolerance));
-        // Nor does one that stands steeply on the edge where the line passes: the witness points, which
-        // miss each other by rounding, are lower there than the line's crossing of it. The truth decides.
+        // A triangle that is steep where the line passes its edge proves nothing either: its witness points,
+        // which differ by rounding, are lower than the intersection with the line. The oracle decides.
         let is_later =
             upper < f64::INFINITY && crossing.as_ref().is_some_and(|u| *u > claimed_upper);
         if is_later {
@@ -121,14 +122,14 @@ impl Judge<'_> {
         })
     }
 
-    /// `min_Q n.q - max_P n.p`.
+    /// Returns `min_Q n.q - max_P n.p`.
     fn distance_along(&self, normal: &Vector) -> Dyadic {
         let nearest = self.scene.fixed.iter().map(|q| normal.dot(q)).min();
         let farthest = self.scene.moving.iter().map(|p| normal.dot(p)).max();
         &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
     }
 
-    /// The three differences `q - p` of a certificate.
+    /// Returns the three differences `q - p` of a certificate.
     fn differences(&self, pairs: &[VertexPair; 3]) -> Result<[Vector; 3], Objection> {
         for pair in pairs {
             require!(
@@ -142,7 +143,8 @@ impl Judge<'_> {
         }))
     }
 
-    /// Where the line passes through the triangle of the three differences, if it does so exactly.
+    /// Returns the `t` at which the line intersects the triangle of the three differences, exactly; `None` if
+    /// it does not.
     fn crossing(&self, pairs: &[VertexPair; 3]) -> Option<Ratio> {
         let corners = self.differences(pairs).ok()?;
         let [a, b, c] = corners.each_ref().map(|m| self.scene.shadow(m));
@@ -164,7 +166,7 @@ impl Judge<'_> {
         Some(Ratio::new(height, &sum * &self.scene.height_unit()))
     }
 
-    /// `|sum w_i (q_i - p_i) - t d|`, in world units.
+    /// Returns `|sum w_i (q_i - p_i) - t d|` in world units.
     fn residual(&self, certificate: &Certificate, translation: f64) -> Result<f64, Objection> {
         let Certificate { pairs, weights, .. } = certificate;
         let sum: f64 = weights.iter().sum();
@@ -181,8 +183,8 @@ impl Judge<'_> {
         Ok(self.across(&miss, certificate))
     }
 
-    /// The length of a miss; sideways only where nothing is claimed from above: the witness points of
-    /// widened bodies come together earlier.
+    /// Returns the length of a residual. Without an upper bound only the lateral part counts, because the
+    /// witness points of widened bodies meet earlier.
     fn across(&self, miss: &Vector, certificate: &Certificate) -> f64 {
         if certificate.upper.is_finite() {
             return miss.to_f64().length();
@@ -193,19 +195,19 @@ impl Judge<'_> {
         Ratio::new(sideways.dot(&sideways), &square * &square).sqrt_to_f64()
     }
 
-    /// The witness points come together after the translation, and lie in the contact plane of
-    /// their bodies.
+    /// Checks that the witness points coincide after the translation, and are in the contact plane of their
+    /// bodies.
     fn check_points(&self, contact: &Contact, roundings: f64) -> Result<(), Objection> {
         let Contact { translation, normal, .. } = *contact;
         let WitnessPoints { on_moving, on_fixed } = contact.points(&self.cast);
-        // In the world, at whatever distance from its origin.
+        // In world coordinates, whose rounding error depends on the distance from the origin.
         let away = on_moving.length().max(on_fixed.length());
         let tolerance = (roundings + 1.0) * self.scene.noise + 8.0 * f64::EPSILON * away;
         let [p, q] = [on_moving, on_fixed].map(Vector::new);
         let moved = p.plus(&self.scene.direction.times(&Dyadic::new(translation)));
         let miss = self.across(&q.minus(&moved), &contact.certificate);
         require!(miss <= tolerance, "the witness points miss each other by {miss:e}");
-        // The points are those of the upper bound, the plane is that of the lower one.
+        // The points belong to the upper bound, the plane to the lower one.
         let gap = contact.certificate.gap().min(contact.certificate.rounding);
         let off_plane = tolerance + gap * normal.dot(self.scene.direction.to_f64());
         let normal = Vector::new(normal);
@@ -226,7 +228,7 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// The vertices of a contact feature lie in the contact plane.
+    /// Checks that the vertices of a contact feature are in the contact plane.
     fn check_feature(
         &self,
         contact: &Contact,
@@ -240,7 +242,7 @@ impl Judge<'_> {
         };
         let normal = Vector::new(contact.normal * sign);
         let top = points.iter().map(|v| normal.dot(v)).max().expect("a body has a point");
-        // A body's own faces are flat up to what its hull states.
+        // The faces of a body are flat up to its hull error.
         let tolerance = (TWO_ROUNDINGS + 1.0) * self.scene.noise + 2.0 * body.hull_error();
         for VertexId(vertex) in feature.own_vertices(body) {
             let depth = (&top - &normal.dot(&points[vertex as usize])).to_f64();
@@ -252,8 +254,8 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// A unit vector orthogonal to `d`, made exactly orthogonal: `(min_Q n'.q - max_P n'.p) /
-    /// |n'|`, whose sign is exact.
+    /// Returns `(min_Q n'.q - max_P n'.p) / |n'|` for the unit vector `n'` that results from making `normal`
+    /// exactly orthogonal to `d`. The sign is exact.
     fn margin(&self, normal: DVec3) -> Result<f64, Objection> {
         require!(is_unit(normal), "the normal {normal} is not a unit vector");
         let (n, d) = (Vector::new(normal), &self.scene.direction);
@@ -269,6 +271,7 @@ impl Judge<'_> {
         Ok(if margin.is_negative() { -length } else { length })
     }
 
+    /// Checks a separation.
     pub(super) fn check_separated(&self, separated: &Separated) -> Result<Proof, Objection> {
         let claimed = separated.certificate.margin;
         let margin = self.margin(separated.certificate.normal)?;
@@ -282,6 +285,7 @@ impl Judge<'_> {
         Ok(Proof { exact: true, ..Proof::default() })
     }
 
+    /// Checks a grazing contact.
     pub(super) fn check_grazing(&self, grazing: &Grazing) -> Result<Proof, Objection> {
         let claimed = grazing.overlap;
         let overlap = -self.margin(grazing.separating_direction)?;
@@ -293,11 +297,12 @@ impl Judge<'_> {
         let tolerated = self.border();
         require!(claimed <= tolerated, "overlap {claimed:e} tolerated as {tolerated:e}");
         let proof = self.check_contact_within(&grazing.contact, GRAZING_RESIDUAL_ROUNDINGS)?;
-        // The residual has just bounded the overlap from below.
+        // The residual bounds the overlap from below.
         Ok(Proof { exact: true, ..proof })
     }
 }
 
+/// Checks whether the length is 1 up to rounding.
 fn is_unit(v: DVec3) -> bool {
     (v.length() - 1.0).abs() <= UNIT_ERROR
 }

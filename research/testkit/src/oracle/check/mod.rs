@@ -1,5 +1,5 @@
-//! Checks an answer of the library in exact arithmetic: what its certificate proves, whether that is
-//! what it says, and whether the linear programme says the same (`truth`).
+//! Checks an answer of the library in exact arithmetic: what its certificate proves, whether that equals the
+//! statements of the answer, and whether the linear programme agrees (`truth`).
 
 use std::cell::OnceCell;
 use std::fmt;
@@ -10,25 +10,25 @@ use glam::DVec3;
 use self::truth::Truth;
 use crate::oracle::scene::Scene;
 
-/// How many units of rounding error ([`Scene::noise`]) two different computations of the same
-/// sideways distance may differ by: each is allowed one.
+/// Maximum difference of two computations of the same lateral distance in noises ([`Scene::noise`]): one for
+/// each.
 const TWO_ROUNDINGS: f64 = 2.0;
 
-/// What an answer was found to prove.
+/// The properties of a checked proof.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Proof {
     /// Whether outcome and value are proven by the certificate alone, without a rounding error.
     pub exact: bool,
-    /// `U - L`, in world units, divided by the size of the configuration.
+    /// `U - L` in world units, divided by the size of the configuration.
     pub gap_over_size: f64,
     /// `U - L` divided by the tolerance that the certificate states.
     pub gap_over_tolerance: f64,
-    /// How far the witness points miss each other, in units of rounding error.
+    /// The residual of the witness points, in noises.
     pub residual_in_noises: f64,
 }
 
 impl Proof {
-    /// The larger numbers of both.
+    /// Returns the larger of both values for each number.
     #[must_use]
     pub fn worse(&self, other: &Self) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl Proof {
     }
 }
 
-/// Why an answer is wrong.
+/// The reason why an answer is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Objection(pub String);
 
@@ -58,7 +58,8 @@ impl From<Objection> for String {
     }
 }
 
-/// `Err` with a formatted [`Objection`] unless the condition holds; a comparison with NaN does not.
+/// Returns `Err` with a formatted [`Objection`] unless the condition holds. A comparison with NaN does not
+/// hold.
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
         let holds: bool = $condition;
@@ -71,20 +72,20 @@ macro_rules! require {
 mod certificate;
 mod truth;
 
-/// The two bodies and what is needed to judge an answer about them.
+/// Two bodies, and the data with which an answer about them is compared.
 #[derive(Debug)]
 pub struct Judge<'a> {
     /// The setting in exact coordinates.
     pub scene: Scene,
     /// The query.
     pub cast: Cast<'a>,
-    /// The points that the bodies were made of, where these are known and are not the vertices alone.
+    /// The input points of the bodies, if they are known and are more than the vertices.
     input: Option<Scene>,
     truth: OnceCell<Truth>,
     truth_of_input: OnceCell<Truth>,
 }
 impl<'a> Judge<'a> {
-    /// Of answers to a query.
+    /// Builds the judge of a query.
     pub fn new(cast: Cast<'a>) -> Self {
         Self {
             scene: Scene::of(&cast),
@@ -95,7 +96,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Of answers about bodies that were made of these points.
+    /// Sets the input points of the bodies.
     #[must_use]
     pub fn with_input(mut self, moving: &[DVec3], fixed: &[DVec3]) -> Self {
         let has_dropped =
@@ -107,10 +108,10 @@ impl<'a> Judge<'a> {
         self
     }
 
-    /// Re-verifies everything an answer carries.
+    /// Checks an answer with its proof.
     ///
     /// # Errors
-    /// The first statement of the answer that is not true.
+    /// [`Objection`] with the first statement that is false.
     pub fn check(&self, outcome: &Outcome) -> Result<Proof, Objection> {
         match outcome {
             Outcome::Contact(contact) => self.check_contact(contact),
@@ -119,18 +120,17 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Overlaps up to this are grazing.
+    /// Returns the lateral overlap up to which a contact is grazing.
     fn border(&self) -> f64 {
         self.cast.options().graze_tolerance.max(self.scene.touching)
     }
 }
 
-/// Compares two answers to the same question: outcomes of one kind, and translations within
-/// both tolerances.
+/// Compares two answers to the same query: their outcomes, and their translations up to both tolerances.
 ///
 /// # Errors
-/// How they differ. At the rim of the shadow both may still be admissible: that is for
-/// [`Judge::compare_with_oracle`] to say of each.
+/// [`Objection`] with the difference. At the boundary of the shadow both answers may be admissible, which
+/// [`Judge::compare_with_oracle`] decides for each.
 pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
     let (a, b) = match (first, second) {
         (Outcome::Separated(_), Outcome::Separated(_)) => return Ok(()),
@@ -149,7 +149,7 @@ pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
     Ok(())
 }
 
-/// The name of an outcome.
+/// Returns the name of an outcome.
 pub fn kind(outcome: &Outcome) -> &'static str {
     match outcome {
         Outcome::Contact(_) => "contact",
@@ -164,7 +164,7 @@ mod tests {
     use crate::oracle::settings::{Setting, setting};
     use colltrans::{Certificate, Contact, Separated, Solver, VertexId};
 
-    /// An answer, and what the judge says about it after a change.
+    /// Checks whether the judge rejects an answer.
     fn objects(setting: &Setting, outcome: &Outcome) -> bool {
         let bodies = setting.bodies().expect("bodies");
         let judge = setting.judge(&bodies);

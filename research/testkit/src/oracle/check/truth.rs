@@ -1,5 +1,5 @@
-//! Answers beside what the linear programme ([`simplex`](crate::oracle::simplex)) and the exact sideways overlap
-//! ([`shadow`](crate::oracle::shadow)) say: of the vertices, and of the points that the bodies were made of.
+//! Compares answers with the linear programme ([`simplex`](crate::oracle::simplex)) and the exact lateral
+//! overlap ([`shadow`](crate::oracle::shadow)), for the vertices and for the input points of the bodies.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use crate::oracle::scene::Scene;
 use crate::oracle::shadow::{SignedDistance, sideways_overlap};
 use crate::oracle::simplex::collision_translation;
 
-/// What the oracle says of a scene: it takes long, so it is asked once.
+/// The results of the oracle for a scene. They are computed once, because that is slow.
 #[derive(Debug)]
 pub(super) struct Truth {
     pub(super) translation: Option<Ratio>,
@@ -19,29 +19,31 @@ pub(super) struct Truth {
 }
 
 impl Truth {
+    /// Computes the results of the oracle.
     fn of(scene: &Scene) -> Self {
         Self { translation: collision_translation(scene), overlap: sideways_overlap(scene) }
     }
 }
 
 impl Judge<'_> {
+    /// Returns the results of the oracle for the vertices.
     pub(super) fn truth(&self) -> &Truth {
         self.truth.get_or_init(|| Truth::of(&self.scene))
     }
 
-    /// Compares an answer with the linear programme and the exact sideways overlap, of the vertices:
-    /// outcome exactly, value within the stated bound; and of the input points: their value is within the
-    /// stated bounds, too ([`input`](crate::oracle::input)).
+    /// Compares an answer with the linear programme and the exact lateral overlap of the vertices: its outcome
+    /// exactly, its value up to the stated bound. For the input points, the value must be within the stated
+    /// bounds ([`input`](crate::oracle::input)).
     ///
     /// # Errors
-    /// How they disagree.
+    /// [`Objection`] with the difference.
     pub fn compare_with_oracle(&self, outcome: &Outcome) -> Result<(), Objection> {
         self.compare_vertices(outcome)?;
         let Some(input) = &self.input else { return Ok(()) };
         self.compare_input(outcome, input).map_err(|e| Objection(format!("of the input: {e}")))
     }
 
-    /// The consequences of [`input`](crate::oracle::input).
+    /// Checks the consequences for the input points, see [`input`](crate::oracle::input).
     fn compare_input(&self, outcome: &Outcome, input: &Scene) -> Result<(), Objection> {
         let Truth { translation: truth, overlap } =
             self.truth_of_input.get_or_init(|| Truth::of(input));
@@ -57,7 +59,7 @@ impl Judge<'_> {
                 Ok(())
             }
             Outcome::Contact(contact) => {
-                require!(truth.is_some(), "contact, but they never meet");
+                require!(truth.is_some(), "contact, but the bodies never meet");
                 Self::encloses(contact, truth.as_ref())
             }
             Outcome::Grazing(grazing) => {
@@ -72,7 +74,7 @@ impl Judge<'_> {
         }
     }
 
-    /// The bounds enclose the true value.
+    /// Checks that the bounds enclose the exact value.
     fn encloses(contact: &Contact, truth: Option<&Ratio>) -> Result<(), Objection> {
         let Some(truth) = truth else { return Ok(()) };
         let Certificate { lower, upper, .. } = contact.certificate;
@@ -85,12 +87,13 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// The hull errors of both bodies together, in the world: poses may stretch lengths by a
+    /// Returns the sum of the hull errors of both bodies in the world. Poses may scale lengths by up to a
     /// millionth, and normals are unit vectors up to rounding.
     pub(super) fn hull_errors(&self) -> f64 {
         (self.cast.moving().hull_error() + self.cast.fixed().hull_error()) * (1.0 + 4e-6)
     }
 
+    /// Compares an answer with the results of the oracle for the vertices.
     fn compare_vertices(&self, outcome: &Outcome) -> Result<(), Objection> {
         let Truth { translation: truth, overlap } = self.truth();
         let meets = overlap.sign != Ordering::Less;
@@ -130,9 +133,9 @@ impl Judge<'_> {
         }
     }
 
-    /// The value agrees with the true one within the tolerance that the certificate states, and the
-    /// bounds enclose the true one exactly.
-    #[expect(clippy::unused_self, reason = "reads like its siblings")]
+    /// Checks that the value agrees with the exact one up to the tolerance of the certificate, and that the
+    /// bounds enclose the exact value.
+    #[expect(clippy::unused_self, reason = "has the same form as the other checks")]
     fn agrees(&self, contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
         Self::not_below(contact, truth)?;
         let Certificate { upper, rounding, .. } = contact.certificate;
@@ -152,9 +155,9 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// The value is the true one, or less, within the tolerance that the certificate states: the
-    /// bodies may have been widened sideways, and widened bodies meet earlier, how much earlier is
-    /// for the slope of their faces at the rim to say.
+    /// Checks that the value is the exact one or less, up to the tolerance of the certificate. The bodies may
+    /// have been widened laterally, and widened bodies meet earlier, by an amount that depends on the slope of
+    /// their faces at the boundary.
     fn not_later(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
         Self::not_below(contact, truth)?;
         let tolerance = contact.certificate.rounding;
@@ -169,7 +172,7 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// The lower bound is one, exactly.
+    /// Checks that the lower bound does not exceed the exact value.
     fn not_below(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
         let lower = contact.certificate.lower;
         require!(

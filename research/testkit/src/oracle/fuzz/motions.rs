@@ -1,7 +1,8 @@
-//! Bodies that turn.
+//! Fuzz target of rotating bodies.
 //!
-//! Bytes are read as for casts, whose direction is the way of the moving body's axis; then of each body an arm and an
-//! axis, its angle as a product, and of the fixed one its way; and what is to be kept.
+//! Bytes are read as for casts, whose direction is the translation of the moving body's axis. Then follow, for
+//! each body, arm, axis and angle (a product of two numbers), and for the fixed body the translation of its
+//! axis, and finally the gap or tolerance.
 
 use colltrans::QueryError;
 use colltrans::motion::{Motion, MotionCast};
@@ -9,12 +10,13 @@ use colltrans::motion::{Motion, MotionCast};
 use super::{Reader, read_setting};
 use crate::oracle::motion::{Judge, Spin};
 
-/// Angles beyond are for the library's own checks.
+/// Maximum angle. Larger angles are covered by the library's own checks.
 const MOST_ANGLE: f64 = 1e4;
-/// Planes of a proof that are judged with as many digits as it takes: more would only make a run slower.
+/// Maximum number of planes of a proof that is judged exactly. More planes would only slow down a run.
 const MOST_PLANES: usize = 40;
 
-/// A first contact of two bodies that spin is proven, and its proof holds for the motion as a real function.
+/// Checks that a first contact of two rotating bodies is proven, and that its proof holds for the motion as a
+/// real function.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -45,7 +47,7 @@ pub fn motion(bytes: &[u8]) {
     let Ok(cast) = kept else { return };
     let outcome = match cast.first_contact() {
         Ok(outcome) => outcome,
-        // Of bodies that are nearly straight lines: nothing is said of them.
+        // Bodies that are nearly straight lines may have no answer.
         Err(QueryError::NotConverged { .. }) => return,
         Err(error) => panic!("{error}"),
     };

@@ -1,7 +1,7 @@
-//! Questions without a direction, casts that keep a gap, and one body among many.
+//! Fuzz targets of queries without a direction, casts with a minimum gap, and scene queries.
 //!
-//! Bytes are read as for casts: how numbers are written, a byte of which the first two bits say which body is
-//! turned and the third whether they are solids, the bodies, their poses, and what is asked.
+//! Bytes are read as for casts: the conversion of numbers, a byte (bits 0 and 1 select the rotated bodies, bit
+//! 2 selects solids), the bodies, their poses, and the parameters of the query.
 
 use colltrans::solid::SolidCast;
 use colltrans::{Among, AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose};
@@ -13,11 +13,12 @@ use crate::oracle::solids::{keep as solids_keep, nearest as solids};
 use crate::oracle::{among, keep as convex_keep, nearest};
 use crate::tally::Tally;
 
-/// Pairs of facets that are judged in fractions: more would only make a run slower.
+/// Maximum number of pairs of facets that are judged in rational arithmetic. More pairs would only slow down a
+/// run.
 const MOST_PAIRS: usize = 600;
-/// Vertices of both bodies up to which a depth is compared with the exact one.
+/// Maximum number of vertices of both bodies for which a depth is compared with the exact one.
 const MOST_COMPARED: usize = 12;
-/// Changes of a scene.
+/// Maximum number of changes of a scene.
 const MOST_CHANGES: usize = 12;
 
 /// Two placed bodies.
@@ -26,6 +27,7 @@ enum Read {
     Solids(Box<solids::Setting>),
 }
 
+/// Reads two placed bodies; `None` if they are invalid.
 fn read(reader: &mut Reader) -> Option<Read> {
     let turned = reader.clone().byte();
     if turned & 4 == 0 {
@@ -40,18 +42,20 @@ fn read(reader: &mut Reader) -> Option<Read> {
     Some(Read::Solids(Box::new(solids::Setting { solids, poses })))
 }
 
+/// Reads a pose; `None` if it is out of range.
 fn read_pose(reader: &mut Reader, is_turned: bool) -> Option<Pose> {
     let rotation = if is_turned { reader.rotation() } else { DQuat::IDENTITY };
     Pose::new(rotation, reader.vector()).ok()
 }
 
+/// Builds the pair of a setting.
 fn pair<'a>(setting: &Setting, bodies: &'a Bodies) -> Pair<'a> {
     let [p, q] = [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
     Pair::new(p, q).expect("any two placed bodies are a pair")
 }
 
-/// The distance of two bodies is between its bounds, and its proofs hold and say no more; of solids also whether
-/// they are within some lengths.
+/// Checks that the distance of two bodies is between its bounds, and that its proofs are valid and prove no
+/// more. For solids, also checks whether they are within some lengths.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -70,7 +74,7 @@ pub fn distance(bytes: &[u8]) {
     }
 }
 
-/// The depth of two convex bodies is between its bounds, with proofs.
+/// Checks that the depth of two convex bodies is between its bounds, with proofs.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -87,7 +91,7 @@ pub fn depth(bytes: &[u8]) {
     }
 }
 
-/// Whether two convex bodies are within a length, one of the bytes and those around the true distance.
+/// Checks whether two convex bodies are within lengths from the bytes and around the exact distance.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -108,7 +112,7 @@ pub fn within(bytes: &[u8]) {
     }
 }
 
-/// A cast that keeps a gap is refused, or its answers are approved in fractions.
+/// Checks that a cast with a minimum gap is rejected, or that its answers are approved in exact arithmetic.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -121,7 +125,7 @@ pub fn keep(bytes: &[u8]) {
             let ([a, b], [p, q]) = (&of.solids, of.poses);
             let cast = Cast::new(a.at(p), b.at(q), reader.vector());
             let kept = cast.and_then(|cast| cast.with_tolerance(0.0)?.keeping(gap));
-            // What is much larger than the gap is for other judges.
+            // Bodies that are much larger than the gap are covered by other judges.
             if let Ok(cast) = kept
                 && gap > 1e-6 * of.reach()
             {
@@ -140,7 +144,8 @@ pub fn keep(bytes: &[u8]) {
     }
 }
 
-/// Among obstacles that came, moved and went a body is answered as by asking all one by one.
+/// Checks that a scene query after insertions, moves and removals gives the answers of queries of each
+/// obstacle.
 ///
 /// # Panics
 /// If an answer is wrong.
@@ -166,7 +171,7 @@ pub fn among(bytes: &[u8]) {
     let Some(pose) = read_pose(&mut reader, true) else { return };
     let (direction, length) = (reader.vector(), reader.number().abs());
     let is_asked = direction.is_finite() && direction != DVec3::ZERO && length.is_finite();
-    // Points and segments are no solids: mixed with them they are refused.
+    // Points and segments are not solids, so a scene with both is rejected.
     let refused = Among::new(moving.at(pose), &obstacles).is_err();
     if is_asked && !refused && (1e-9..1e9).contains(&direction.length()) {
         among::Setting::of(obstacles, moving, pose, direction, length)
@@ -175,7 +180,7 @@ pub fn among(bytes: &[u8]) {
     }
 }
 
-/// Obstacles that come, move and go.
+/// Reads a sequence of insertions, moves and removals; `None` if a pose is invalid.
 fn scene(reader: &mut Reader, bodies: &[AnyBody]) -> Option<Obstacles> {
     let mut obstacles = Obstacles::new();
     let mut ids: Vec<ObstacleId> = Vec::new();

@@ -1,4 +1,4 @@
-//! Bodies and directions that families share.
+//! Draws bodies and directions that several families use.
 
 use std::f64::consts::TAU;
 
@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::random::Random;
 use crate::shapes::cuboid;
 
+/// Draws random points.
 pub(super) fn cloud(rng: &mut Random) -> Vec<DVec3> {
     let n = rng.int(4, 12);
     let axes = DVec3::new(rng.range(0.4, 1.4), rng.range(0.4, 1.4), rng.range(0.4, 1.4));
@@ -17,11 +18,12 @@ pub(super) fn cloud(rng: &mut Random) -> Vec<DVec3> {
     }
 }
 
+/// Draws a box with integer half extents.
 pub(super) fn whole_box(rng: &mut Random) -> Vec<DVec3> {
     cuboid(rng.grid(1, 4)).vertices
 }
 
-/// An upright prism over a regular polygon, the apex angle of the first corner given.
+/// Returns an upright prism over a regular polygon. The angle of its first corner is `first_rad`.
 pub(super) fn prism(sides: u32, radius: f64, half_height: f64, first_rad: f64) -> Vec<DVec3> {
     let corner = |k: u32| {
         let angle_rad = first_rad + TAU * f64::from(k) / f64::from(sides);
@@ -31,10 +33,12 @@ pub(super) fn prism(sides: u32, radius: f64, half_height: f64, first_rad: f64) -
     (0..sides).flat_map(|k| [corner(k), corner(k) * mirror]).collect()
 }
 
+/// Returns an octahedron.
 pub(super) fn octahedron(radius: f64) -> Vec<DVec3> {
     DVec3::AXES.into_iter().flat_map(|e| [e * radius, -e * radius]).collect()
 }
 
+/// Draws points in the plane z = 0.
 pub(super) fn flat_body(rng: &mut Random) -> Vec<DVec3> {
     let (n, whole) = (rng.int(3, 7), rng.one_in(2));
     (0..n)
@@ -45,16 +49,17 @@ pub(super) fn flat_body(rng: &mut Random) -> Vec<DVec3> {
         .collect()
 }
 
+/// Draws an axis in either direction.
 pub(super) fn axis(rng: &mut Random) -> DVec3 {
     rng.pick(&DVec3::AXES) * rng.pick(&[1.0, -1.0])
 }
 
-/// An axis, or any direction.
+/// Draws an axis, or any direction.
 pub(super) fn axis_or_any(rng: &mut Random) -> DVec3 {
     if rng.one_in(2) { axis(rng) } else { rng.direction() }
 }
 
-/// Where a body has to be to be met, more or less, along a direction.
+/// Draws a position that a body meets approximately along a direction.
 pub(super) fn ahead(rng: &mut Random, direction: DVec3, distance: f64, miss: f64) -> DVec3 {
     direction * distance + rng.direction().cross(direction) * rng.range(0.0, miss)
 }

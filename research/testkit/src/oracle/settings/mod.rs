@@ -1,8 +1,6 @@
-//! Settings that are hard on purpose: random ones, and tied ones, which are the rule among the
-//! parts of machines.
+//! Draws settings that are deliberately difficult: random ones, and ties, which are common among machine parts.
 //!
-//! A setting is a function of its family's name and a seed, so that a line of a report is enough to
-//! replay it.
+//! A setting is a function of the family's name and a seed, so that a line of a report suffices to replay it.
 
 mod bodies;
 mod nearly_flat;
@@ -31,20 +29,20 @@ use self::tied::{
 };
 use crate::shapes::reach;
 
-/// Two bodies by their points, where they are, and where one is going.
+/// Two bodies given by points, their poses, and the direction.
 #[derive(Debug, Clone)]
 pub struct Setting {
-    /// The family it belongs to.
+    /// The family.
     pub family: &'static str,
-    /// The seed it was drawn with.
+    /// The seed.
     pub seed: u64,
-    /// Points whose hull is the moving body.
+    /// The points whose hull is the moving body.
     pub moving: Vec<DVec3>,
-    /// Points whose hull is the fixed body.
+    /// The points whose hull is the fixed body.
     pub fixed: Vec<DVec3>,
-    /// Where the moving body is.
+    /// The pose of the moving body.
     pub moving_pose: Pose,
-    /// Where the fixed body is.
+    /// The pose of the fixed body.
     pub fixed_pose: Pose,
     /// The direction.
     pub direction: DVec3,
@@ -71,7 +69,7 @@ impl Setting {
     /// Builds both bodies.
     ///
     /// # Errors
-    /// As [`ConvexPolyhedron::from_points`].
+    /// The errors of [`ConvexPolyhedron::from_points`].
     pub fn bodies(&self) -> Result<Bodies, BuildError> {
         Ok(Bodies {
             moving: ConvexPolyhedron::from_points(&self.moving)?,
@@ -79,36 +77,36 @@ impl Setting {
         })
     }
 
-    /// The query, with default choices but for the graze tolerance.
+    /// Builds the query, with default options except for the graze tolerance.
     ///
     /// # Errors
-    /// As [`Cast::new`] and [`Cast::with_graze_tolerance`].
+    /// The errors of [`Cast::new`] and [`Cast::with_graze_tolerance`].
     pub fn query<'a>(&self, bodies: &'a Bodies) -> Result<Cast<'a>, QueryError> {
         let Bodies { moving, fixed } = bodies;
         Cast::new(moving.at(self.moving_pose), fixed.at(self.fixed_pose), self.direction)?
             .with_graze_tolerance(self.graze_tolerance)
     }
 
-    /// Asks the library where the bodies first meet.
+    /// Computes the first contact with a solver.
     ///
     /// # Errors
-    /// As [`Self::query`] and [`Cast::first_contact`].
+    /// The errors of [`Self::query`] and [`Cast::first_contact`].
     pub fn cast(&self, bodies: &Bodies, solver: Solver) -> Result<Outcome, QueryError> {
         self.query(bodies)?.with_solver(solver).first_contact()
     }
 
-    /// The judge of answers about it.
+    /// Builds the judge of answers.
     ///
     /// # Panics
-    /// If the library refuses the query.
+    /// If the library rejects the query.
     pub fn judge<'a>(&self, bodies: &'a Bodies) -> Judge<'a> {
         Judge::new(self.query(bodies).expect("a query")).with_input(&self.moving, &self.fixed)
     }
 
-    /// Holds both bodies against the points that they were made of.
+    /// Compares both bodies with their input points.
     ///
     /// # Errors
-    /// Which one does not keep them, and how; as [`input::judge`].
+    /// [`Objection`] of [`input::judge`] with the name of the body.
     pub fn judge_bodies(&self, bodies: &Bodies) -> Result<[Kept; 2], Objection> {
         let named = |name: &'static str| move |e| Objection(format!("{name} body: {e}"));
         Ok([
@@ -117,13 +115,13 @@ impl Setting {
         ])
     }
 
-    /// All numbers of the setting, for a report.
+    /// Returns all numbers of the setting for a report.
     pub fn dump(&self) -> String {
         format!("{self:?}")
     }
 }
 
-/// A family: its name, and how to draw one of its settings.
+/// A family: its name, and the function that draws a setting.
 pub type Family = (&'static str, fn(&mut Random) -> Draft);
 
 /// All families.
@@ -158,7 +156,7 @@ pub const FAMILIES: &[Family] = &[
     ("nearly-straight", |rng| onto_nearly_flat(rng, needle)),
 ];
 
-/// The families of bodies that are hardly thicker than rounding, or less.
+/// The families of bodies with a thickness of about rounding errors or less.
 pub const NEARLY_FLAT: &[&str] = &[
     "nearly-flat-disc",
     "nearly-flat-prism",
@@ -167,7 +165,7 @@ pub const NEARLY_FLAT: &[&str] = &[
     "nearly-straight",
 ];
 
-/// A setting before it is turned and scaled as a whole.
+/// A setting before it is rotated and scaled as a whole.
 #[derive(Debug, Clone)]
 pub struct Draft {
     moving: Vec<DVec3>,
@@ -181,6 +179,7 @@ pub struct Draft {
 }
 
 impl Draft {
+    /// Builds a draft without rotations, with the moving body at the origin.
     fn new(moving: Vec<DVec3>, fixed: Vec<DVec3>, fixed_at: DVec3, direction: DVec3) -> Self {
         Self {
             moving,
@@ -194,11 +193,12 @@ impl Draft {
         }
     }
 
+    /// Sets the rotations.
     fn turned(self, moving_rotation: DQuat, fixed_rotation: DQuat) -> Self {
         Self { moving_rotation, fixed_rotation, ..self }
     }
 
-    /// The whole scene turned: ties that were exact are now ties up to rounding.
+    /// Rotates the whole scene. Exact ties become ties up to rounding.
     fn turn(&mut self, rotation: DQuat) {
         self.moving_rotation = (rotation * self.moving_rotation).normalize();
         self.fixed_rotation = (rotation * self.fixed_rotation).normalize();
@@ -208,8 +208,8 @@ impl Draft {
     }
 }
 
-/// Where the moving body is brought to a gap, or a depth, along the direction: of `1e-3` to `1e-15` of the size, or
-/// none. Nothing for those left as they are drawn.
+/// Returns a pose of the moving body with a gap or a depth along the direction, of `1e-3` to `1e-15` of the
+/// size, or zero. `None` for settings that are left unchanged.
 pub fn near_contact(setting: &Setting, bodies: &Bodies, random: &mut Random) -> Option<Pose> {
     let kind = random.index(8);
     if kind < 2 {
@@ -229,11 +229,11 @@ pub fn near_contact(setting: &Setting, bodies: &Bodies, random: &mut Random) -> 
     setting.moving_pose.translated(way - back).ok()
 }
 
-/// The setting of a family with a seed: half of them as drawn, half turned as a whole; some with a
-/// direction that is turned around or no unit vector.
+/// Draws the setting of a family with a seed. Half of them are rotated as a whole. For some the direction is
+/// reversed or is not a unit vector.
 ///
 /// # Panics
-/// If there is no such family.
+/// If the family is unknown.
 pub fn setting(family: &str, seed: u64) -> Setting {
     let &(family, draw) = FAMILIES.iter().find(|f| f.0 == family).expect("a known family");
     let salt = family.bytes().fold(0, |h: u64, b| h.wrapping_mul(31).wrapping_add(b.into()));

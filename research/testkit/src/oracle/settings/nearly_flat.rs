@@ -1,4 +1,4 @@
-//! Bodies that are hardly thicker than rounding, or less, and faces that are flat only nearly.
+//! Draws bodies with a thickness of about rounding errors or less, and nearly flat faces.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use super::bodies::{cloud, prism};
 use crate::random::Random;
 use crate::shapes::cuboid;
 
-/// Corners on an ellipse, each a share of the thickness off its plane.
+/// Draws corners on an ellipse, each off its plane by a fraction of the thickness.
 pub(super) fn disc(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let (sides, width) = (rng.int(5, 24), rng.pick(&[1.0, 1.0, 0.3, 1e-3]));
     let first_rad = rng.pick(&[0.0, 0.3]);
@@ -19,11 +19,12 @@ pub(super) fn disc(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
         .collect()
 }
 
+/// Draws a flat prism over a regular polygon.
 pub(super) fn flat_prism(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     prism(rng.int(3, 16) as u32, 1.0, 0.5 * thickness, rng.pick(&[0.0, 0.3]))
 }
 
-/// A box, or points in one, dense or in a wedge.
+/// Draws a box, or points in a box or in a wedge.
 pub(super) fn plate(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let half = DVec3::new(1.0, rng.pick(&[1.0, 0.5, 1e-2]), 0.5 * thickness);
     match rng.int(0, 2) {
@@ -36,7 +37,7 @@ pub(super) fn plate(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     }
 }
 
-/// Points of a grid in a plane, each a share of the thickness off it.
+/// Draws points of a grid in a plane, each off the plane by a fraction of the thickness.
 pub(super) fn lattice(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let [columns, rows] = [0; 2].map(|_| rng.int(2, 5));
     let mut points = Vec::new();
@@ -48,14 +49,14 @@ pub(super) fn lattice(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     points
 }
 
-/// Points along an axis, each a share of the thickness off it.
+/// Draws points along an axis, each off the axis by a fraction of the thickness.
 pub(super) fn needle(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let across = DVec3::new(0.0, thickness, thickness * rng.pick(&[1.0, 1.0, 1e-2, 1e2]));
     (0..rng.int(4, 16)).map(|_| rng.vector() * across + DVec3::X * rng.range(-1.0, 1.0)).collect()
 }
 
-/// A nearly flat body of a shape: `1e-16` to `1e-11` thick, most turned in its frame, some modelled far
-/// from the origin and brought back, or left there.
+/// Draws a nearly flat body of a shape. Its thickness is `1e-16` to `1e-11` or 0. Most are rotated in their
+/// frame. Some are modelled far from the origin, and moved back or left there.
 fn nearly_flat(rng: &mut Random, shape: fn(&mut Random, f64) -> Vec<DVec3>) -> Vec<DVec3> {
     let some = 10_f64.powf(rng.range(-16.0, -11.0));
     let thickness = if rng.one_in(5) { 0.0 } else { some };
@@ -80,8 +81,8 @@ fn nearly_flat(rng: &mut Random, shape: fn(&mut Random, f64) -> Vec<DVec3>) -> V
     points
 }
 
-/// A point, a cloud or another such body onto one of the points that a nearly flat body is made of, or
-/// next to it.
+/// Draws a point, a cloud or a second nearly flat body that moves onto a point of a nearly flat body, or next
+/// to it.
 pub(super) fn onto_nearly_flat(
     rng: &mut Random,
     shape: fn(&mut Random, f64) -> Vec<DVec3>,
@@ -95,7 +96,7 @@ pub(super) fn onto_nearly_flat(
     let target = rng.pick(&fixed);
     let middle = fixed.iter().sum::<DVec3>() / fixed.len() as f64;
     let inwards = rng.pick(&[0.0, 1e-15, 1e-12, 1e-6, 0.1, 1.0]);
-    // Across the rim, along the body, or anyhow.
+    // Towards the centre, along the body, or any direction.
     let (rim, any) = ((middle - target).normalize_or(DVec3::Z), rng.direction());
     let side = (rng.pick(&fixed) - rng.pick(&fixed)).normalize_or(any);
     let direction = rng.pick(&[any, any, rim, side]);
@@ -106,8 +107,9 @@ pub(super) fn onto_nearly_flat(
     Draft::new(moving, fixed, at, direction).turned(moving_turn, fixed_turn)
 }
 
-/// Rings of a narrow ellipse, the upper ones with corners a few roundings off their plane, above a
-/// chamfer and a base: faces with many corners that are flat only nearly, beside edges of any length.
+/// Draws rings of a narrow ellipse, with a chamfer and a base below. The corners of the upper rings are off
+/// their plane by a few roundings. The result has nearly flat faces with many corners, and edges of very
+/// different lengths.
 pub fn narrow_rings(rng: &mut Random) -> Vec<DVec3> {
     let ten = |rng: &mut Random, low, high| 10_f64.powf(rng.range(low, high));
     let corners = rng.int(9, 12) as u32;
@@ -133,7 +135,8 @@ pub fn narrow_rings(rng: &mut Random) -> Vec<DVec3> {
     points
 }
 
-/// Narrow rings whose tops face each other, or that of one a cloud, tilted a little.
+/// Draws two bodies of narrow rings with their tops facing each other, slightly tilted. The fixed body may be a
+/// cloud.
 pub(super) fn nearly_flat_faces(rng: &mut Random) -> Draft {
     let tilt = |rng: &mut Random| {
         let angle = 10_f64.powf(rng.range(-17.0, -1.0));

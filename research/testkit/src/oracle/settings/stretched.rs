@@ -1,4 +1,4 @@
-//! Random bodies anywhere, and what is out of proportion: sizes, places, thicknesses, slopes.
+//! Draws random bodies, and extreme proportions of sizes, positions, thicknesses and slopes.
 
 use std::f64::consts::TAU;
 
@@ -10,6 +10,7 @@ use super::tied::{boxes, grid, prisms};
 use crate::random::Random;
 use crate::shapes::cuboid;
 
+/// Draws two random bodies.
 pub(super) fn random(rng: &mut Random) -> Draft {
     let direction = axis_or_any(rng);
     let distance = rng.range(-3.0, 6.0);
@@ -18,6 +19,7 @@ pub(super) fn random(rng: &mut Random) -> Draft {
     draft.turned(rng.rotation(), rng.rotation())
 }
 
+/// Draws bodies with a large aspect ratio.
 pub(super) fn needle_plate(rng: &mut Random) -> Draft {
     let mut body = || {
         let long = rng.pick(&[100.0, 1000.0]);
@@ -33,6 +35,7 @@ pub(super) fn needle_plate(rng: &mut Random) -> Draft {
     if rng.one_in(3) { draft } else { draft.turned(rng.rotation(), rng.rotation()) }
 }
 
+/// Draws bodies of very different sizes.
 pub(super) fn size_ratio(rng: &mut Random) -> Draft {
     let mut draft = if rng.one_in(3) { boxes(rng) } else { random(rng) };
     let factor = rng.pick(&[1e6, 1e-6, 1e3]);
@@ -45,7 +48,7 @@ pub(super) fn size_ratio(rng: &mut Random) -> Draft {
     draft
 }
 
-/// Bodies far from the origin of their frame, or of the world, or of both.
+/// Draws bodies far from the origin of their frame, of the world, or of both.
 pub(super) fn offset(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 2) {
         0 => boxes(rng),
@@ -68,6 +71,7 @@ pub(super) fn offset(rng: &mut Random) -> Draft {
     draft
 }
 
+/// Draws bodies far apart.
 pub(super) fn far(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 2) {
         0 => boxes(rng),
@@ -78,6 +82,7 @@ pub(super) fn far(rng: &mut Random) -> Draft {
     draft
 }
 
+/// Draws flat bodies.
 pub(super) fn flat(rng: &mut Random) -> Draft {
     let moving = flat_body(rng);
     let fixed = if rng.one_in(2) { flat_body(rng) } else { whole_box(rng) };
@@ -92,6 +97,7 @@ pub(super) fn flat(rng: &mut Random) -> Draft {
     }
 }
 
+/// Draws points and segments with other bodies.
 pub(super) fn segment_point(rng: &mut Random) -> Draft {
     let mut small = || match rng.int(0, 2) {
         0 => vec![rng.grid(-1, 1)],
@@ -112,8 +118,8 @@ pub(super) fn segment_point(rng: &mut Random) -> Draft {
     if swap { Draft { moving: draft.fixed, fixed: draft.moving, ..draft } } else { draft }
 }
 
-/// A block that glides over a slab, a little downwards: the contact normal is almost orthogonal to
-/// the direction.
+/// Draws a block that slides along a slab, slightly downwards. The contact normal is almost orthogonal to the
+/// direction.
 pub(super) fn shallow(rng: &mut Random) -> Draft {
     let slab =
         cuboid(DVec3::new(rng.whole(2, 9), rng.whole(1, 3), rng.pick(&[0.0, 0.5, 1.0]))).vertices;
@@ -133,7 +139,7 @@ pub(super) fn shallow(rng: &mut Random) -> Draft {
     Draft::new(block, slab, at, direction)
 }
 
-/// Slabs from a thousandth of their width down to nothing.
+/// Draws slabs with a thickness from a thousandth of their width down to zero.
 pub(super) fn thin(rng: &mut Random) -> Draft {
     let mut slab = || {
         let thickness = rng.pick(&[1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-17, 0.0]);
@@ -148,7 +154,7 @@ pub(super) fn thin(rng: &mut Random) -> Draft {
     if rng.one_in(2) { draft } else { draft.turned(rng.rotation(), DQuat::IDENTITY) }
 }
 
-/// Very small and very large scenes.
+/// Draws very small and very large scenes.
 pub(super) fn magnitude(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 3) {
         0 => boxes(rng),

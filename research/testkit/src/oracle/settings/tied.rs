@@ -1,4 +1,4 @@
-//! Ties: faces on faces, edges on edges, vertices on rims, exactly or but for the last digits.
+//! Draws ties: faces on faces, edges on edges, vertices on boundaries, exactly or up to the last digits.
 
 use std::f64::consts::TAU;
 
@@ -9,6 +9,7 @@ use super::bodies::{axis, axis_or_any, cloud, octahedron, prism, whole_box};
 use crate::random::Random;
 use crate::shapes::cuboid;
 
+/// Draws axis-aligned boxes with integer coordinates.
 pub(super) fn boxes(rng: &mut Random) -> Draft {
     let direction = if rng.one_in(4) { rng.grid(-1, 1) } else { axis(rng) };
     let direction = if direction == DVec3::ZERO { DVec3::Z } else { direction };
@@ -16,7 +17,7 @@ pub(super) fn boxes(rng: &mut Random) -> Draft {
     Draft::new(whole_box(rng), whole_box(rng), at, direction)
 }
 
-/// Boxes turned by multiples of a right angle, or of half of one.
+/// Draws boxes rotated by multiples of 90 or of 45 degrees.
 pub(super) fn turned_boxes(rng: &mut Random) -> Draft {
     let step = rng.pick(&[TAU / 4.0, TAU / 8.0]);
     let mut turn = || DQuat::from_axis_angle(axis(rng), step * rng.whole(0, 7));
@@ -24,6 +25,7 @@ pub(super) fn turned_boxes(rng: &mut Random) -> Draft {
     boxes(rng).turned(moving, fixed)
 }
 
+/// Draws prisms with the same number of sides.
 pub(super) fn prisms(rng: &mut Random) -> Draft {
     let sides = rng.int(3, 6) as u32;
     let first_rad = rng.pick(&[0.0, TAU / 12.0, 0.3]);
@@ -34,6 +36,7 @@ pub(super) fn prisms(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
+/// Draws points on a grid.
 pub(super) fn grid(rng: &mut Random) -> Draft {
     let mut body = || {
         let n = rng.int(1, 12);
@@ -46,7 +49,7 @@ pub(super) fn grid(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
-/// A face of one body parallel to a face of the other, touching or apart.
+/// Draws bodies with parallel faces that touch, overlap or are apart.
 pub(super) fn face_face(rng: &mut Random) -> Draft {
     let half = rng.grid(1, 3) * 0.25;
     let mut moving = cuboid(half).vertices;
@@ -60,7 +63,7 @@ pub(super) fn face_face(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
-/// Two roofs, ridge over ridge.
+/// Draws two roofs with their ridges facing each other.
 pub(super) fn edge_edge_parallel(rng: &mut Random) -> Draft {
     let mut roof = |up: f64| {
         let (length, width, height) = (rng.whole(1, 3), rng.whole(1, 3), up * rng.whole(1, 2));
@@ -76,6 +79,7 @@ pub(super) fn edge_edge_parallel(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
+/// Draws octahedra and cubes with vertices facing each other.
 pub(super) fn vertex_over_vertex(rng: &mut Random) -> Draft {
     let moving = octahedron(rng.whole(1, 3));
     let fixed = if rng.one_in(3) {
@@ -89,7 +93,7 @@ pub(super) fn vertex_over_vertex(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
-/// A vertex or an edge that comes down exactly on the rim of a face, or just inside or outside it.
+/// Draws a vertex or an edge that meets the boundary of a face exactly, or slightly inside or outside of it.
 pub(super) fn rim(rng: &mut Random) -> Draft {
     let half = rng.grid(1, 3);
     let fixed = cuboid(half).vertices;
@@ -107,6 +111,7 @@ pub(super) fn rim(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, DVec3::Z)
 }
 
+/// Draws two copies of the same body.
 pub(super) fn identical(rng: &mut Random) -> Draft {
     let body = if rng.one_in(2) { cloud(rng) } else { whole_box(rng) };
     let direction = axis_or_any(rng);
@@ -120,7 +125,7 @@ pub(super) fn identical(rng: &mut Random) -> Draft {
     Draft::new(body.clone(), body, at, direction).turned(rotation, rotation)
 }
 
-/// A peg that slides along a wall with no clearance, or with a little, or with a little too much.
+/// Draws a peg that slides along a wall with zero, small positive or small negative clearance.
 pub(super) fn peg(rng: &mut Random) -> Draft {
     let (peg, wall) = (rng.grid(1, 4) * 0.1, rng.grid(1, 9) * 0.1);
     let clearance = rng.pick(&[0.0, 0.0, 0.0, 1e-6, -1e-6, 1e-13, -1e-13]);
@@ -136,7 +141,7 @@ pub(super) fn peg(rng: &mut Random) -> Draft {
     Draft { graze_tolerance: rng.pick(&[0.0, 0.0, 1e-9, 1e-5, 1e-3]), ..draft }
 }
 
-/// Prisms of many sides, side by side or one over the other, on the same axis or tangent.
+/// Draws prisms with many sides, coaxial, tangent or side by side.
 pub(super) fn cylinders(rng: &mut Random) -> Draft {
     let sides = rng.pick(&[8, 12]);
     let (r, s) = (rng.whole(1, 3), rng.whole(1, 3));
@@ -148,7 +153,7 @@ pub(super) fn cylinders(rng: &mut Random) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
-/// Tied settings whose ties are broken in the last digits.
+/// Draws tied settings whose ties are broken in the last digits.
 pub(super) fn nearly(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 4) {
         0 => boxes(rng),

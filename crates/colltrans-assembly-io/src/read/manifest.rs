@@ -153,7 +153,7 @@ pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
         })?
     } else {
         let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
-        serde_json::from_str(&text).map_err(|e| contents_error(path, part_place(&e), plain(&e)))?
+        serde_json::from_str(&text).map_err(|e| contents_error(path, place(&e), plain(&e)))?
     };
     let metres = manifest.unit.as_deref().and_then(units::metres);
     let mut gathered =

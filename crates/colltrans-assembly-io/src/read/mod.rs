@@ -153,7 +153,7 @@ impl ReadOptions {
 /// # Errors
 /// [`ReadError`] if a file cannot be read, with the file and the place, or if the source has no parts.
 #[cfg(feature = "files")]
-pub fn count_file(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
     let path = path.as_ref();
     let folders = files::Folders::for_source(path, options);
     if path.is_dir() {
@@ -180,11 +180,11 @@ fn is_known(path: &Path) -> bool {
     sources.contains(&extension.as_str()) || colltrans_mesh::Format::of_path(path).is_ok()
 }
 
-/// Reads an assembly like [`count_file`], from a provider of files. The extension of `path`, the source, selects the
+/// Reads an assembly like [`read`], from a provider of files. The extension of `path`, the source, selects the
 /// reader.
 ///
 /// # Errors
-/// The errors of [`count_file`].
+/// The errors of [`read`].
 #[cfg(feature = "files")]
 pub fn read_from(
     path: impl AsRef<Path>,

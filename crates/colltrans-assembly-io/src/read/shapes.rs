@@ -65,7 +65,7 @@ pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
 }
 
 /// Builds a cylinder about z, centred at the origin of the piece.
-pub(super) fn cylinder_scale(
+pub(super) fn cylinder(
     radius: f64,
     length: f64,
     round: Round,
@@ -76,7 +76,7 @@ pub(super) fn cylinder_scale(
 }
 
 /// Builds a sphere, centred at the origin of the piece.
-pub(super) fn sphere_scale(radius: f64, round: Round, world_from_piece: DAffine3) -> Piece {
+pub(super) fn sphere(radius: f64, round: Round, world_from_piece: DAffine3) -> Piece {
     let radius = radius * round.sphere_scale();
     let rings = SIDES / 2;
     let at = |k: usize| (k as f64 / rings as f64 * TAU / 2.0).sin_cos();

@@ -143,7 +143,7 @@ fn mesh_bodies(
         return vec![(name.to_owned(), Arc::clone(mesh))];
     };
     let body_of_face = runs.iter().zip(0..).flat_map(|((run, _), k)| run.clone().map(move |_| k));
-    let meshes = mesh.picked(&body_of_face.visit_objects::<Vec<u32>>(), runs.len());
+    let meshes = mesh.picked(&body_of_face.collect::<Vec<u32>>(), runs.len());
     let mut found = Vec::new();
     for ((_, body), mesh) in runs.iter().zip(meshes) {
         let name = body.name.as_deref().unwrap_or(name).to_owned();
@@ -164,7 +164,7 @@ fn item_notes(items: &[Placed], left_out: &[String]) -> Vec<String> {
     }
     let printed = |item: &(usize, &Placed)| item.1.unprinted;
     let unprinted: Vec<String> =
-        items.iter().enumerate().filter(printed).map(|(k, _)| (k + 1).to_string()).visit_objects();
+        items.iter().enumerate().filter(printed).map(|(k, _)| (k + 1).to_string()).collect();
     if !unprinted.is_empty() {
         let listed = unprinted.join(", ");
         notes.push(format!(
@@ -197,7 +197,7 @@ impl<'a> Package<'a> {
 
     /// Returns the names of the files in the archive.
     fn file_names(&self) -> Vec<String> {
-        self.archive.file_names().flatten().map(std::borrow::Cow::into_owned).visit_objects()
+        self.archive.file_names().flatten().map(std::borrow::Cow::into_owned).collect()
     }
 
     /// Describes the contents for the error that there are no parts.
@@ -209,7 +209,7 @@ impl<'a> Package<'a> {
     /// exist.
     fn find_file(&self, path: &str) -> Option<String> {
         let wanted = path_key(path);
-        self.file_names().into_iter().find_file(|name| path_key(name) == wanted)
+        self.file_names().into_iter().find(|name| path_key(name) == wanted)
     }
 
     /// Returns the path of the root model.
@@ -221,7 +221,7 @@ impl<'a> Package<'a> {
             };
             let relations = Element::parse(&text).map_err(refused)?;
             let model =
-                relations.children.iter().find_file(|r| r.get("Type") == Some(ROOT_MODEL_RELATION));
+                relations.children.iter().find(|r| r.get("Type") == Some(ROOT_MODEL_RELATION));
             if let Some(target) = model.and_then(|r| r.get("Target")) {
                 return Ok(target.to_owned());
             }
@@ -231,8 +231,7 @@ impl<'a> Package<'a> {
         }
         // Packages of the production extension also have models in deeper folders.
         let is_model = |n: &String| n.to_ascii_lowercase().ends_with(".model");
-        let mut models: Vec<String> =
-            self.file_names().into_iter().filter(is_model).visit_objects();
+        let mut models: Vec<String> = self.file_names().into_iter().filter(is_model).collect();
         models.sort_by_key(|n| (n.matches('/').count(), n.clone()));
         models.into_iter().next().ok_or_else(|| {
             let reason = format!(
@@ -350,7 +349,7 @@ fn read_models(source: &Source, package: &mut Package, root: &str) -> Result<Mod
         })?;
         let components = model.objects.values().flat_map(|object| &object.components);
         let mut others: Vec<String> =
-            components.chain(&model.items).filter_map(|placed| placed.path.clone()).visit_objects();
+            components.chain(&model.items).filter_map(|placed| placed.path.clone()).collect();
         others.sort();
         open.extend(others);
         by_path.insert(path_key(&path), Rc::new(model));
@@ -408,11 +407,11 @@ impl Models {
             (path_key(placed.path.as_deref().unwrap_or(from)), placed.id.clone())
         };
         let mut reached = HashSet::new();
-        let mut open: Vec<_> = self.root.items.iter().map(|item| at(root, item)).visit_objects();
+        let mut open: Vec<_> = self.root.items.iter().map(|item| at(root, item)).collect();
         while let Some(place) = open.pop() {
             let object = self.by_path.get(&place.0).and_then(|model| model.objects.get(&place.1));
             let components = object.iter().flat_map(|object| &object.components);
-            let below: Vec<_> = components.map(|component| at(&place.0, component)).visit_objects();
+            let below: Vec<_> = components.map(|component| at(&place.0, component)).collect();
             if reached.insert(place) {
                 open.extend(below);
             }
@@ -427,7 +426,7 @@ impl Models {
                 }
             }
         }
-        unplaced.into_values().visit_objects()
+        unplaced.into_values().collect()
     }
 
     /// Visits an object that the model `from` places, and all objects below it.
@@ -493,7 +492,7 @@ impl Parser {
         loop {
             let line = lines.at(reader.buffer_position());
             let place = || format!("line {line}");
-            let event = reader.read_event().map_err(|e| (place(), xml::context(&e)))?;
+            let event = reader.read_event().map_err(|e| (place(), xml::told(&e)))?;
             match event {
                 Event::Start(tag) => {
                     depth += 1;
@@ -677,7 +676,7 @@ impl Attributes {
 }
 
 /// Parses the number in an attribute.
-fn number<T: std::str::FromStr>(key: &str, text: &str) -> Result<T, String> {
+fn parse_number<T: std::str::FromStr>(key: &str, text: &str) -> Result<T, String> {
     text.trim().parse().map_err(|_| format!("{key}=\"{text}\" is not a valid number"))
 }
 
@@ -685,7 +684,7 @@ fn number<T: std::str::FromStr>(key: &str, text: &str) -> Result<T, String> {
 fn parse_transform(text: Option<&str>) -> Result<DAffine3, String> {
     let Some(text) = text else { return Ok(DAffine3::IDENTITY) };
     let numbers: Result<Vec<f64>, String> =
-        text.split_whitespace().map(|t| parse_number("transform", t)).visit_objects();
+        text.split_whitespace().map(|t| parse_number("transform", t)).collect();
     let numbers = numbers?;
     if numbers.len() != 12 {
         return Err(format!("transform has {} numbers, expected 12", numbers.len()));

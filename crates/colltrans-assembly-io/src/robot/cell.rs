@@ -186,7 +186,7 @@ impl NamedBodies {
         Self { names, links: links.len(), bodies }
     }
 
-    fn pairs(
+    fn body_pairs(
         &self,
         robot: &Robot,
         listed: Option<&[[String; 2]]>,

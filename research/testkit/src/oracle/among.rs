@@ -206,7 +206,11 @@ impl Setting {
         require!(proof.lower <= answer.lower, "the proof has a larger lower bound");
         let noise = answer.distance.upper() - answer.distance.lower();
         require!(answer.lower >= distance.lower() - 2.0 * noise, "a lower bound {}", answer.lower);
-        require!(proof.lower >= answer.lower - noise, "the proof has a smaller lower bound: {}", proof.lower);
+        require!(
+            proof.lower >= answer.lower - noise,
+            "the proof has a smaller lower bound: {}",
+            proof.lower
+        );
         for ((id, _), square) in all.iter().zip(squares) {
             let Some(square) = square else { continue };
             require!(is_square_below(answer.lower, square), "{id} is nearer than the lower bound");
@@ -252,7 +256,10 @@ impl Setting {
         if !proof.closer.is_empty() {
             let mut changed = proof.clone();
             changed.closer.pop();
-            require!(asked.verify(&changed).is_err(), "a proof without a closer obstacle is accepted");
+            require!(
+                asked.verify(&changed).is_err(),
+                "a proof without a closer obstacle is accepted"
+            );
         }
         Ok(())
     }
@@ -374,8 +381,14 @@ impl Setting {
         let other = Among::new(self.moving.at(self.pose), &anew).map_err(|e| text(&e))?;
         let [a, b] = [asked, &other].map(|asked| asked.nearest().ok().flatten());
         let of = |nearest: colltrans::Nearest| (nearest.distance, nearest.lower);
-        require!(a.map(of) == b.map(of), "with new obstacles, the distance of the nearest one differs");
-        require!(a.map(|a| a.obstacle) == b.map(|b| old(b.obstacle)), "with new obstacles, the nearest one differs");
+        require!(
+            a.map(of) == b.map(of),
+            "with new obstacles, the distance of the nearest one differs"
+        );
+        require!(
+            a.map(|a| a.obstacle) == b.map(|b| old(b.obstacle)),
+            "with new obstacles, the nearest one differs"
+        );
         let [a, b] = [asked, &other].map(|asked| asked.within(self.length).map_err(|e| text(&e)));
         let (a, b) = (a?, b?);
         let closer: Vec<_> = b.closer.iter().map(|(id, near)| (old(*id), *near)).collect();
@@ -404,7 +417,10 @@ fn refused(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
             continue;
         }
         let refused = asked.verify(&changed).is_err();
-        require!(refused || k == 3 && boxes_tell(asked, proof), "the proof with change {k} is accepted");
+        require!(
+            refused || k == 3 && boxes_tell(asked, proof),
+            "the proof with change {k} is accepted"
+        );
         count += u64::from(refused);
     }
     Ok(count)

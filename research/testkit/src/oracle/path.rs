@@ -200,7 +200,7 @@ impl Arm {
             _ => [last, f64::INFINITY],
         };
         if said != checked {
-            return Err(Objection(format!("said is {said:?}, proven {checked:?}")));
+            return Err(Objection(format!("reported {said:?}, proven {checked:?}")));
         }
         for k in 0..samples {
             let time = said[0] * k as f64 / samples as f64;

@@ -1,4 +1,4 @@
-//! Proofs of contacts, slides and separations of convex bodies, with and without a gap to be kept.
+//! Proofs of contacts, slides and separations of convex bodies, with and without a minimum gap.
 
 use colltrans::{Cast, ContactRange, ConvexPolyhedron, ProofFile};
 use glam::DVec3;
@@ -24,20 +24,20 @@ pub const CASTS: Kind = Kind {
     is_marginal,
 };
 
-/// Casts of bodies that keep a gap.
+/// Casts with a minimum gap.
 pub const WITH_GAP: Kind = Kind { name: "casts-with-gap", base: |seed| cast(seed, true), ..CASTS };
 
-/// Vertices of both bodies, at most.
+/// Maximum number of vertices of both bodies.
 const MOST_VERTICES: usize = 40;
 
-/// Larger than all that is claimed of a body.
+/// A number larger than all claims.
 pub(super) const HUGE: f64 = 1e300;
 
-/// How many noises the library may refuse of what holds.
+/// Number of noises by which the library may reject a true claim.
 pub(super) const BAND: f64 = 8.0;
 
-/// A setting of few vertices, and its bodies: as it is drawn, or with the moving body far behind, beside the fixed one,
-/// or near contact.
+/// Draws a setting with few vertices, and its bodies. The moving body is as drawn, far behind, next to the
+/// fixed one, or near contact.
 pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
     let count = FAMILIES.len() as u64;
     let family = FAMILIES[(seed % count) as usize].0;
@@ -74,7 +74,8 @@ pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
     Some((setting, bodies))
 }
 
-/// Returns the vertices of a body, turned, and points of its faces: rounded, some are beyond the hull that is kept.
+/// Returns the vertices of a body, rotated, and points of its faces. Because of rounding some points are
+/// outside of the hull that the library stores.
 pub(super) fn rounded_cloud(body: &ConvexPolyhedron, random: &mut Random) -> Vec<DVec3> {
     let turn = random.rotation();
     let vertices = body.vertices();
@@ -90,7 +91,7 @@ pub(super) fn rounded_cloud(body: &ConvexPolyhedron, random: &mut Random) -> Vec
     points.iter().map(|v| turn * *v).collect()
 }
 
-/// Moves the moving body across the direction until the shadows are nearly a small distance apart.
+/// Moves the moving body laterally until the shadows are almost a small distance apart.
 fn beside(setting: &mut Setting, bodies: &Convex, random: &mut Random) -> Option<()> {
     let overlap = setting.judge(bodies).scene;
     let overlap = crate::oracle::shadow::sideways_overlap(&overlap).to_f64();
@@ -120,7 +121,7 @@ fn cast(seed: u64, with_gap: bool) -> Option<String> {
     Some(ProofFile::of_range(&cast, &cast.contact_range().ok()?).to_json())
 }
 
-/// A gap of some noises, or of any size beside that of the bodies.
+/// Draws a gap of some noises, or of any size relative to the bodies.
 fn gap(cast: &Cast, random: &mut Random) -> f64 {
     let poses = [&cast.moving_pose(), &cast.fixed_pose()];
     let size = size([cast.moving().vertices(), cast.fixed().vertices()], poses);
@@ -131,7 +132,7 @@ fn gap(cast: &Cast, random: &mut Random) -> f64 {
     }
 }
 
-/// What a cast says, and where.
+/// A statement of a cast, with its pointer.
 enum Part {
     Contact { at: String, reversed: bool },
     Slide(String),
@@ -186,7 +187,7 @@ fn claims(file: &Value) -> Vec<Claim> {
     claims
 }
 
-/// A length that is small beside 1, or not.
+/// Draws a number, mostly small relative to 1.
 pub(super) fn some_little(random: &mut Random) -> f64 {
     let sign = if random.one_in(2) { 1.0 } else { -1.0 };
     match random.index(3) {
@@ -196,7 +197,7 @@ pub(super) fn some_little(random: &mut Random) -> f64 {
     }
 }
 
-/// Another normal: tilted, along or across the direction, longer or shorter.
+/// Draws a different normal: tilted, along or across the direction, longer or shorter.
 pub(super) fn other_normal(n: DVec3, d: DVec3, random: &mut Random) -> DVec3 {
     let unit = d.normalize_or(DVec3::X);
     let little = some_little(random);
@@ -210,7 +211,7 @@ pub(super) fn other_normal(n: DVec3, d: DVec3, random: &mut Random) -> DVec3 {
     }
 }
 
-/// Other weights of a mean.
+/// Draws different weights of a mean.
 pub(super) fn other_weights(count: usize, random: &mut Random) -> Value {
     let mut weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 1.0)).collect();
     let sum: f64 = weights.iter().sum();
@@ -230,7 +231,7 @@ pub(super) fn other_weights(count: usize, random: &mut Random) -> Value {
     Value::from(weights)
 }
 
-/// Another pair of vertices in place of one of a list.
+/// Replaces a pair of vertices of a list.
 pub(super) fn other_pair(file: &mut Value, at: &str, random: &mut Random) {
     let Some(bodies) = Bodies::read(file) else { return };
     let count = file.pointer(at).and_then(Value::as_array).map_or(0, Vec::len);
@@ -268,11 +269,11 @@ fn worst(file: &mut Value, random: &mut Random) {
 }
 
 fn falsehood(file: &Value, who: Who) -> Option<String> {
-    let Some(bodies) = Bodies::read(file) else { return Some("bodies that cannot be read".into()) };
-    let Some(d) = bodies.direction else { return Some("there is no direction".into()) };
+    let Some(bodies) = Bodies::read(file) else { return Some("invalid bodies".into()) };
+    let Some(d) = bodies.direction else { return Some("missing direction".into()) };
     let parts = parts(file);
     if parts.is_empty() {
-        return Some("nothing is said".into());
+        return Some("no statements".into());
     }
     parts.iter().find_map(|part| match part {
         Part::Contact { at, reversed } => {
@@ -293,10 +294,10 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
     })
 }
 
-/// Why shadows are not so far apart as `gap - overlap`.
+/// Returns the reason why the shadows are not `gap - overlap` apart; `None` if they are.
 pub(super) fn false_gap(bodies: &Bodies, d: DVec3, gap: f64, overlap: f64) -> Option<String> {
     let truth = bodies.overlap_of_shadows(d);
-    // Rounded up, away from a reproach.
+    // Rounded up, in favour of the claim.
     let most = if gap == 0.0 {
         overlap
     } else if overlap == 0.0 {
@@ -361,7 +362,7 @@ fn marginal(file: &Value) -> Option<bool> {
         let normal = vector(file.pointer(&format!("{at}/normal"))?)?;
         near |= is_at_limit(normal.length() - 1.0);
         near |= across && is_at_limit(normal.dot(unit));
-        // What is claimed has to be more than the gap, and may be less than the library refuses.
+        // The claim must exceed the gap, and may be smaller than the library requires.
         let margin = file.pointer(&format!("{at}/margin")).and_then(Value::as_f64);
         near |= margin.is_some_and(|margin| margin - bodies.keep <= BAND * noise);
         if across {
@@ -382,12 +383,12 @@ fn marginal(file: &Value) -> Option<bool> {
     Some(near)
 }
 
-/// The first translation at which two facets meet.
+/// Returns the first translation at which two facets meet; `None` if there is none.
 pub(super) fn first_of(facets: [&[crate::oracle::exact::Vector]; 2], d: DVec3) -> Option<Ratio> {
     crate::oracle::simplex::collision_translation(&scene(facets, d))
 }
 
-/// A number in place of another one.
+/// Replaces a number.
 pub(super) fn put(file: &mut Value, at: &str, x: f64) {
     *file = with(file, at, Some(number(x)));
 }

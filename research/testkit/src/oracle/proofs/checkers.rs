@@ -6,14 +6,14 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use colltrans::ProofFile;
 
-/// What a checker makes of a proof.
+/// The verdict of a checker about a proof.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// All of it holds.
+    /// The proof is valid.
     Holds,
-    /// What was checked of it holds (`check.py`, exit code 7 or 1).
+    /// The checked part is valid (`check.py`, exit code 7 or 1).
     HoldsPartly,
-    /// It does not hold, or is not a proof.
+    /// The proof is invalid, or the file is not a proof.
     Refused(String),
     /// The checker itself failed.
     Failed(String),
@@ -25,7 +25,8 @@ impl Verdict {
         matches!(self, Self::Holds | Self::HoldsPartly)
     }
 
-    /// Checks whether the library refuses the order or the tree of a body's facets: it takes only its own.
+    /// Checks whether the library rejects the order or the tree of a body's facets, because it accepts only its
+    /// own.
     pub fn is_about_a_tree(&self) -> bool {
         matches!(self, Self::Refused(why) if why.contains("differ from those that are rebuilt from its facets"))
     }
@@ -38,7 +39,7 @@ pub fn verify(text: &str) -> Verdict {
     checked.map_or_else(Verdict::Refused, |()| Verdict::Holds)
 }
 
-/// `check.py` as a process that checks one proof after the other.
+/// `check.py` as a process that checks one proof after another.
 #[derive(Debug)]
 pub struct Fractions {
     child: Child,
@@ -50,7 +51,7 @@ impl Fractions {
     /// Starts the checker of this repository with `COLLTRANS_PYTHON`, or `python3`.
     ///
     /// # Errors
-    /// There is no such program.
+    /// The error of the operating system if the program does not exist.
     pub fn start() -> std::io::Result<Self> {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         let check: PathBuf = here.join("../../python/src/colltrans/check.py");
@@ -67,12 +68,12 @@ impl Fractions {
         Ok(Self { child, to, from: BufReader::new(from) })
     }
 
-    /// Returns the verdict about a proof, which has to be one line.
+    /// Returns the verdict about a proof, which must be one line.
     pub fn check(&mut self, text: &str) -> Verdict {
         let mut answer = String::new();
         let asked = writeln!(self.to, "{text}").and_then(|()| self.to.flush());
         match asked.and_then(|()| self.from.read_line(&mut answer)) {
-            Ok(0) => return Verdict::Failed("it has ended".into()),
+            Ok(0) => return Verdict::Failed("check.py has ended".into()),
             Err(error) => return Verdict::Failed(error.to_string()),
             Ok(_) => {}
         }
@@ -88,7 +89,7 @@ impl Fractions {
 
 impl Drop for Fractions {
     fn drop(&mut self) {
-        // It ends by itself as its input does; a process that is gone already is no fault.
+        // The process ends when its input ends. An error means that it has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

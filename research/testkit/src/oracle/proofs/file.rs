@@ -1,4 +1,4 @@
-//! What a proof is about, in exact coordinates.
+//! The bodies of a proof, in exact coordinates.
 
 use colltrans::MIN_MAGNITUDE;
 use glam::{DMat3, DVec3};
@@ -11,26 +11,26 @@ use crate::oracle::shadow::{SignedDistance, sideways_overlap};
 use crate::oracle::simplex::collision_translation;
 use crate::shapes::reach;
 
-/// Factor by which a rounded noise is made one for certain.
+/// Factor that makes a rounded noise an upper bound.
 const CERTAIN: f64 = 1.0 + 1e-6;
 
-/// Two bodies as a file has them.
+/// The two bodies of a file.
 #[derive(Debug, Clone)]
 pub struct Bodies {
     /// The vertices of the moving and of the fixed body in the world.
     pub points: [Vec<Vector>; 2],
-    /// The facets of solids, pieces run through.
+    /// The facets of solids, over all pieces.
     pub facets: [Vec<[usize; 3]>; 2],
     /// The direction, if there is one.
     pub direction: Option<DVec3>,
-    /// The gap to be kept.
+    /// The minimum gap.
     pub keep: f64,
     /// The size `S`.
     pub size: f64,
 }
 
 impl Bodies {
-    /// Reads them; `None` if the file has none.
+    /// Reads the bodies; `None` if the file is invalid.
     pub fn read(file: &Value) -> Option<Self> {
         let (mut points, mut facets) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
         let (mut size, mut origins) = (0.0, [DVec3::ZERO; 2]);
@@ -66,43 +66,43 @@ impl Bodies {
         Some(Self { points, facets, direction, keep, size })
     }
 
-    /// One noise, `32 u (S + g)`.
+    /// Returns the noise, `32 u (S + g)`.
     pub fn noise(&self) -> f64 {
         16.0 * f64::EPSILON * (self.size + self.keep)
     }
 
-    /// So many noises, certainly.
+    /// Returns an upper bound of `count` noises.
     pub fn noises(&self, count: f64) -> f64 {
         count * self.noise() * CERTAIN
     }
 
-    /// The bodies and a direction.
+    /// Returns the scene of the bodies and a direction.
     pub fn scene(&self, direction: DVec3) -> Scene {
         scene([&self.points[0], &self.points[1]], direction)
     }
 
-    /// The first translation at which the bodies meet.
+    /// Returns the first translation at which the bodies meet; `None` if they never meet.
     pub fn first(&self, direction: DVec3) -> Option<Ratio> {
         collision_translation(&self.scene(direction))
     }
 
-    /// How far the shadows overlap, if that is positive.
+    /// Returns the overlap of the shadows, negative if they are disjoint.
     pub fn overlap_of_shadows(&self, direction: DVec3) -> SignedDistance {
         sideways_overlap(&self.scene(direction))
     }
 
-    /// The square of the distance.
+    /// Returns the squared distance.
     pub fn distance(&self) -> Ratio {
         distance(&self.points[0], &self.points[1]).square
     }
 
-    /// The square of the distance after a translation.
+    /// Returns the squared distance after a translation.
     pub fn distance_at(&self, direction: DVec3, t: f64) -> Ratio {
         distance(&moved(&self.points[0], direction, t), &self.points[1]).square
     }
 
-    /// The square of the least distance over all translations up to `end`: the body that the moving one sweeps over
-    /// is the hull of it at both ends. Where it is farther away than all that matters nothing is less.
+    /// Returns the squared minimum distance over all translations up to `end`. The region that the moving body
+    /// sweeps is the hull of both ends. The start is so far away that no smaller distance occurs before it.
     pub fn least_distance_until(&self, direction: DVec3, end: f64) -> Ratio {
         let far = 4.0 * self.size / direction.length();
         let end = end.min(far);
@@ -113,14 +113,14 @@ impl Bodies {
         distance(&swept, &self.points[1]).square
     }
 
-    /// A facet's corners in the world.
+    /// Returns the corners of a facet in the world.
     pub fn facet(&self, body: usize, facet: usize) -> Option<[Vector; 3]> {
         let corners = self.facets[body].get(facet)?;
         let of = |k: usize| self.points[body].get(corners[k]).cloned();
         Some([of(0)?, of(1)?, of(2)?])
     }
 
-    /// `min_Q n.q - max_P n.p`.
+    /// Returns `min_Q n.q - max_P n.p`.
     pub fn along(&self, n: &Vector) -> Dyadic {
         let nearest = self.points[1].iter().map(|q| n.dot(q)).min();
         let farthest = self.points[0].iter().map(|p| n.dot(p)).max();
@@ -128,7 +128,7 @@ impl Bodies {
     }
 }
 
-/// Points in the world and a direction; their noises are not asked for.
+/// Builds a scene from points in the world and a direction. Its noises are not used.
 pub fn scene([moving, fixed]: [&[Vector]; 2], direction: DVec3) -> Scene {
     let mut scene =
         Scene::new((&[], &colltrans::Pose::IDENTITY), (&[], &colltrans::Pose::IDENTITY), direction);
@@ -141,37 +141,37 @@ fn moved(points: &[Vector], direction: DVec3, t: f64) -> Vec<Vector> {
     points.iter().map(|p| p.plus(&by)).collect()
 }
 
-/// Returns the body of a file that a place names.
+/// Returns the body of a file to which a placement refers.
 pub fn body_at<'a>(file: &'a Value, place: &Value) -> Option<&'a Value> {
     file.get("bodies")?.get(place.get("body")?.as_u64()? as usize)
 }
 
-/// Three numbers.
+/// Reads a vector.
 pub fn vector(value: &Value) -> Option<DVec3> {
     Some(DVec3::from_array(numbers(value)?.try_into().ok()?))
 }
 
-/// A list of vectors.
+/// Reads a list of vectors.
 pub fn vectors(value: &Value) -> Option<Vec<DVec3>> {
     value.as_array()?.iter().map(vector).collect()
 }
 
-/// A list of numbers.
+/// Reads a list of numbers.
 pub fn numbers(value: &Value) -> Option<Vec<f64>> {
     value.as_array()?.iter().map(Value::as_f64).collect()
 }
 
-/// A list of whole numbers.
+/// Reads a list of non-negative integers.
 pub fn indices(value: &Value) -> Option<Vec<usize>> {
     value.as_array()?.iter().map(|k| Some(k.as_u64()? as usize)).collect()
 }
 
-/// `x^2`, exactly.
+/// Returns `x^2`, exactly.
 pub fn square(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }
 
-/// The differences `q - p` of pairs of vertices, rounded.
+/// Returns the differences `q - p` of pairs of vertices, rounded.
 pub fn differences(bodies: &Bodies, pairs: &Value) -> Option<Vec<DVec3>> {
     let of = |pair: &Value| {
         let p = bodies.points[0].get(pair.get("moving")?.as_u64()? as usize)?;
@@ -181,7 +181,7 @@ pub fn differences(bodies: &Bodies, pairs: &Value) -> Option<Vec<DVec3>> {
     pairs.as_array()?.iter().map(of).collect()
 }
 
-/// Checks whether a number that 1 is admitted for is at the limit of `32 u`.
+/// Checks whether the deviation of a number from 1 is at the limit of `32 u`.
 pub fn is_at_limit(off: f64) -> bool {
     (30.0..38.0).contains(&(off.abs() / (0.5 * f64::EPSILON)))
 }

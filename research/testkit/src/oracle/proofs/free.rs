@@ -1,6 +1,6 @@
-//! Proofs of all directions.
+//! Proofs of free directions.
 //!
-//! The truth is looked up along some directions of the cells, corners of cells included: the facets that block a
+//! The truth is evaluated along some directions of the cells, including their corners. The facets that block a
 //! direction are found among all pairs, exactly.
 
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ use crate::oracle::exact::Ratio;
 use crate::oracle::solids::facets::{Judge, Triangle};
 use crate::random::Random;
 
-/// All directions.
+/// Free directions.
 pub const FREE: Kind = Kind {
     name: "free-directions",
     focus: STATEMENT,
@@ -34,10 +34,10 @@ pub const FREE: Kind = Kind {
 const STATEMENT: &str = "/statement/free_directions";
 const CELLS: &str = "/statement/free_directions/cells";
 
-/// Facets of both bodies, at most.
+/// Maximum number of facets of both bodies.
 const MOST_FACETS: usize = 60;
 
-/// Cells of each kind along a direction of which a file is judged, at most.
+/// Maximum number of cells of each kind for which a file is judged along a direction.
 const DIRECTIONS: usize = 8;
 
 fn base(seed: u64) -> Option<String> {
@@ -58,12 +58,12 @@ fn base(seed: u64) -> Option<String> {
     (text.len() < 60_000).then_some(text)
 }
 
-/// Cells say yes or no: no number is pushed.
+/// Returns no claims, because the statements of cells have no numbers.
 fn claims(_: &Value) -> Vec<Claim> {
     Vec::new()
 }
 
-/// Claims more of one cell, box or vertex.
+/// Strengthens the statement of a cell, a box or a vertex.
 fn worst(file: &mut Value, random: &mut Random) {
     let Some(cells) = file.pointer(CELLS).and_then(Value::as_array) else { return };
     if cells.is_empty() {
@@ -96,7 +96,7 @@ fn worst(file: &mut Value, random: &mut Random) {
         },
         5 => cells[leaves[random.index(leaves.len())]].clone(),
         6 => json!({ "inner": [random.index(3), random.index(3)] }),
-        // A cut cell is one, and says what the first of its quarters says.
+        // Replaces a cut cell by a single one with the statement of its first quarter.
         _ => {
             let mut joined = cells.clone();
             let cut = (0..cells.len().saturating_sub(4))
@@ -134,7 +134,8 @@ fn move_number(file: &mut Value, random: &mut Random) {
     *file = with(file, at, Some(super::mutants::number(x)));
 }
 
-/// A cell of directions of a proof: `s e_k + u e_(k+1) + v e_(k+2)`, `u` and `v` from `-1 + 2 at / 2^depth` on.
+/// A cell of directions of a proof: `s e_k + u e_(k+1) + v e_(k+2)`, with `u` and `v` starting at `-1 + 2 at /
+/// 2^depth`.
 #[derive(Debug, Clone, Copy)]
 struct Square {
     side: usize,
@@ -143,7 +144,7 @@ struct Square {
 }
 
 impl Square {
-    /// Returns the direction at shares of its sides.
+    /// Returns the direction at fractions of its sides.
     fn direction(self, across: [f64; 2]) -> DVec3 {
         let place = |k: usize| (self.at[k] + across[k]) * 2.0_f64.powi(1 - self.depth) - 1.0;
         let mut d = [0.0; 3];
@@ -162,7 +163,7 @@ impl Square {
     }
 }
 
-/// Returns every cell that is not cut, with what is said of it; `None` if these are not the cells of the sphere.
+/// Returns every cell that is not cut, with its statement; `None` if the cells do not cover the sphere.
 fn leaves(cells: &[Value]) -> Option<Vec<(Square, &Value)>> {
     let mut stack: Vec<Square> =
         (0..6).rev().map(|side| Square { side, depth: 0, at: [0.0; 2] }).collect();
@@ -180,12 +181,12 @@ fn leaves(cells: &[Value]) -> Option<Vec<(Square, &Value)>> {
 
 fn falsehood(file: &Value, _: Who) -> Option<String> {
     let Some(bodies) = shrunk(file).as_ref().and_then(Bodies::read) else {
-        return Some("bodies that cannot be read".into());
+        return Some("invalid bodies".into());
     };
     let cells = file.pointer(CELLS).and_then(Value::as_array).and_then(|cells| leaves(cells));
-    let Some(mut leaves) = cells else { return Some("cells that are not the sphere".into()) };
+    let Some(mut leaves) = cells else { return Some("the cells do not cover the sphere".into()) };
     let surfaces = [0, 1].map(|k| surface(&bodies, k));
-    // One file is judged along the same directions each time, as many in cells of each kind.
+    // A file is judged along the same directions each time, with equal numbers in cells of each kind.
     let mut hasher = DefaultHasher::new();
     file.to_string().hash(&mut hasher);
     let random = &mut Random::stream(hasher.finish(), &[0xd14]);
@@ -206,11 +207,11 @@ fn falsehood(file: &Value, _: Who) -> Option<String> {
     })
 }
 
-/// Returns what a cell claims of one of its directions, if it is false. An undecided cell claims only what pairs of
-/// facets block, which are pairs of these bodies.
+/// Returns the false statement of a cell along one of its directions; `None` if it is true. An undecided cell
+/// claims only the directions that pairs of facets of these bodies block.
 fn false_cell(surfaces: &[Vec<Triangle>; 2], said: &Value, d: DVec3) -> Option<String> {
     let judge = Judge::new(d);
-    // Facets that cross where the bodies are block nothing.
+    // Facets that intersect at the start do not block.
     let blocks = |f: &Triangle, g: &Triangle| {
         let gaps = judge.gaps(f, g);
         let crosses = gaps.range.as_ref().is_some_and(|range| range[0] < Ratio::from_f64(0.0));
@@ -231,7 +232,7 @@ fn false_cell(surfaces: &[Vec<Triangle>; 2], said: &Value, d: DVec3) -> Option<S
     (claimed != truth).then(|| format!("{d:?} is {word}, and {said} says otherwise"))
 }
 
-/// Returns the file with its bodies as they are shrunk in it.
+/// Returns the file with its bodies replaced by their shrunk form.
 fn shrunk(file: &Value) -> Option<Value> {
     let Some(sides) = file.pointer(&format!("{STATEMENT}/shrunk")).filter(|of| !of.is_null())
     else {

@@ -1,15 +1,16 @@
-//! Adversarial proofs: files that exhaust what both checkers admit, whose accepted claims are held against the truth.
+//! Adversarial proofs: files that exhaust the tolerances of both checkers, whose accepted claims are compared
+//! with the truth.
 //!
-//! A [`Kind`] makes proofs, names their claims, knows the worst that a certificate can be, and says what of an accepted
-//! file is false by the bodies in it alone, exactly ([docs/reference/proofs.md](../../../../../docs/reference/proofs.md) is the
-//! specification). [`Campaign::examine`] takes one proof through
+//! A [`Kind`] generates proofs, lists their claims, worsens certificates, and finds false claims of accepted
+//! files from their bodies alone, exactly ([docs/reference/proofs.md](../../../../../docs/reference/proofs.md)
+//! is the specification). [`Campaign::examine`] examines one proof and
 //!
-//! - [`mutants`]: any number, name or list of the file is changed, or replaced by that of another proof;
-//! - mutants of its kind, normals tilted as far as is admitted say, of which each claim is pushed as far as a checker
-//!   goes, from the weakest claim there is.
+//! - [`mutants`]: a number, name or list of the file is changed, or replaced by that of another proof;
+//! - mutants of its kind, for example with normals tilted up to the tolerance, each claim of which is then
+//!   strengthened from the weakest value up to the limit of a checker.
 //!
-//! Both [`checkers`] have to agree: what the library accepts `check.py` accepts. The other way round the library may
-//! refuse what is within the specified rounding of a limit, and what `check.py` says that it has not checked.
+//! Both [`checkers`] must agree: what the library accepts, `check.py` accepts. Conversely, the library may
+//! reject a file within the specified rounding of a limit, and a file that `check.py` has checked only in part.
 
 pub mod casts;
 pub mod checkers;
@@ -29,56 +30,56 @@ use crate::tally::Tally;
 use checkers::{Fractions, Verdict, verify};
 use mutants::{number, with};
 
-/// Mutants of each proof that know nothing of what it says.
+/// Number of mutants of each proof that do not depend on its meaning.
 const BLIND: usize = 30;
 
-/// Mutants of each proof that have a part of another one.
+/// Number of mutants of each proof with a part of another one.
 const GRAFTED: usize = 6;
 
-/// Mutants of each proof whose claims are pushed.
+/// Number of mutants of each proof whose claims are strengthened.
 const PUSHED: usize = 4;
 
-/// One in so many claims is pushed as far as `check.py` goes, too.
+/// One claim out of this many is also strengthened up to the limit of `check.py`.
 const TO_THE_END: u64 = 3;
 
-/// A number of a proof that claims something.
+/// A number of a proof that is a claim.
 #[derive(Debug, Clone)]
 pub struct Claim {
-    /// Where it is.
+    /// The JSON pointer.
     pub pointer: String,
-    /// The value that claims least of those admitted.
+    /// The weakest admissible value.
     pub weakest: f64,
-    /// A value that claims more than can be true.
+    /// A value that is stronger than any true claim.
     pub strongest: f64,
-    /// What the library may refuse of a claim that holds: how far it has to be from the limit to be accepted.
+    /// The margin by which a true claim may be rejected by the library.
     pub band: f64,
 }
 
-/// Who has accepted a claim.
+/// The checker that has accepted a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Who {
-    /// The library, which checks all.
+    /// The library, which checks everything.
     Library,
-    /// `check.py`, which leaves some of it out.
+    /// `check.py`, which does not check everything.
     Fractions,
 }
 
 /// A kind of proofs.
 #[derive(Debug, Clone, Copy)]
 pub struct Kind {
-    /// What the campaign calls it.
+    /// The name in the campaign.
     pub name: &'static str,
-    /// The part of the file that most blind mutants change, as a JSON pointer.
+    /// The part of the file that most mutants change, as a JSON pointer.
     pub focus: &'static str,
-    /// Returns the proof of an answer of the library; `None` if this seed gives none.
+    /// Returns the proof of an answer of the library; `None` if this seed yields none.
     pub base: fn(u64) -> Option<String>,
     /// Returns the claims of a proof.
     pub claims: fn(&Value) -> Vec<Claim>,
-    /// Makes a certificate as bad as is admitted, or worse, in one of the ways of this kind.
+    /// Worsens a certificate up to the tolerance, or beyond it.
     pub worst: fn(&mut Value, &mut Random),
-    /// Returns a claim that is false, by the bodies alone and exactly, of those that somebody checks.
+    /// Returns a false claim among those that the checker checks, exactly and from the bodies alone.
     pub falsehood: fn(&Value, Who) -> Option<String>,
-    /// Checks whether a number is so near the limit of what is admitted that the library may refuse it.
+    /// Checks whether a number is so close to a limit that the library may reject it.
     pub is_marginal: fn(&Value) -> bool,
 }
 
@@ -97,25 +98,25 @@ pub const KINDS: [Kind; 11] = [
     free::FREE,
 ];
 
-/// What is counted: proofs of the library; files that both checkers have judged, and those that the library alone has on
-/// the way to the end of a claim; of the former those that both accept, that the library refuses within the specified
-/// rounding, and that `check.py` has checked in part and the library refuses; claims pushed to the end of a checker; false
-/// claims that were accepted; files of which one checker says what the other does not.
+/// Columns: numbers of proofs of the library, of files that both checkers judged, of files that only the
+/// library judged while a claim was strengthened, of files that both accept, that the library rejects within
+/// the specified rounding, that `check.py` checked in part and the library rejects, of claims strengthened to
+/// the limit of a checker, of false claims that were accepted, and of files with different verdicts.
 pub const COLUMNS: &[&str] =
     &["proofs", "mutants", "steps", "accepted", "rounded", "partly", "ends", "false", "disagree"];
 
-/// One thread's share of a campaign.
+/// The share of a campaign of one thread.
 #[derive(Debug)]
 pub struct Campaign<'a> {
     kind: &'a Kind,
-    /// `check.py`; without it the library alone is judged.
+    /// `check.py`; if `None`, only the library is judged.
     fractions: Option<&'a mut Fractions>,
     tally: &'a mut Tally,
     name: String,
 }
 
 impl<'a> Campaign<'a> {
-    /// Takes one proof of a kind through all mutants.
+    /// Examines one proof of a kind and all its mutants.
     pub fn examine(
         kind: &'a Kind,
         seed: u64,
@@ -127,9 +128,9 @@ impl<'a> Campaign<'a> {
         let mut campaign = Self { kind, fractions, tally, name };
         campaign.tally.count("proofs");
         let random = &mut Random::stream(seed, &[0xf0_26ed]);
-        // Also where `check.py` has checked it in part.
+        // Also if `check.py` has checked it only in part.
         if !campaign.judge(&text, "as written") || !verify(&text).accepts() {
-            let line = format!("{}: a proof is refused: {text}", campaign.name);
+            let line = format!("{}: a proof is rejected: {text}", campaign.name);
             return campaign.object("disagree", line);
         }
         let Ok(file) = serde_json::from_str::<Value>(&text) else { return };
@@ -162,7 +163,7 @@ impl<'a> Campaign<'a> {
         self.tally.disagree(line);
     }
 
-    /// Pushes one claim of a file, the others being the weakest there are.
+    /// Strengthens one claim of a file, with the weakest values of all others.
     fn push_one(&mut self, file: &Value, random: &mut Random) {
         let claims = (self.kind.claims)(file);
         if claims.is_empty() {
@@ -196,7 +197,8 @@ impl<'a> Campaign<'a> {
         }
     }
 
-    /// Has both checkers judge a file, and what they accept judged by the truth. Returns whether one accepts it.
+    /// Judges a file with both checkers, and compares accepted files with the truth. Returns whether a checker
+    /// accepts it.
     fn judge(&mut self, text: &str, what: &str) -> bool {
         self.tally.count("mutants");
         let library = verify(text);
@@ -246,8 +248,8 @@ impl<'a> Campaign<'a> {
         library.accepts() || fractions.accepts()
     }
 
-    /// Checks whether the library accepts a file once its claims are weaker by what is specified, all or one of them, or
-    /// may refuse it for a number at the limit of what is admitted.
+    /// Checks whether a rejection by the library is due to rounding: it accepts the file after one or all
+    /// claims are weakened by the specified margin, or a number is at a limit.
     fn is_rounded(&self, file: &Value) -> bool {
         let claims = (self.kind.claims)(file);
         let accepts = |claims: &[Claim]| {
@@ -261,7 +263,7 @@ impl<'a> Campaign<'a> {
 }
 
 impl Claim {
-    /// Returns a file in which this claim is weaker by what the library may refuse.
+    /// Returns a file with this claim weakened by its margin.
     fn eased(&self, file: Value) -> Value {
         let Some(old) = file.pointer(&self.pointer).and_then(Value::as_f64) else { return file };
         let eased = if self.weakest < self.strongest {
@@ -273,7 +275,7 @@ impl Claim {
     }
 }
 
-/// Numbers in their order, as whole ones.
+/// Returns an integer with the order of the number.
 fn order(x: f64) -> i64 {
     let bits = x.to_bits() as i64;
     if bits >= 0 { bits } else { i64::MIN.wrapping_sub(bits) }
@@ -284,12 +286,12 @@ fn of_order(order: i64) -> f64 {
     f64::from_bits(bits as u64)
 }
 
-/// Returns the next number towards another one.
+/// Returns the next number towards `end`.
 fn toward(x: f64, end: f64) -> f64 {
     of_order(order(x) + order(end).cmp(&order(x)) as i64)
 }
 
-/// Returns the number nearest to `strongest` that is accepted, by halving; `None` if `weakest` is not.
+/// Returns the accepted number nearest to `strongest`, by bisection; `None` if `weakest` is not accepted.
 fn limit(weakest: f64, strongest: f64, mut accepts: impl FnMut(f64) -> bool) -> Option<f64> {
     if !accepts(weakest) {
         return None;
@@ -309,7 +311,7 @@ fn limit(weakest: f64, strongest: f64, mut accepts: impl FnMut(f64) -> bool) -> 
     Some(of_order(low as i64))
 }
 
-/// Returns [`limit`] from an accepted number, by steps that grow before they are halved.
+/// Returns the result of [`limit`], starting at an accepted number with growing steps before the bisection.
 fn limit_near(from: f64, strongest: f64, mut accepts: impl FnMut(f64) -> bool) -> f64 {
     let (start, end) = (i128::from(order(from)), i128::from(order(strongest)));
     let (mut low, mut step) = (start, (end - start).signum());

@@ -1,7 +1,7 @@
-//! Proofs of motions: convex bodies, and solids.
+//! Proofs of motions of convex bodies and of solids.
 //!
-//! The truth is looked up at some times, with the motion as the real function of its numbers: a file that claims that
-//! bodies are apart up to a time is false if they are not at one of these.
+//! The truth is evaluated at some times, with the motion as a real function of its numbers. A file that claims
+//! that bodies are disjoint up to a time is false if they are not disjoint at one of these times.
 
 use colltrans::motion::{Motion, MotionCast};
 use colltrans::{ConvexPolyhedron, Pose, ProofFile, Solid};
@@ -20,7 +20,7 @@ use crate::oracle::nearest::depth;
 use crate::random::Random;
 use crate::shapes::random_hull;
 
-/// Motions of convex bodies, with a gap, a depth that is tolerated, or neither.
+/// Motions of convex bodies, with a minimum gap, a tolerated depth, or neither.
 pub const CONVEX: Kind =
     Kind { name: "motions", focus: CONVEX_PROOF, base, claims, worst, falsehood, is_marginal };
 
@@ -35,22 +35,22 @@ pub const SOLIDS: Kind = Kind {
     is_marginal,
 };
 
-/// Where the proof of a pair of convex bodies is.
+/// The pointer to the proof of a pair of convex bodies.
 const CONVEX_PROOF: &str = "/statement/motions/0/convex";
 
-/// Where the one of a pair of solids is.
+/// The pointer to the proof of a pair of solids.
 const SOLID_PROOF: &str = "/statement/motions/0/solids/proof";
 
-/// Times at which bodies are looked at, besides those that a proof names.
+/// Number of times at which bodies are checked, in addition to those of the proof.
 const TIMES: usize = 6;
 
-/// Times that a proof names and that are looked at, at most.
+/// Maximum number of times of the proof that are checked.
 const MOST_TIMES: usize = 6;
 
-/// What is less than this share of a length is the judge's own rounding.
+/// Relative tolerance for the rounding of the judge.
 const OWN: f64 = 1e-25;
 
-/// A body of a few vertices; one in three leaves out some of the points that it is made of.
+/// Draws a body of a few vertices. One in three omits some of its input points.
 pub(super) fn body(random: &mut Random) -> ConvexPolyhedron {
     let body = plain_body(random);
     if random.one_in(3) {
@@ -73,7 +73,7 @@ fn plain_body(random: &mut Random) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(&points).expect("a body")
 }
 
-/// Motions of the moving body, which comes by the other one, and of that.
+/// Draws the motion of the moving body, which passes the other one, and that of the other one.
 fn motions(random: &mut Random) -> Option<[Motion; 2]> {
     let around =
         |random: &mut Random, far: f64| Pose::new(random.rotation(), random.direction() * far).ok();
@@ -95,7 +95,7 @@ fn motions(random: &mut Random) -> Option<[Motion; 2]> {
         0 => {
             Motion::turn(there, random.vector() * 0.3, random.direction(), random.range(-2.0, 2.0))
         }
-        // Both spin as one.
+        // Both rotate as one.
         1 => Motion::about(there, there.translation() - point, axis, angle, DVec3::ZERO),
         _ => Ok(Motion::still(there)),
     };
@@ -126,7 +126,7 @@ fn solid_base(seed: u64) -> Option<String> {
         if random.one_in(2) {
             return Solid::from_convex(&one).ok();
         }
-        // Two pieces, not convex together.
+        // Two pieces, whose union is not convex.
         let by = Pose::from_translation(DVec3::X * 1.5).ok()?;
         let moved: Vec<DVec3> = one.vertices().iter().map(|v| by.transform_point(*v)).collect();
         Solid::from_pieces([&one, &ConvexPolyhedron::from_points(&moved).ok()?]).ok()
@@ -146,7 +146,7 @@ fn solid_base(seed: u64) -> Option<String> {
     (text.len() < 15_000).then_some(text)
 }
 
-/// The last plane of a proof.
+/// Returns the pointer to the last plane of a proof.
 fn last_plane(file: &Value) -> Option<String> {
     let spans = file.pointer(&format!("{CONVEX_PROOF}/spans"))?.as_array()?;
     let planes = spans.last()?.as_array()?;
@@ -185,7 +185,7 @@ fn solid_claims(file: &Value) -> Vec<Claim> {
     places.into_iter().filter_map(claim).collect()
 }
 
-/// All planes of a file, by their pointers.
+/// Returns the pointers to all planes of a file.
 fn planes(file: &Value) -> Vec<String> {
     let all = super::mutants::pointers(file);
     all.iter().filter_map(|at| at.strip_suffix("/alone")).map(ToOwned::to_owned).collect()
@@ -215,7 +215,7 @@ fn worst(file: &mut Value, random: &mut Random) {
             *file = with(file, &place("gap"), Some(number(gap)));
         }
         5 => {
-            // Without the planes from here on: what comes after is not proven.
+            // Removes the planes from here on, so that later times are not proven.
             let Some((list, k)) = at.rsplit_once('/') else { return };
             let k = k.parse().unwrap_or(0);
             if let Some(list) = file.pointer_mut(list).and_then(Value::as_array_mut) {
@@ -232,10 +232,10 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-/// Makes the proof of a meeting worse.
+/// Worsens the proof of a meeting.
 pub(super) fn met(file: &mut Value, at: &str, random: &mut Random) {
     if random.one_in(8) {
-        // An overlap by at least nothing, which is true of any two bodies.
+        // An overlap by at least zero, which is true for any two bodies.
         let enclosure = json!({"pairs": [], "triangles": [], "normals": []});
         let direction = random.direction().to_array();
         let deep =
@@ -321,7 +321,7 @@ fn solid_worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-/// A body's motion as the file has it.
+/// The motion of a body in a file.
 struct Moves(Vec<(f64, Spin)>);
 
 impl Moves {
@@ -340,7 +340,8 @@ impl Moves {
         Some(Self(pieces.as_array()?.iter().map(piece).collect::<Option<_>>()?))
     }
 
-    /// Points at a time; where one piece ends and the next begins, of the one that ends or of the one that begins.
+    /// Returns points at a time. At the transition between two pieces of the motion, `ends` selects the earlier
+    /// one.
     fn at(&self, points: &[DVec3], time: f64, ends: bool) -> Vec<Vector> {
         let begun = |since: &f64| if ends { *since < time } else { *since <= time };
         let all = self.0.iter().rev();
@@ -350,14 +351,14 @@ impl Moves {
     }
 }
 
-/// A pose of a file.
+/// Reads a pose.
 pub(super) fn pose(of: &Value) -> Option<Pose> {
     let entries: [f64; 9] = numbers(of.get("matrix")?)?.try_into().ok()?;
     Pose::from_matrix(DMat3::from_cols_array(&entries), vector(of.get("translation")?)?).ok()
 }
 
-/// Whether convex bodies meet, or are nearer than a gap, or deeper in each other than is tolerated; `by` is less than
-/// nothing for what is a little less than that, and more for a little more.
+/// Checks whether convex bodies meet, are nearer than a gap, or overlap deeper than tolerated. A negative `by`
+/// weakens the condition slightly, a positive one strengthens it.
 pub(super) fn meets(points: [&[Vector]; 2], keep: f64, by: f64) -> bool {
     let square = distance(points[0], points[1]).square;
     if keep < 0.0 {
@@ -372,7 +373,7 @@ fn squared(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }
 
-/// Times to look at from the beginning to before another one, those that a proof names among them.
+/// Returns the times to check before `until`, including times between those of the proof.
 fn times(named: &[f64], until: f64) -> Vec<f64> {
     let evenly = (0..TIMES).map(|k| until * (k as f64 + 0.37) / TIMES as f64);
     let mut between: Vec<f64> = named.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
@@ -386,12 +387,12 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
     first(found(file, who))
 }
 
-/// The first of all that is false; of a file that cannot be read, that it cannot.
+/// Returns the first false statement, or that the file is invalid.
 pub(super) fn first(found: Option<Vec<String>>) -> Option<String> {
-    found.map_or_else(|| Some("a file that cannot be read".into()), |all| all.into_iter().next())
+    found.map_or_else(|| Some("invalid file".into()), |all| all.into_iter().next())
 }
 
-/// What is false; `None` if the file cannot be read.
+/// Returns the false statements; `None` if the file is invalid.
 fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let keep = file.pointer("/query/motions/0/keep").map_or(Some(0.0), Value::as_f64)?;
     let movers = file.pointer("/placement/motions/0")?;
@@ -420,7 +421,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
         return Some(Vec::new());
     }
     let time = meeting.get("time")?.as_f64()?;
-    // A meeting is one of the last span.
+    // A meeting is in the last span.
     let ends = [true, false].map(|ends| {
         let at = points(time, ends);
         (meets([&at[0], &at[1]], keep, -1.0), at)
@@ -437,7 +438,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     Some(depth_is_false(meeting.get("met")?, [&at[0], &at[1]], room).into_iter().collect())
 }
 
-/// What is told of a depth or a distance, to rounding, and is not so.
+/// Returns the reason why a depth or distance is false beyond rounding; `None` if it is true.
 pub(super) fn depth_is_false(met: &Value, at: [&[Vector]; 2], room: f64) -> Option<String> {
     if let Some(near) = met.get("near").and_then(|near| near.get("distance")?.as_f64()) {
         let square = distance(at[0], at[1]).square;
@@ -456,7 +457,8 @@ fn solid_falsehood(file: &Value, who: Who) -> Option<String> {
     first(found_of_solids(file, who))
 }
 
-/// What is false of the facets that a file has: they are those of the shrunk solids for the library.
+/// Returns the false statements about the facets of a file, which for the library are those of the shrunk
+/// solids.
 fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
     let keep = file.pointer("/query/motions/0/keep").map_or(Some(0.0), Value::as_f64)?;
     let facets = |k: usize| -> Option<Vec<Vec<DVec3>>> {
@@ -482,7 +484,7 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
     let spans = file.pointer(&format!("{SOLID_PROOF}/spans"))?.as_array()?;
     let reached = spans.last().map_or(Some(0.0), |span| span.get("until")?.as_f64())?;
     if !apart {
-        // Of solids that overlap at once check.py says nothing.
+        // check.py makes no statement about solids that overlap at the start.
         let said =
             who == Who::Library && !crosses(0.0, false, 1.0) && start.get("facets").is_some();
         let what = said.then(|| "facets do not cross at the beginning".to_owned());
@@ -510,7 +512,7 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
     Some(what.into_iter().collect())
 }
 
-/// Whether facets may be as near as a gap, by their boxes.
+/// Checks whether facets may be within a gap, by their boxes.
 fn near(f: &[Vector], g: &[Vector], keep: f64) -> bool {
     let bounds = |points: &[Vector]| {
         let all = points.iter().map(Vector::to_f64);
@@ -521,15 +523,15 @@ fn near(f: &[Vector], g: &[Vector], keep: f64) -> bool {
     (a - more).cmple(d).all() && (c - more).cmple(b).all()
 }
 
-/// What the library may refuse of a number that holds, beside the size of the bodies.
+/// Margin by which the library may reject a true number, in addition to that for the size of the bodies.
 const ROUNDED: f64 = 1e-9;
 
-/// Whether the library refuses a file for what it takes off for rounding.
+/// Checks whether the library rejects a file because of its rounding margins.
 fn is_marginal(file: &Value) -> bool {
     is_at_the_limit(file) || refused_for_rounding(&verify(&file.to_string()), size(file))
 }
 
-/// Returns the largest number of two motions, of which their rounding is a share.
+/// Returns the largest number of two motions, to which their rounding is proportional.
 fn size(file: &Value) -> f64 {
     let all = super::mutants::pointers(file);
     let of_motion = all.iter().filter(|at| at.starts_with("/placement/motions/"));
@@ -537,9 +539,9 @@ fn size(file: &Value) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// Whether a reason is one of rounding: what is proven is hardly less than what is claimed, or planes that hold each for
-/// itself are not near enough to each other, whose bound is made in other ways by the two checkers. `size` is the largest
-/// number of the motions.
+/// Checks whether a rejection is due to rounding: the proven value is slightly less than the claimed one, or
+/// planes are valid but too far from each other, for which the two checkers compute different bounds. `size` is
+/// the largest number of the motions.
 pub(super) fn refused_for_rounding(verdict: &Verdict, size: f64) -> bool {
     let Verdict::Refused(reason) = verdict else { return false };
     let number = |text: &str| text.trim_matches(|c: char| c == ',' || c == ';').parse::<f64>().ok();
@@ -558,7 +560,7 @@ pub(super) fn refused_for_rounding(verdict: &Verdict, size: f64) -> bool {
     }
 }
 
-/// Whether a normal or weights are at the limit of what is admitted.
+/// Checks whether a normal or weights are at a limit.
 pub(super) fn is_at_the_limit(file: &Value) -> bool {
     let of = |at: &String| file.pointer(at).and_then(vector);
     let all = super::mutants::pointers(file);

@@ -1,10 +1,10 @@
-//! Mutants of a proof that know nothing of what it says: every number, name and list of its JSON.
+//! Generates mutants of a proof without regard to its meaning: changes of numbers, names and lists of its JSON.
 
 use serde_json::{Map, Number, Value};
 
 use crate::random::Random;
 
-/// Returns the JSON pointers of all values in a file, containers before what they contain.
+/// Returns the JSON pointers of all values in a file, containers before their contents.
 pub fn pointers(value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     collect(value, String::new(), &mut found);
@@ -28,7 +28,7 @@ fn collect(value: &Value, at: String, found: &mut Vec<String>) {
     found.push(at);
 }
 
-/// Returns a file with another value at a pointer; `None` removes it from its object or list.
+/// Returns a file with another value at a pointer; `None` removes the value from its object or list.
 pub fn with(file: &Value, pointer: &str, value: Option<Value>) -> Value {
     let mut file = file.clone();
     if let Some(value) = value {
@@ -53,13 +53,13 @@ pub fn with(file: &Value, pointer: &str, value: Option<Value>) -> Value {
     file
 }
 
-/// A number of a file; what is not finite is `null`.
+/// Converts a number to JSON; `null` if it is not finite.
 pub fn number(x: f64) -> Value {
     Number::from_f64(x).map_or(Value::Null, Value::Number)
 }
 
-/// Returns one mutant of a file as text: a random change of a random value. More than half of them are numbers of what
-/// `focus` is a pointer to.
+/// Returns a mutant of a file as text: a random change of a random value. More than half of the changes are
+/// below the pointer `focus`.
 pub fn random(file: &Value, focus: &str, random: &mut Random) -> String {
     let all = pointers(file);
     let near: Vec<&String> = all.iter().filter(|at| at.starts_with(focus)).collect();
@@ -76,15 +76,14 @@ pub fn random(file: &Value, focus: &str, random: &mut Random) -> String {
     with(file, &at, change).to_string()
 }
 
-/// Returns a file with a part of another proof in the place of its own: other certificates, and where there are several
-/// kinds of one, other kinds. `None` if there is none that differs.
+/// Returns a file in which a part is replaced by that of another proof; `None` if no part differs.
 pub fn graft(file: &Value, other: &Value, random: &mut Random) -> Option<String> {
     let differs = |at: &String| {
         let (own, others) = (file.pointer(at), other.pointer(at));
         own.is_some() && own != others && others.is_some_and(|part| !part.is_number())
     };
     let places: Vec<String> = pointers(other).into_iter().filter(differs).collect();
-    // The whole file is the last one.
+    // The last entry is the whole file.
     let (_, inner) = places.split_last()?;
     let at = inner.get(random.index(inner.len().max(1)))?;
     Some(with(file, at, other.pointer(at).cloned()).to_string())
@@ -161,7 +160,7 @@ pub fn other_number(x: f64, random: &mut Random) -> f64 {
     }
 }
 
-/// Returns a value of another type, or none.
+/// Returns a value of another type; `None` removes it.
 fn other_type(old: &Value, random: &mut Random) -> Option<Value> {
     Some(match random.index(8) {
         0 => Value::Null,
@@ -175,7 +174,7 @@ fn other_type(old: &Value, random: &mut Random) -> Option<Value> {
     })
 }
 
-/// Returns text that JSON has, or nearly has, and that no value writes.
+/// Returns the file with text at a pointer that is unusual or invalid in JSON.
 fn raw(file: &Value, at: &str, old: &Value, random: &mut Random) -> String {
     let mark = "\"a mark\"";
     let text = with(file, at, Some(Value::String("a mark".into()))).to_string();

@@ -26,7 +26,7 @@ pub const DISTANCES: Kind = Kind {
 /// Depths.
 pub const DEPTHS: Kind = Kind { name: "depths", base: deep, ..DISTANCES };
 
-/// Vertices of both bodies of which a depth is computed exactly.
+/// Maximum number of vertices of both bodies for which a depth is computed exactly.
 const MOST_DEEP: usize = 20;
 
 const GAP: &str = "/statement/distance/gap";
@@ -52,7 +52,7 @@ fn deep(seed: u64) -> Option<String> {
     }
     let random = &mut Random::stream(seed, &[0xdee9]);
     if !random.one_in(6) {
-        // Over each other, more or less.
+        // The bodies are moved over each other.
         let center = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len() as f64;
         let p = setting.moving_pose.transform_point(center(bodies.moving.vertices()));
         let q = setting.fixed_pose.transform_point(center(bodies.fixed.vertices()));
@@ -65,7 +65,7 @@ fn deep(seed: u64) -> Option<String> {
     Some(ProofFile::of_depth(&pair, &pair.depth().ok()?).to_json())
 }
 
-/// How far a body reaches.
+/// The extent of a body.
 trait Reaches {
     fn bounds_size(&self) -> f64;
 }
@@ -157,12 +157,12 @@ fn worst(file: &mut Value, random: &mut Random) {
 }
 
 fn falsehood(file: &Value, _: Who) -> Option<String> {
-    let Some(bodies) = Bodies::read(file) else { return Some("bodies that cannot be read".into()) };
+    let Some(bodies) = Bodies::read(file) else { return Some("invalid bodies".into()) };
     let at = |at: &str, name: &str| file.pointer(&format!("{at}/{name}")).and_then(Value::as_f64);
     let (gap, near) = (at(GAP, "gap"), at(NEAR, "distance"));
     let bounds = [at(DEPTH, "lower"), at(DEPTH, "upper")];
     if gap.is_none() && near.is_none() && bounds[0].is_none() {
-        return Some("nothing is said".into());
+        return Some("no statements".into());
     }
     let truth = bodies.distance();
     let say = |what: &str, x: f64| Some(format!("{what} {x:e} of {:e}", truth.sqrt_to_f64()));
@@ -189,7 +189,7 @@ fn falsehood(file: &Value, _: Who) -> Option<String> {
     if upper < 0.0 || square(upper) < deep {
         return say("of at most", upper);
     }
-    // Along the direction, which is a part of what is said.
+    // The depth along the direction is part of the statement.
     let n = Vector::new(vector(file.pointer(&format!("{DEPTH}/direction"))?)?);
     let reach = -bodies.along(&n.times(&Dyadic::new(-1.0)));
     let claimed = Dyadic::new(upper);

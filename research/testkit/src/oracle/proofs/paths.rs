@@ -1,4 +1,4 @@
-//! Proofs of paths of joints, judged at some places of each row.
+//! Proofs of paths of joints, judged at some positions of each row.
 
 use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, Place};
 use colltrans::{Pose, ProofFile, Solid};
@@ -20,10 +20,10 @@ use crate::random::Random;
 pub const PATHS: Kind =
     Kind { name: "paths", focus: PROOF, base, claims, worst, falsehood, is_marginal };
 
-/// Where the proof is.
+/// The pointer to the proof.
 const PROOF: &str = "/statement/path/proof";
 
-/// Places of each row that are looked at.
+/// Number of positions of each row that are checked.
 const PLACES: usize = 4;
 
 fn base(seed: u64) -> Option<String> {
@@ -77,7 +77,7 @@ fn base(seed: u64) -> Option<String> {
     (text.len() < 20_000).then_some(text)
 }
 
-/// Whether the library refuses a file for what it takes off for rounding.
+/// Checks whether the library rejects a file because of its rounding margins.
 fn is_marginal(file: &Value) -> bool {
     is_at_the_limit(file) || refused_for_rounding(&verify(&file.to_string()), 0.0)
 }
@@ -138,7 +138,7 @@ fn worst(file: &mut Value, random: &mut Random) {
             *file = with(file, &format!("{PROOF}/meeting/place"), Some(place));
         }
         6 if pairs > 0 => {
-            // Another pair, or none.
+            // Replaces or removes a pair.
             let k = random.index(pairs);
             let at = format!("/statement/path/pairs/{k}");
             if random.one_in(2) {
@@ -161,10 +161,10 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-/// A frame: its parent, its origin, its axis and whether it turns, the column of its value.
+/// A frame: its parent, its origin, its axis and whether it rotates, and the column of its value.
 type Framed = (Option<usize>, Pose, Option<(DVec3, bool)>, usize);
 
-/// A path as a file has it.
+/// The path of a file.
 struct Path {
     times: Vec<f64>,
     rows: Vec<Vec<f64>>,
@@ -206,7 +206,7 @@ impl Path {
         Some(Self { times, rows, frames, bodies, keep })
     }
 
-    /// Where the points of a body are, all of which are convex.
+    /// Returns the points of a convex body at a position of the path.
     fn points(&self, name: &str, Place { row, share }: Place) -> Option<Vec<Vector>> {
         let (_, frame, pose, points) = self.bodies.iter().find(|of| of.0 == name)?;
         let next = self.rows.get(row + 1).unwrap_or(&self.rows[row]);
@@ -229,7 +229,7 @@ impl Path {
         self.times[row] + share * (next - self.times[row])
     }
 
-    /// Places before a time, and the end of the path if that is asked for.
+    /// Returns positions before a time, and the end of the path if `ends`.
     fn places(&self, until: f64, ends: bool) -> Vec<Place> {
         let rows = self.rows.len() - 1;
         let within = |row: usize| {
@@ -239,7 +239,7 @@ impl Path {
         };
         let mut all: Vec<Place> = (0..rows).flat_map(within).collect();
         all.extend((0..rows).map(|row| Place { row, share: 0.0 }));
-        // Just before.
+        // A position just before the time.
         let row = self.times.partition_point(|time| *time < until).saturating_sub(1);
         if row < rows {
             let share = (until - self.times[row]) / (self.times[row + 1] - self.times[row]);
@@ -257,7 +257,7 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
     first(found(file, who))
 }
 
-/// What is false; `None` if the file cannot be read.
+/// Returns the false statements; `None` if the file is invalid.
 fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let path = Path::read(file)?;
     let lower = file.pointer("/statement/path/lower")?.as_f64()?;
@@ -301,7 +301,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     if !meets([&p, &q], path.keep, -1.0) {
         return Some(vec![format!("{a} and {b} do not meet at {place:?}")]);
     }
-    // Of pieces of solids a depth is their own.
+    // A depth of pieces of solids refers to the pieces.
     let both = [a, b].iter().all(|name| {
         let links = file.pointer("/placement/robot/bodies").and_then(Value::as_array);
         let of = links.and_then(|all| all.iter().find(|of| of["name"] == **name));

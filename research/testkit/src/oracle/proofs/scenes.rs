@@ -1,4 +1,4 @@
-//! Proofs of one convex body among many, judged over all obstacles, one by one.
+//! Proofs of scene queries of convex bodies, judged for each obstacle.
 
 use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose, ProofFile};
 use glam::DVec3;
@@ -15,11 +15,11 @@ use crate::oracle::nearest::depth;
 use crate::random::Random;
 use crate::shapes::reach;
 
-/// The nearest obstacle, those within a length, and what stops the body.
+/// The nearest obstacle, the obstacles within a length, and the clearance.
 pub const SCENES: Kind =
     Kind { name: "scenes", focus: "/statement", base, claims, worst, falsehood, is_marginal };
 
-/// What a bound may be off where an obstacle is passed, in noises: what counts as sliding, or as being behind.
+/// Tolerance in noises of a bound at an obstacle that is passed, which decides about sliding or being behind.
 const PASSED: f64 = 300.0;
 
 fn base(seed: u64) -> Option<String> {
@@ -47,7 +47,7 @@ fn base(seed: u64) -> Option<String> {
     Some(file.to_json())
 }
 
-/// Whether the library refuses a file for what it takes off for rounding.
+/// Checks whether the library rejects a file because of its rounding margins.
 fn is_marginal(file: &Value) -> bool {
     let verdict = |file: &Value| verify(&file.to_string());
     let length = "/statement/within/length";
@@ -55,7 +55,7 @@ fn is_marginal(file: &Value) -> bool {
         let old = file.pointer(length).and_then(Value::as_f64)?;
         Some(verdict(&with(file, length, Some(number(old + by)))).accepts())
     };
-    // Of the answer that a claim is, it reads what claims nothing, too.
+    // The library also reads parts of an answer that claim nothing.
     let reads_more = |verdict: &Verdict| match verdict {
         Verdict::Refused(reason) => reason.starts_with("not a saved proof"),
         _ => false,
@@ -68,7 +68,7 @@ fn is_marginal(file: &Value) -> bool {
         || [1e-9, -1e-9].into_iter().any(|by| moved(by) == Some(true))
 }
 
-/// Checks whether a normal of bodies that never meet is across the direction up to the limit of what is admitted.
+/// Checks whether a normal of a separation is orthogonal to the direction up to the limit.
 fn has_a_normal_at_the_limit(file: &Value) -> bool {
     let vector_at = |at: &str| file.pointer(at).and_then(vector);
     let Some(direction) = vector_at("/statement/scene_clearance/direction") else { return false };
@@ -89,7 +89,7 @@ fn claims(file: &Value) -> Vec<Claim> {
     .into_iter()
     .filter(|(pointer, ..)| file.pointer(pointer).is_some_and(Value::is_number))
     .map(|(pointer, weakest, strongest)| {
-        // A length is no bound: the one of the file is pushed both ways.
+        // A length is not a bound, so it is changed in both directions.
         let old = file.pointer(pointer).and_then(Value::as_f64).unwrap_or(weakest);
         let weakest = if pointer.ends_with("length") { old } else { weakest };
         Claim { pointer: pointer.into(), weakest, strongest, band: 1e-9 }
@@ -185,7 +185,7 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-/// The moving body and each obstacle.
+/// Returns the pairs of the moving body and each obstacle.
 fn pairs(file: &Value) -> Option<Vec<Bodies>> {
     let placed = |at: &Value| {
         let body = body_at(file, at)?;
@@ -225,7 +225,7 @@ fn squared(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }
 
-/// What is false; `None` if the file cannot be read.
+/// Returns the false statements; `None` if the file is invalid.
 fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let all = pairs(file)?;
     let at = |k: &Value| all.get(k.as_u64()? as usize);
@@ -295,7 +295,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     Some(what.into_iter().collect())
 }
 
-/// Whether the body on its way comes nearer to an obstacle than the gap that is kept, by more than is allowed.
+/// Checks whether the moving body comes nearer to an obstacle than the minimum gap, beyond the tolerance.
 fn swept_meets(pair: &Bodies, d: DVec3, until: f64, allowed: f64) -> bool {
     let until = until.next_down();
     if until < 0.0 {

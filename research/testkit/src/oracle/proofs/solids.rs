@@ -34,7 +34,7 @@ const SEPARATION: &str = "/statement/clearance/separation";
 const DISTANCE: &str = "/statement/solid_distance";
 const POINTS: &str = "/statement/solid_distance/near/points";
 
-/// Facets of both bodies, at most.
+/// Maximum number of facets of both bodies.
 const MOST_FACETS: usize = 160;
 
 pub(super) fn of_cubes(seed: u64) -> Option<([Solid; 2], [colltrans::Pose; 2], DVec3)> {
@@ -133,7 +133,7 @@ fn worst(file: &mut Value, random: &mut Random) {
 }
 
 fn falsehood(file: &Value, who: Who) -> Option<String> {
-    let Some(bodies) = Bodies::read(file) else { return Some("bodies that cannot be read".into()) };
+    let Some(bodies) = Bodies::read(file) else { return Some("invalid bodies".into()) };
     if file.pointer(DISTANCE).is_some_and(Value::is_object) {
         return false_distance(&bodies, file, who);
     }

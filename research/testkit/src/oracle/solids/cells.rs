@@ -1,9 +1,9 @@
-//! Solids made of cubes, whose motions are simple enough to be known without facets.
+//! Solids made of unit cubes, for whose motions the exact answers follow without facets.
 //!
-//! A body is a set of unit cubes of a grid, both bodies' grids under one linear map `L` (a shear and a
-//! rotation by nine rounded numbers): in the grid's coordinates every pair of cubes overlaps in its
-//! interior for the `t` of an open interval, by three inequalities. All numbers are exact: vectors are
-//! taken through the adjugate of `L`, and everything is counted in multiples of its determinant.
+//! A body is a set of unit cubes of a grid. The grids of both bodies are mapped by one linear map `L` (a shear
+//! and a rotation with nine rounded entries). In grid coordinates, the interiors of two cubes overlap for the
+//! `t` of an open interval, given by three inequalities. All numbers are exact: vectors are multiplied by the
+//! adjugate of `L`, and all values are multiples of its determinant.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,23 +12,23 @@ use glam::{DMat3, DVec3};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::random::Random;
 
-/// A body of unit cubes, by their lower corners.
+/// A body of unit cubes, given by their lower corners.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cells(pub BTreeSet<[i32; 3]>);
 
-/// What a motion meets, exactly.
+/// The exact result of a motion.
 #[derive(Debug, Clone)]
 pub struct Motion {
-    /// Whether the interiors share a point at the start.
+    /// Whether the interiors have a common point at the start.
     pub overlaps: bool,
-    /// The smallest `t >= 0` from which on they would, if any.
+    /// The smallest `t >= 0` from which on the interiors overlap; `None` if there is none.
     pub stop: Option<Ratio>,
-    /// The largest `t` up to which they do, if any.
+    /// The largest `t` up to which the interiors overlap; `None` if there is none.
     pub exit: Option<Ratio>,
 }
 
 impl Cells {
-    /// A connected body of so many cubes, not far from the origin.
+    /// Draws a connected body of `count` cubes near the origin.
     pub fn random(count: usize, rng: &mut Random) -> Self {
         let mut cells = BTreeSet::from([[0; 3]]);
         while cells.len() < count {
@@ -42,7 +42,7 @@ impl Cells {
         Self(cells)
     }
 
-    /// All cubes of a box that are not in this body: a mould of it.
+    /// Returns the cubes of a box that are not in this body, which form a mould of it.
     #[must_use]
     pub fn mould(&self, open: Option<usize>) -> Self {
         let mut cells = BTreeSet::new();
@@ -53,7 +53,7 @@ impl Cells {
             let steps = [i % size[0], i / size[0] % size[1], i / (size[0] * size[1])];
             let cell = [0, 1, 2].map(|k| low[k] + steps[k]);
             let outside = open.is_some_and(|axis| {
-                // Everything that the body sweeps when it leaves along the axis is cut away.
+                // The region that the body sweeps when it leaves along the axis is removed.
                 self.0.iter().any(|c| {
                     (0..3).all(|k| if k == axis { cell[k] >= c[k] } else { cell[k] == c[k] })
                 })
@@ -65,8 +65,8 @@ impl Cells {
         Self(cells)
     }
 
-    /// The surface: vertices in the grid under a linear map, and triangles. The diagonals, and whether
-    /// a square gets a vertex inside, are drawn.
+    /// Returns the surface: vertices in the grid under a linear map, and triangles. The diagonals of squares,
+    /// and additional vertices in squares, are random.
     pub fn surface(&self, map: DMat3, rng: &mut Random) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let mut vertices = Vec::new();
         let mut index: BTreeMap<[i32; 3], u32> = BTreeMap::new();
@@ -94,7 +94,7 @@ impl Cells {
         (vertices, facets)
     }
 
-    /// The cubes turned by a rotation that permutes axes.
+    /// Returns the cubes rotated by a rotation that permutes axes.
     #[must_use]
     pub fn turned(&self, quarter: DMat3) -> Self {
         let turn = |cell: &[i32; 3]| {
@@ -106,7 +106,7 @@ impl Cells {
     }
 }
 
-/// The corners of one square of a cube, counter-clockwise from outside.
+/// Returns the corners of a square of a cube, counter-clockwise from outside.
 fn square(cell: [i32; 3], axis: usize, up: i32) -> [[i32; 3]; 4] {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(a, b)| {
@@ -142,7 +142,7 @@ pub(super) fn cut(
     }
 }
 
-/// A motion in the grid's coordinates, all counted in multiples of the determinant of the map.
+/// A motion in grid coordinates, in multiples of the determinant of the map.
 pub(super) struct InGrid {
     /// The offset of the fixed body.
     pub(super) shift: [Dyadic; 3],
@@ -161,7 +161,7 @@ impl InGrid {
             x.plus(&y).plus(&z)
         });
         let [a, b, c] = &map;
-        // Rows of the adjugate, and the determinant, made positive.
+        // The rows of the adjugate, and the determinant, with a positive sign.
         let mut rows = [b.cross(c), c.cross(a), a.cross(b)];
         let mut unit = rows[0].dot(a);
         if unit.is_negative() {
@@ -173,8 +173,8 @@ impl InGrid {
     }
 }
 
-/// What `moving` meets when it goes along `direction`, with `fixed` displaced by `offset`; both in the
-/// world, the cubes under the linear map `rotation shear`.
+/// Computes the exact result of a motion of `moving` along `direction`, with `fixed` displaced by `offset`.
+/// Both are in the world, and the cubes are mapped by `rotation shear`.
 pub fn motion(
     (moving, fixed): (&Cells, &Cells),
     [rotation, shear]: [DMat3; 2],
@@ -205,8 +205,8 @@ pub fn motion(
     result
 }
 
-/// The open interval of `t` with `-unit < apart + t way < unit` in all three coordinates; the
-/// direction is not zero.
+/// Returns the open interval of `t` with `-unit < apart + t way < unit` in all three coordinates; `None` if it
+/// is empty. The direction is not zero.
 fn interval(apart: [Dyadic; 3], way: &[Dyadic; 3], unit: &Dyadic) -> Option<[Ratio; 2]> {
     let mut range: Option<[Ratio; 2]> = None;
     for (c, d) in apart.into_iter().zip(way) {

@@ -1,5 +1,5 @@
-//! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
-//! bodies against the points that they were made of.
+//! Compares convex bodies as solids with the convex core and with the rule over all pairs of facets, and the
+//! bodies with their input points.
 
 use colltrans::solid::SolidCast;
 use colltrans::{Bounded, Cast, Clearance, ContactRange, Outcome, Solid};
@@ -11,15 +11,15 @@ use crate::oracle::exact::Ratio;
 use crate::oracle::scene::size;
 use crate::oracle::settings::{NEARLY_FLAT, Setting};
 
-/// More pairs of facets than this are not judged by the rule.
+/// Maximum number of pairs of facets that are judged by the rule.
 const MOST_PAIRS: usize = 4_000;
-/// Agreement, in multiples of the rounding error of a coordinate.
+/// Tolerance of agreement, in multiples of the rounding error of a coordinate.
 const AGREEMENT: f64 = 512.0;
 
-/// Asks both, and compares; `None` for bodies without a volume, or so thin that they lose it.
+/// Computes and compares both answers. `None` for bodies without a volume, or so thin that they lose it.
 ///
 /// # Errors
-/// What disagrees.
+/// A description of the first disagreement.
 pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
     let bodies = setting.bodies().map_err(|e| e.to_string())?;
     setting.judge_bodies(&bodies).map_err(|e| e.to_string())?;
@@ -44,7 +44,7 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
     against_core(first, overlaps, found.as_ref(), &limits)
 }
 
-/// First and last contact are those of the core, where it is certain that there are any.
+/// Checks that first and last contact equal those of the core, if the core is certain that they exist.
 fn against_range(
     core: &ContactRange,
     found: &ContactRange<Solid>,
@@ -65,17 +65,17 @@ fn against_range(
     if agree { Ok(()) } else { Err(format!("{found:?}, but the core says {core:?}")) }
 }
 
-/// By how much a convex body as a solid may differ.
+/// The admissible differences of a convex body as a solid.
 struct Limits {
     /// The rounding error of a coordinate, in multiples of the direction.
     noise: f64,
-    /// A solid has the same corners, so it meets nothing earlier. But polygons are flat up to rounding
-    /// only, and triangles cut them: of a body that is as thin as that they leave another one, which may
-    /// meet later, or miss. What it does is judged by the rule alone.
+    /// Whether triangles may cut into the body. A solid has the same vertices, so it meets nothing earlier. But
+    /// polygons are flat only up to rounding. For a body as thin as that, the triangles form a different body,
+    /// which may meet later or miss. Such a body is judged by the rule only.
     dented: bool,
 }
 
-/// The rounding error of a coordinate, in multiples of the direction.
+/// Returns the rounding error of a coordinate, in multiples of the direction.
 fn noise(setting: &Setting, a: &Solid, b: &Solid) -> f64 {
     let size = size([a.vertices(), b.vertices()], [&setting.moving_pose, &setting.fixed_pose]);
     16.0 * f64::EPSILON * size / setting.direction.length()
@@ -119,7 +119,7 @@ fn against_rule(
     if agree { Ok(()) } else { Err(format!("{found:?}, by the rule {right:?}")) }
 }
 
-/// Where the core is certain, the solid says the same.
+/// Checks that the solid agrees where the core is certain.
 fn against_core(
     core: Outcome,
     overlaps: bool,

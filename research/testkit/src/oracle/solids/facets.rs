@@ -1,9 +1,9 @@
-//! The rule, over all pairs of facets, in exact arithmetic.
+//! Evaluates the rule for clearances over all pairs of facets, in exact arithmetic.
 //!
-//! A facet of the moving body with `n.d > 0` and one of the fixed body with `n.d < 0` make a pair if
-//! the interiors of their shadows overlap. Over the common shadow the gap `h_g - h_f` is linear; the
-//! pair counts if its largest value is positive, or if it is zero all over, and contributes its least
-//! value, or 0. The common shadow is found by clipping one triangle with the sides of the other, its
+//! A facet of the moving body with `n.d > 0` and a facet of the fixed body with `n.d < 0` form a pair if the
+//! interiors of their shadows overlap. Over the common shadow the gap `h_g - h_f` is linear. The pair counts if
+//! the maximum gap is positive, or if the gap is zero everywhere. It contributes the minimum gap, or 0 if that
+//! is negative. The common shadow is computed by clipping one triangle with the sides of the other, with
 //! corners as quotients of exact numbers.
 
 use std::cmp::Ordering;
@@ -18,16 +18,16 @@ pub type Triangle = [Vector; 3];
 /// A point of the shadow plane in homogeneous coordinates, the last one positive.
 type Point = [Dyadic; 3];
 
-/// What the rule says.
+/// The result of the rule.
 #[derive(Debug, Clone, Default)]
 pub struct Rule {
-    /// The least contribution of a pair that counts.
+    /// The minimum contribution of a pair that counts.
     pub stop: Option<Ratio>,
-    /// The largest gap between a back facet of the moving and a front facet of the fixed body.
+    /// The maximum gap between a back facet of the moving and a front facet of the fixed body.
     pub exit: Option<Ratio>,
 }
 
-/// A body's triangles in the world.
+/// Returns the triangles of a body in the world.
 pub fn triangles(
     vertices: &[DVec3],
     facets: &[[u32; 3]],
@@ -64,7 +64,7 @@ pub fn rule(moving: &[Triangle], fixed: &[Triangle], direction: DVec3) -> Rule {
     rule
 }
 
-/// What one pair of facets does along a direction.
+/// Evaluates pairs of facets along a direction.
 pub struct Judge {
     direction: Vector,
     plane: Plane,
@@ -73,14 +73,14 @@ pub struct Judge {
 /// The range of the gap of two facets.
 #[derive(Debug, Clone)]
 pub struct Gaps {
-    /// Whether a front facet of the moving body is before a back facet of the fixed one.
+    /// Whether a front facet of the moving body faces a back facet of the fixed one.
     pub front: bool,
-    /// Least and largest gap, if the interiors of the shadows overlap.
+    /// The minimum and maximum gap; `None` unless the interiors of the shadows overlap.
     pub range: Option<[Ratio; 2]>,
 }
 
 impl Gaps {
-    /// What the pair contributes, if it counts.
+    /// Returns the contribution of the pair; `None` if it does not count.
     pub fn contribution(&self) -> Option<Ratio> {
         let [least, largest] = self.range.clone().filter(|_| self.front)?;
         let zero = Ratio::from_f64(0.0);
@@ -90,17 +90,17 @@ impl Gaps {
 }
 
 impl Judge {
-    /// For a direction.
+    /// Builds the judge of a direction.
     pub fn new(direction: DVec3) -> Self {
         Self::along(Vector::new(direction))
     }
 
-    /// For a direction that is no `f64`.
+    /// Builds the judge of an exact direction.
     pub fn along(direction: Vector) -> Self {
         Self { plane: Plane::new(&direction), direction }
     }
 
-    /// Whether a facet looks along the direction (`Greater`) or against it.
+    /// Returns whether a facet points along the direction (`Greater`) or against it.
     pub fn facing(&self, triangle: &Triangle) -> Ordering {
         let along = normal(triangle).dot(&self.direction);
         if along.is_positive() {
@@ -112,7 +112,7 @@ impl Judge {
         }
     }
 
-    /// The gap between a facet of the moving and one of the fixed body.
+    /// Returns the gaps between a facet of the moving and one of the fixed body.
     pub fn gaps(&self, f: &Triangle, g: &Triangle) -> Gaps {
         let (n, m) = (self.facing(f), self.facing(g));
         let sides = n != Ordering::Equal && m != Ordering::Equal;
@@ -125,7 +125,7 @@ fn normal([a, b, c]: &Triangle) -> Vector {
     b.minus(a).cross(&c.minus(a))
 }
 
-/// Coordinates of the shadow: affine, exact, the same along the direction.
+/// Coordinates of the shadow: affine, exact, constant along the direction.
 struct Plane {
     axis: usize,
     direction: Vector,
@@ -143,7 +143,7 @@ impl Plane {
         [x, y, Dyadic::new(1.0)]
     }
 
-    /// The range of the gap over the common shadow, if that has an interior.
+    /// Returns the range of the gap over the common shadow; `None` if that has no interior.
     fn gaps(&self, f: &Triangle, g: &Triangle, direction: &Vector) -> Option<[Ratio; 2]> {
         let counter_clockwise = |t: &Triangle| {
             let mut corners: Vec<Point> = t.iter().map(|p| self.shadow(p)).collect();
@@ -178,23 +178,23 @@ impl Plane {
         range
     }
 
-    /// `t` such that the point of the plane over a shadow is `t d` beyond the plane through the origin
-    /// on which shadows are measured.
+    /// Returns the `t` at which the point of the facet's plane over a shadow is `t d` beyond the coordinate
+    /// plane of shadows.
     fn height(&self, triangle: &Triangle, shadow: &Point, direction: &Vector) -> Ratio {
-        // The point with coordinate 0 along `axis` and this shadow is `x / (w d_k)` there.
+        // In the coordinate plane of `axis`, the point with this shadow is `x / (w d_k)`.
         let k = self.axis;
         let mut base = [Dyadic::ZERO, Dyadic::ZERO, Dyadic::ZERO];
         base[(k + 1) % 3] = shadow[0].clone();
         base[(k + 2) % 3] = shadow[1].clone();
         let n = normal(triangle);
         let scale = &shadow[2] * &self.direction.0[k];
-        // n . (base / scale + t d - a) = 0.
+        // Solves n . (base / scale + t d - a) = 0.
         let above = &(&n.dot(&triangle[0]) * &scale) - &n.dot(&Vector(base));
         Ratio::new(above, &n.dot(direction) * &scale)
     }
 }
 
-/// `det[b - a, c - a]` times the (positive) last coordinates.
+/// Returns `det[b - a, c - a]` times the (positive) last coordinates.
 fn turn(a: &Point, b: &Point, c: &Point) -> Dyadic {
     let minor = |p: &Point, q: &Point, i: usize, j: usize| &(&p[i] * &q[j]) - &(&p[j] * &q[i]);
     let x = &a[0] * &minor(b, c, 1, 2);
@@ -203,7 +203,7 @@ fn turn(a: &Point, b: &Point, c: &Point) -> Dyadic {
     &(&x + &y) + &z
 }
 
-/// The part of a convex polygon to the left of a line (Sutherland and Hodgman).
+/// Returns the part of a convex polygon to the left of a line (Sutherland and Hodgman).
 fn cut(polygon: &[Point], a: &Point, b: &Point) -> Vec<Point> {
     let mut kept = Vec::new();
     for (k, p) in polygon.iter().enumerate() {
@@ -213,7 +213,7 @@ fn cut(polygon: &[Point], a: &Point, b: &Point) -> Vec<Point> {
             kept.push(p.clone());
         }
         if s.is_positive() && t.is_negative() || s.is_negative() && t.is_positive() {
-            // `s` and `t` carry the last coordinates of `p` and `q`: the point is `p t - q s`.
+            // `s` and `t` contain the last coordinates of `p` and `q`, so the point is `p t - q s`.
             let (s, t) = if s.is_negative() { (-s, t) } else { (s, -t) };
             kept.push([0, 1, 2].map(|i| &(&p[i] * &t) + &(&q[i] * &s)));
         }

@@ -1,7 +1,9 @@
-//! Free directions of bodies of cubes and of convex bodies, most of them tied, held against ordinary casts along
-//! directions of the axes, near them, in cells beside borders, and anywhere; against the union of the cones of all
-//! pairs of facets, in fractions; the same of bodies that are turned together, no less with a larger tolerance; and
-//! proofs that were changed, as wholes and cell by cell.
+//! Judges free directions of bodies of cubes and of convex bodies, most of them with ties.
+//!
+//! - They are compared with casts along axes, near them, in cells next to borders, and along random directions.
+//! - They are compared with the union of the cones of all pairs of facets, in rational arithmetic.
+//! - The bodies are also rotated together, and queried with a larger tolerance, which must not free less.
+//! - Proofs are modified as a whole and cell by cell, and must be rejected.
 
 mod alike;
 mod bodies;
@@ -20,22 +22,22 @@ use crate::tally::Tally;
 pub use bodies::FAMILIES;
 use bodies::{Bodies, draw};
 
-/// Pairs of nodes that are looked at for one setting.
+/// Maximum number of pairs of nodes that a query examines.
 const LOOKS: u64 = 300_000;
 
-/// Pairs of facets that are looked at in fractions for one setting, all directions together; one at least is judged.
+/// Maximum number of pairs of facets that are examined in rational arithmetic for a setting, over all
+/// directions. At least one direction is judged.
 const PAIRS: usize = 3_000;
 
-/// Arcs and points are judged of bodies with so many pairs of facets, at most.
+/// Maximum number of pairs of facets for which arcs and isolated directions are judged.
 const THIN: usize = 4_000;
 
-/// Cells whose facets are changed, each as often as directions are asked.
+/// Number of cells whose facets are modified.
 const CELLS: usize = 6;
 
-/// What is counted: settings, and those that overlap; directions judged, free ones, undecided ones, and those judged in
-/// fractions too, over all pairs of facets; arcs and points judged in fractions; directions compared with bodies that
-/// are turned together, or with a larger tolerance; changed proofs that were refused, as they should be, and cells of
-/// which another facet is said to block them and does not.
+/// Columns: numbers of settings, of overlaps, of judged directions, free ones, undecided ones, those judged in
+/// rational arithmetic, judged arcs and isolated directions, directions compared after a rotation or with a
+/// larger tolerance, rejected modified proofs, and cells with a modified facet that does not block them.
 pub const COLUMNS: &[&str] = &[
     "settings",
     "overlapping",
@@ -49,17 +51,17 @@ pub const COLUMNS: &[&str] = &[
     "cells",
 ];
 
-/// Asks about the bodies of a setting along so many directions.
+/// Judges the bodies of a setting along `count` directions.
 ///
 /// # Errors
-/// What disagrees.
+/// A description of the first disagreement.
 pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result<(), String> {
     tally.count("settings");
     let bodies = draw(family, seed)?.ok_or("no such family")?;
     let Bodies { solids: [a, b], poses: [p, q] } = &bodies;
     let (p, q) = (*p, *q);
     let start = if seed.is_multiple_of(2) { StartOverlap::Refuse } else { StartOverlap::Ignore };
-    // With a tolerance, fractions would not know the bodies that are made smaller.
+    // The rational judge does not know the bodies that a tolerance shrinks.
     let tolerance = if seed % 8 < 6 { 0.0 } else { 0.03125 };
     let options =
         FreeOptions::DEFAULT.with_tolerance(tolerance).with_start_overlap(start).with_looks(LOOKS);
@@ -82,7 +84,7 @@ pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result
     if seed % 4 == 2 {
         tally.add("compared", alike::turned(&all, &bodies, &mut rng)?);
     }
-    // What overlaps and is ignored does so less with a larger tolerance, and then blocks.
+    // Ignored overlaps decrease with a larger tolerance, and may then block. They are excluded here.
     if seed.is_multiple_of(4) && start == StartOverlap::Refuse {
         let larger = alike::larger(&all, &bodies, tolerance + 0.015_625, &mut rng)?;
         tally.add("compared", larger);
@@ -90,7 +92,7 @@ pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result
     Ok(())
 }
 
-/// What is said along so many directions is what casts say, and fractions.
+/// Compares the answers along `count` directions with casts and with rational arithmetic.
 fn along(
     all: &FreeDirections,
     bodies: [Placed<'_, Solid>; 2],
@@ -129,7 +131,8 @@ fn along(
     Ok(())
 }
 
-/// Another facet in the place of one that blocks a cell is refused, or the middle of the cell is blocked all the same.
+/// Replaces a blocking facet of cells, and checks that the change is rejected or the centre of the cell is
+/// blocked nevertheless.
 fn changed_cells(
     bodies: [&Solid; 2],
     [p, q]: [Pose; 2],
@@ -158,7 +161,8 @@ fn changed_cells(
     Ok(refused)
 }
 
-/// Whether no pair of facets of two solids blocks a direction, in fractions, over all of them: brute force.
+/// Checks whether a direction is free, over all pairs of facets of two solids in rational arithmetic (brute
+/// force).
 pub fn is_free_of_all(bodies: [Placed<'_, Solid>; 2], d: DVec3) -> bool {
     is_free(&facets(bodies), d)
 }
@@ -177,7 +181,7 @@ fn by_cast([a, b]: [Placed<'_, Solid>; 2], options: FreeOptions, d: DVec3) -> Re
     Ok(cast.clearance().map_err(|e| e.to_string())?.is_free())
 }
 
-/// Whether no pair of facets blocks, in fractions, over all of them.
+/// Checks whether no pair of facets blocks a direction, in rational arithmetic.
 fn is_free(facets: &[Vec<Triangle>; 2], d: DVec3) -> bool {
     is_free_along(facets, &Judge::new(d))
 }
@@ -191,7 +195,7 @@ fn any(rng: &mut Random) -> DVec3 {
     DVec3::from([0; 3].map(|_| rng.range(-1.0, 1.0)))
 }
 
-/// Half of them in cells, which are small beside borders, their corners among them.
+/// Draws a direction. Half of them are in cells, which are small near borders, including their corners.
 fn direction(all: &FreeDirections, rng: &mut Random) -> DVec3 {
     let d = match rng.int(0, 5) {
         0 => rng.grid(-2, 2),
@@ -209,7 +213,7 @@ fn direction(all: &FreeDirections, rng: &mut Random) -> DVec3 {
     if d == DVec3::ZERO { DVec3::X } else { d }
 }
 
-/// Proofs with another facet in one cell are refused, or say nothing else.
+/// Checks that proofs with a different facet in one cell are rejected, or make the same statement.
 fn changed(
     all: &FreeDirections,
     bodies: [Placed<'_, Solid>; 2],

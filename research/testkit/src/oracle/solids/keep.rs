@@ -1,8 +1,8 @@
-//! Casts of solids that keep a gap: where they say that they are, and over all pairs of facets.
+//! Judges casts of solids with a minimum gap, at the reported positions and over all pairs of facets.
 //!
-//! The distance of the surfaces is taken in fractions at both bounds, at the start and on the way. That nothing
-//! comes nearer before is asked of each pair of facets by itself, as two flat convex bodies, whose casts are
-//! judged by [`keep`](crate::oracle::keep).
+//! The distance of the surfaces is computed in rational arithmetic at both bounds, at the start and on the way.
+//! To check that nothing is nearer before, each pair of facets is cast as two flat convex bodies, and the casts
+//! are judged by [`keep`](crate::oracle::keep).
 
 use colltrans::solid::{SolidCast, SolidCertificate};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid};
@@ -14,30 +14,30 @@ use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::oracle::scene::size;
 use crate::random::Random;
 
-/// How many noises facets may pass each other below the gap, and a little for what is computed here.
+/// Number of noises by which facets may pass each other below the gap, including the errors of this module.
 const GRAZE: f64 = 9.0;
-/// Facets are told apart that come nearer than the gap by more noises than that.
+/// Minimum number of noises below the gap by which two facets count as clearly nearer.
 const CLEARLY: f64 = 64.0;
-/// More pairs of facets than this are not cast one by one.
+/// Maximum number of pairs of facets that are cast one by one.
 const MOST_PAIRS: usize = 1_500;
-/// Places on the way that are looked at.
+/// Number of positions on the way that are checked.
 const SAMPLES: u32 = 3;
 
-/// What came out, for statistics.
+/// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Seen {
-    /// Nearer than the gap at the start.
+    /// The bodies are nearer than the gap at the start.
     Nearer,
-    /// Nothing comes as near.
+    /// The bodies never come as near as the gap.
     Free,
-    /// Something does.
+    /// The bodies come as near as the gap.
     Blocked,
 }
 
-/// Casts the solids of a setting for a seed, with a gap, and judges the answers; `None` for bodies that are no solids.
+/// Casts the solids of a setting with a gap, and judges the answers. `None` for bodies that are not solids.
 ///
 /// # Errors
-/// What disagrees.
+/// A description of the first disagreement.
 pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
     let Some(setting) = Setting::draw(family, seed)? else { return Ok(None) };
     let random = &mut Random::stream(seed, &[family.len() as u64, 0x6a9]);
@@ -50,7 +50,7 @@ pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
         4 => setting.pair()?.distance().map_err(|e| e.to_string())?.upper,
         _ => size * random.range(0.0, 0.3),
     };
-    // A few noises are no gap.
+    // A few noises do not count as a gap.
     let gap = if gap < 1e-12 * (size + setting.reach()) { 1e-3 * size } else { gap };
     let toward = setting.poses[1].translation() - setting.poses[0].translation();
     let way = match random.index(3) {
@@ -66,10 +66,10 @@ pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
     judge(&cast).map(Some).map_err(|e| format!("gap {gap:e}: {e}"))
 }
 
-/// Judges the answers to a cast that keeps a gap.
+/// Judges the answers of a cast with a minimum gap.
 ///
 /// # Errors
-/// What disagrees.
+/// A description of the first disagreement.
 pub fn judge(cast: &Cast<Solid>) -> Result<Seen, String> {
     Judge::new(cast).examine()
 }
@@ -93,14 +93,14 @@ impl<'a> Judge<'a> {
         Self { cast: *cast, gap, noise: 16.0 * f64::EPSILON * size, placed }
     }
 
-    /// The square of the distance of the surfaces after a translation.
+    /// Returns the squared distance of the surfaces after a translation.
     fn at(&self, t: f64) -> Ratio {
         let by = Vector::new(self.cast.direction()).times(&Dyadic::new(t));
         let moved = |t: &Triangle| t.each_ref().map(|corner| corner.plus(&by));
         surfaces(&[self.placed[0].iter().map(moved).collect(), self.placed[1].clone()])
     }
 
-    /// That nothing is nearer than the gap after a translation, but for what grazes.
+    /// Checks that nothing is nearer than the gap after a translation, except for grazing facets.
     fn kept(&self, t: f64) -> Result<(), String> {
         let least = (self.gap - GRAZE * self.noise).max(0.0);
         let found = self.at(t);
@@ -153,12 +153,12 @@ impl<'a> Judge<'a> {
         Ok(seen)
     }
 
-    /// At the start, at the end and between.
+    /// Checks the start, the end and positions in between.
     fn on_the_way(&self, end: f64) -> Result<(), String> {
         (0..=SAMPLES + 1).try_for_each(|k| self.kept(end * f64::from(k) / f64::from(SAMPLES + 1)))
     }
 
-    /// That a proof is of no more than it says.
+    /// Checks that a proof is rejected for a larger bound and for a larger gap.
     fn changed(&self, proof: &SolidCertificate) -> Result<(), String> {
         let much = 1e8 * self.noise;
         let lower = proof.lower + 2.0 * much / self.cast.direction().length();
@@ -173,7 +173,8 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// That no pair of facets comes nearer before, nor the first one much later.
+    /// Checks that no pair of facets comes nearer before the bound, and that the bound is not much earlier than
+    /// the first pair.
     fn pairs(&self, distance: f64) -> Result<(), String> {
         let [p, q] = &self.placed;
         if p.len() * q.len() > MOST_PAIRS {
@@ -195,7 +196,7 @@ impl<'a> Judge<'a> {
                 first = first.min(self.pair(f, g)?);
             }
         }
-        // As a share, as the last digits of a graze are far along.
+        // A relative tolerance, because the last digits of a graze correspond to a long distance.
         let slack = 1e-5 * (first + self.gap / cast.direction().length());
         if distance > first + slack || distance.is_infinite() && first.is_finite() {
             return Err(format!("{distance:e}, and facets are as near after {first:e}"));
@@ -203,7 +204,8 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// When two facets are first clearly nearer than the gap, from here on; infinite if they are not.
+    /// Returns the translation at which two facets are first clearly nearer than the gap; infinity if there is
+    /// none.
     fn pair(&self, f: &ConvexPolyhedron, g: &ConvexPolyhedron) -> Result<f64, String> {
         let cast = Cast::new(
             f.at(self.cast.moving_pose()),

@@ -1,8 +1,11 @@
-//! What solids are judged by: bodies of cubes, whose motions are known without facets ([`cells`]), the
-//! rule over all pairs of facets in exact arithmetic ([`facets`]), proofs judged in fractions
-//! ([`proof`]), distances over all pairs of facets ([`nearest`]), casts that keep a gap ([`keep`]), free directions ([`free`]), first contacts of
-//! what turns ([`turning`]), and settings full of ties ([`settings`]); the same for open surfaces, bodies of cubes
-//! and of squares ([`squares`], [`sheets`]).
+//! Judges solids.
+//!
+//! - Bodies of cubes, whose exact answers follow without facets ([`cells`]), and the same for open surfaces of
+//!   squares ([`squares`], [`sheets`]).
+//! - The rule over all pairs of facets in exact arithmetic ([`facets`]), and proofs in rational arithmetic
+//!   ([`proof`]).
+//! - Distances over all pairs of facets ([`nearest`]), casts with a minimum gap ([`keep`]), free directions
+//!   ([`free`]), first contacts of rotating solids ([`turning`]), and settings with many ties ([`settings`]).
 
 pub mod cells;
 mod convex;
@@ -24,7 +27,7 @@ use crate::oracle::exact::Ratio;
 pub use convex::as_solids;
 pub use settings::Seen;
 
-/// The query between two solids as they are, without a tolerance.
+/// Builds the cast of two solids without a tolerance.
 pub(crate) fn exactly(
     [a, b]: [&Solid; 2],
     poses: [Pose; 2],
@@ -35,7 +38,7 @@ pub(crate) fn exactly(
         .map_err(|e| e.to_string())
 }
 
-/// Whether a number lies between bounds, exactly, and the estimate too.
+/// Checks whether an exact number and the estimate are between the bounds.
 pub(crate) fn encloses(found: &Bounded, right: &Ratio) -> bool {
     let Bounded { value, lower, upper } = *found;
     lower <= value

@@ -1,9 +1,10 @@
-//! Distances of solids, exactly: over all pairs of facets in fractions, and whether one body holds the other.
+//! Judges distances of solids exactly: over all pairs of facets in rational arithmetic, and whether one body is
+//! inside the other.
 //!
-//! Two triangles are as far apart as [`distance`] says of their corners, which
-//! tries all faces of simplices. Pairs come in the order of the least that balls around them allow, so that
-//! few are asked. A closed body holds a point if a line from it, along a general direction, leaves the body's
-//! facets more often than it enters them.
+//! The distance of two triangles is that of their corners by [`distance`], which tries all faces of simplices.
+//! Pairs are processed in the order of the lower bounds given by enclosing balls, so that few are evaluated. A
+//! closed body contains a point if a ray from it in a general direction leaves the body more often than it
+//! enters it.
 
 use colltrans::solid::{Apart, Claim, SolidNear, SolidPair};
 use colltrans::{Distance, Pair, Pose, Solid, Within};
@@ -21,24 +22,24 @@ use crate::random::Random;
 use crate::shapes::{Mesh, prism};
 use crate::solids::{bumpy_ball, perforated_plate, slab, washer};
 
-/// Bounds are at most so many noises apart.
+/// Maximum difference of the bounds in noises.
 const WIDEST: f64 = 5.0;
-/// More pairs of facets than this are not counted one by one.
+/// Maximum number of pairs of facets that are counted one by one.
 const MOST_PAIRS: usize = 4_000;
 
-/// The families of meshes, by name; those of [`cubes`], [`sheets`] and convex bodies come with them.
+/// The families of meshes. The families of [`cubes`], [`sheets`] and convex bodies are available as well.
 pub const MESHES: [&str; 4] = ["balls", "hollow", "thin", "mixed"];
 
-/// What came out, for statistics.
+/// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Seen {
-    /// Surfaces have a point in common.
+    /// The surfaces have a common point.
     Touching,
     /// One body is inside the other.
     Inside,
-    /// Less than a millionth of the size apart.
+    /// The distance is less than a millionth of the size.
     Near,
-    /// Farther apart.
+    /// The distance is larger.
     Apart,
 }
 
@@ -47,22 +48,22 @@ pub enum Seen {
 pub struct Setting {
     /// The moving and the fixed body.
     pub solids: [Solid; 2],
-    /// Where they are.
+    /// Their poses.
     pub poses: [Pose; 2],
 }
 
 impl Setting {
-    /// The setting of a family for a seed; `None` for bodies that are no solids.
+    /// Draws the setting of a family with a seed; `None` for bodies that are not solids.
     ///
     /// # Errors
-    /// An unknown family; a body that the library refuses.
+    /// A message if the family is unknown, or the library rejects a body.
     pub fn draw(family: &str, seed: u64) -> Result<Option<Self>, String> {
         let random = &mut Random::stream(seed, &[family.len() as u64, 0xd157]);
         let Some(drawn) = drawn(family, seed, random)? else { return Ok(None) };
         drawn.displaced(random).map(Some)
     }
 
-    /// As drawn, farther off, or moved by very little.
+    /// Leaves the setting, increases the distance, or brings the bodies to a very small distance.
     fn displaced(mut self, random: &mut Random) -> Result<Self, String> {
         let size = self.solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
         let little = [1e-15, 1e-13, 1e-10, 1e-7, 1e-3];
@@ -80,7 +81,7 @@ impl Setting {
         Ok(self)
     }
 
-    /// The moving body put before the fixed one along the normal of their distance.
+    /// Moves the moving body to a gap from the fixed one, along the normal of their distance.
     fn brought_near(&mut self, gap: f64) -> Result<(), String> {
         let found = self.pair()?.distance().map_err(|e| e.to_string())?;
         if let Some(normal) = found.normal {
@@ -89,19 +90,19 @@ impl Setting {
         Ok(())
     }
 
-    /// The question.
+    /// Builds the pair.
     ///
     /// # Errors
-    /// What the library refuses.
+    /// The message of the library if it rejects the pair.
     pub fn pair(&self) -> Result<Pair<'_, Solid>, String> {
         let [a, b] = &self.solids;
         Pair::new(a.at(self.poses[0]), b.at(self.poses[1])).map_err(|e| e.to_string())
     }
 
-    /// Asks the library and compares.
+    /// Computes the distance, and judges it.
     ///
     /// # Errors
-    /// What disagrees.
+    /// A description of the first disagreement.
     pub fn examine(&self) -> Result<Seen, String> {
         let pair = self.pair()?;
         let placed = [0, 1].map(|k| {
@@ -138,22 +139,22 @@ impl Setting {
         })
     }
 
-    /// How far the bodies reach together, and are apart.
+    /// Returns the size `S` of the setting.
     pub fn reach(&self) -> f64 {
         self.noise() / (16.0 * f64::EPSILON)
     }
 
-    /// One noise, `32 u S`.
+    /// Returns the noise, `32 u S`.
     fn noise(&self) -> f64 {
         let vertices = self.solids.each_ref().map(Solid::vertices);
         16.0 * f64::EPSILON * size(vertices, self.poses.each_ref())
     }
 
-    /// Whether one body, whose surfaces are apart, holds a part of the other.
+    /// Checks whether one of two bodies with disjoint surfaces contains a part of the other.
     fn is_inside(&self, pair: &Pair<Solid>, placed: &[Vec<Triangle>; 2]) -> Result<bool, String> {
         let [a, b] = &self.solids;
         if !(a.is_closed() && b.is_closed()) {
-            // What of an open body is closed is for the library to say: it is judged elsewhere.
+            // The closed part of an open body is determined by the library, which is judged elsewhere.
             let [p, q] = [a.at(pair.moving_pose()), b.at(pair.fixed_pose())];
             let cast = colltrans::Cast::new(p, q, DVec3::X).map_err(|e| e.to_string())?;
             return Ok(cast.intersects().map_err(|e| e.to_string())?.meets);
@@ -165,7 +166,7 @@ impl Setting {
 }
 
 fn moved(pose: &Pose, by: DVec3) -> Result<Pose, String> {
-    // What is too small for a translation is none.
+    // Coordinates below the range of translations become zero.
     let at = (pose.translation() + by).to_array().map(|x| if x.abs() < 1e-60 { 0.0 } else { x });
     Pose::from_matrix(pose.matrix(), DVec3::from_array(at)).map_err(|e| e.to_string())
 }
@@ -196,7 +197,7 @@ fn drawn(family: &str, seed: u64, random: &mut Random) -> Result<Option<Setting>
         .map(|mesh| Solid::from_open_mesh(&mesh.vertices, &mesh.faces).map_err(|e| e.to_string()));
     let [a, b] = solids;
     let mut pose = |near: f64| {
-        // One in the other, now and then.
+        // Sometimes one body is inside the other.
         let near = near * random.pick(&[0.1, 1.0]);
         let rotation = if random.one_in(4) { glam::DQuat::IDENTITY } else { random.rotation() };
         Pose::new(rotation, random.direction() * near).map_err(|e| e.to_string())
@@ -224,7 +225,7 @@ fn mesh(family: &str, random: &mut Random) -> Mesh {
         }
         ("hollow", _) => ball(random).mapped(|v| v * 0.3),
         ("mixed", 1) => {
-            // A shell with a lid off.
+            // A closed surface from which facets are removed.
             let mut open = ball(random);
             open.faces.truncate(open.faces.len() * 3 / 4);
             open
@@ -233,10 +234,10 @@ fn mesh(family: &str, random: &mut Random) -> Mesh {
     }
 }
 
-/// The square of the distance of two surfaces.
+/// Returns the squared distance of two surfaces.
 ///
 /// # Panics
-/// If one has no facets.
+/// If a surface has no facets.
 pub fn surfaces([moving, fixed]: &[Vec<Triangle>; 2]) -> Ratio {
     let origin = moving[0][0].clone();
     let balls = |all: &[Triangle]| -> Vec<(DVec3, f64)> {
@@ -271,7 +272,7 @@ pub fn surfaces([moving, fixed]: &[Vec<Triangle>; 2]) -> Ratio {
     best.expect("bodies have facets").1
 }
 
-/// Whether a closed body holds a point that is not on it.
+/// Checks whether a closed body contains a point that is not on its surface.
 fn holds(body: &[Triangle], point: &Vector) -> bool {
     for way in [[3.0, 5.0, 7.0], [-11.0, 2.0, 13.0], [17.0, -19.0, 3.0], [1.0, 23.0, -29.0]] {
         let way = Vector::new(DVec3::from_array(way));
@@ -280,11 +281,12 @@ fn holds(body: &[Triangle], point: &Vector) -> bool {
             return winding > 0;
         }
     }
-    // Four directions along edges: as good as none.
+    // Four directions along edges are extremely improbable.
     false
 }
 
-/// 1 where a line leaves through a facet, -1 where it enters, 0 where it passes it; `None` along an edge.
+/// Returns 1 if a ray leaves through a facet, -1 if it enters, and 0 if it misses the facet; `None` if it
+/// passes an edge.
 fn crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
     let [a, b, c] = triangle.each_ref().map(|v| v.minus(point));
     let turns = [(&a, &b), (&b, &c), (&c, &a)].map(|(u, v)| u.cross(v).dot(way));
@@ -295,7 +297,7 @@ fn crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
     if turns.iter().any(|turn| turn.is_positive() != up) {
         return Some(0);
     }
-    // Ahead if the facet's plane is on the side to which the line leaves or enters it.
+    // The intersection is ahead if the point is on the appropriate side of the facet's plane.
     let ahead = a.cross(&b).dot(&c).is_positive() == up;
     Some(if !ahead {
         0
@@ -306,7 +308,7 @@ fn crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
     })
 }
 
-/// Whether bounds hold, and are as near as they should be.
+/// Checks that the bounds hold and are close enough.
 fn enclosed(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'static str> {
     let square = |x: f64| Ratio::from_f64(x).times(&Ratio::from_f64(x));
     if found.lower < 0.0 || square(found.lower) > *right {
@@ -324,7 +326,7 @@ fn enclosed(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'
     Ok(())
 }
 
-/// Whether the points are no farther apart than is said.
+/// Checks that the points are at most as far apart as stated.
 fn points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static str> {
     let SolidNear::Points { triangles, weights, distance } = near else { return Ok(()) };
     let mean = |k: usize| {

@@ -1,7 +1,7 @@
-//! Proofs between solids, judged in fractions: without trees, boxes or rounded numbers.
+//! Judges proofs of solids in rational arithmetic, without trees, boxes or rounded numbers.
 //!
-//! The library says of which facets each entry of a cover speaks; all pairs of facets must be spoken
-//! of, each once, and what is said of a pair must hold for its two triangles.
+//! Each entry of a cover names its facets. Each pair of facets must be covered exactly once, and the reason of
+//! a pair must hold for its triangles.
 
 use std::cmp::Ordering;
 
@@ -11,15 +11,14 @@ use colltrans::{Cast, Solid};
 use super::facets::{Gaps, Judge, Triangle, triangles};
 use crate::oracle::exact::Ratio;
 
-/// More pairs of facets than this are not judged.
+/// Maximum number of pairs of facets that are judged.
 pub const MOST_PAIRS: usize = 2_500;
 
-/// Judges the proof of a clearance between bodies that are not shrunk; whether they overlap where they
-/// are is known otherwise. `slack`, in multiples of the direction, is what a sum of rounded numbers may
-/// be off by.
+/// Judges the proof of a clearance between bodies that are not shrunk. An overlap at the start is judged
+/// elsewhere. `slack`, in multiples of the direction, is the tolerance for sums of rounded numbers.
 ///
 /// # Errors
-/// What does not hold.
+/// A description of the first statement that is false.
 pub fn approve(
     cast: &Cast<'_, Solid>,
     certificate: &SolidCertificate,
@@ -64,7 +63,7 @@ pub fn approve(
     }
 }
 
-/// Whether each pair of so many facets is spoken of once.
+/// Checks whether each pair of facets is covered exactly once.
 pub(super) fn once<R>([m, n]: [usize; 2], claims: &[Claim<R>]) -> Result<(), String> {
     let mut spoken = vec![0_u8; m * n];
     for claim in claims {

@@ -1,4 +1,4 @@
-//! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
+//! Draws settings of bodies made of cubes, most of them with ties, and judges the answers.
 
 use colltrans::solid::{SolidCast, SolidFree};
 use colltrans::{Bounded, Clearance, ContactRange, Pose, Solid};
@@ -11,47 +11,47 @@ use crate::oracle::exact::{Ratio, Vector};
 use crate::oracle::scene::size;
 use crate::random::Random;
 
-/// The families, by name.
+/// The families.
 pub const FAMILIES: [&str; 6] = ["grid", "sheared", "quarter", "rotated", "mould", "halves"];
 
-/// Distances agree when they differ by no more than this many times the noise of the setting.
+/// Maximum difference of agreeing distances, in noises of the setting.
 pub(super) const AGREEMENT: f64 = 512.0;
 
-/// What came out, for statistics.
+/// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Seen {
     /// The bodies overlap.
     Overlapping,
-    /// Nothing is in the way.
+    /// The moving body is free.
     Free,
-    /// They touch and block.
+    /// The bodies touch and block.
     BlockedNow,
-    /// Something is ahead.
+    /// The moving body is blocked later.
     Blocked,
 }
 
-/// Two bodies of cubes, placed.
+/// Two placed bodies of cubes.
 #[derive(Debug, Clone)]
 pub struct Setting {
     /// The moving and the fixed body, in the grid.
     pub cells: [Cells; 2],
-    /// Both grids are mapped by this in the body frames.
+    /// The linear map of both grids in the body frames.
     pub shear: DMat3,
-    /// Surfaces, in the body frames.
+    /// The surfaces in the body frames.
     pub surfaces: [(Vec<DVec3>, Vec<Vec<u32>>); 2],
-    /// Poses.
+    /// The poses.
     pub poses: [Pose; 2],
     /// The direction.
     pub direction: DVec3,
-    /// The rotations that the poses apply to the cubes themselves.
+    /// The rotations that the poses apply to the cubes.
     turns: [DMat3; 2],
 }
 
 impl Setting {
-    /// The setting of a family for a seed; `None` for an unknown family.
+    /// Draws the setting of a family with a seed; `None` for an unknown family.
     ///
     /// # Panics
-    /// Never: the poses are rotations.
+    /// Never, because the poses are rotations.
     pub fn draw(family: &str, seed: u64) -> Option<Self> {
         let mut rng = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x51);
         let rng = &mut rng;
@@ -74,7 +74,7 @@ impl Setting {
                 shear = if rng.one_in(2) { sheared(rng) } else { shear };
                 rotation = any_rotation(rng);
                 let map = DMat3::from_quat(rotation) * shear;
-                // Translations and directions of the grid, rounded, or none at all.
+                // Translations and directions in the grid, rounded, or zero.
                 let zero = rng.one_in(2);
                 translations = translations.map(|t| if zero { DVec3::ZERO } else { map * t });
                 direction = map * direction;
@@ -91,7 +91,7 @@ impl Setting {
                 if rng.one_in(2) {
                     direction = shear * DVec3::AXES[axis];
                     rotation = if rng.one_in(2) { any_rotation(rng) } else { rotation };
-                    // The exact direction of the rounded matrix, if it has one.
+                    // The exact direction of the rounded matrix.
                     let matrix = Pose::new(rotation, DVec3::ZERO).expect("a rotation").matrix();
                     direction = matrix * direction;
                 }
@@ -100,7 +100,7 @@ impl Setting {
         }
         let surfaces = [0, 1].map(|k| cells[k].surface(shear, rng));
         let pose = |k: usize| {
-            // Quarter turns as they are: their quaternions may round.
+            // Quarter turns are set as matrices, because their quaternions may be rounded.
             if turns[k] == DMat3::IDENTITY {
                 Pose::new(rotation, translations[k]).expect("a rotation")
             } else {
@@ -111,7 +111,7 @@ impl Setting {
         Some(Self { cells, shear, surfaces, poses, direction, turns })
     }
 
-    /// What happens, exactly.
+    /// Returns the exact result.
     pub fn expected(&self) -> Motion {
         self.expected_along(self.direction)
     }
@@ -128,10 +128,11 @@ impl Setting {
         motion((&a, &b), [identity; 2], &offset, direction)
     }
 
-    /// Asks the library and compares; proofs of small bodies are judged in fractions if so said.
+    /// Computes the answers, and judges them. Proofs of small bodies are judged in rational arithmetic if
+    /// `in_fractions`.
     ///
     /// # Errors
-    /// What disagrees.
+    /// A description of the first disagreement.
     pub fn examine(&self, in_fractions: bool) -> Result<Seen, String> {
         let solid = |k: usize| {
             let (vertices, facets) = &self.surfaces[k];
@@ -201,7 +202,7 @@ impl Setting {
     }
 }
 
-/// A direction along an axis or a diagonal, or of small whole numbers.
+/// Draws a direction along an axis or a diagonal, or with small integer coordinates.
 pub(super) fn way(rng: &mut Random) -> DVec3 {
     loop {
         let most = [1, 1, 3][rng.int(0, 2) as usize];
@@ -224,7 +225,7 @@ pub(super) fn sheared(rng: &mut Random) -> DMat3 {
     }
 }
 
-/// A rotation that permutes axes.
+/// Draws a rotation that permutes axes.
 fn quarter(rng: &mut Random) -> DMat3 {
     loop {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];

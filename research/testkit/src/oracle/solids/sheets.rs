@@ -1,4 +1,4 @@
-//! Settings of open surfaces, most of them tied, and how an answer is judged.
+//! Draws settings of open surfaces, most of them with ties, and judges the answers.
 
 use colltrans::solid::{SolidCast, SolidFree};
 use colltrans::{Clearance, Pose, Solid};
@@ -12,17 +12,17 @@ use crate::oracle::exact::{Ratio, Vector};
 use crate::oracle::scene::size;
 use crate::random::Random;
 
-/// The families, by name.
+/// The families.
 pub const FAMILIES: [&str; 3] = ["sheets", "sheets-sheared", "sheets-rotated"];
 
-/// Two bodies, at least one of them open, placed.
+/// Two placed bodies, at least one of them open.
 #[derive(Debug, Clone)]
 pub struct Setting {
     /// The moving and the fixed body, in the grid.
     pub bodies: [Mixed; 2],
-    /// Their surfaces, in the body frames.
+    /// Their surfaces in the body frames.
     pub solids: [Solid; 2],
-    /// Poses: one rotation, two translations.
+    /// The poses: one rotation, two translations.
     pub poses: [Pose; 2],
     /// The direction.
     pub direction: DVec3,
@@ -30,14 +30,14 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The setting of a family for a seed.
+    /// Draws the setting of a family with a seed.
     ///
     /// # Errors
-    /// An unknown family; a body that the library refuses.
+    /// A message if the family is unknown, or the library rejects a body.
     pub fn draw(family: &str, seed: u64) -> Result<Self, String> {
         let mut rng = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5ee7);
         let rng = &mut rng;
-        // Which of the two has cubes, and which has squares: not cubes alone on both sides.
+        // Draws which bodies have cubes and which have squares. At least one must have squares.
         let mut kinds = [rng.int(0, 2), rng.int(0, 2)];
         if kinds == [0, 0] {
             kinds[rng.int(0, 1) as usize] = rng.int(1, 2);
@@ -54,7 +54,7 @@ impl Setting {
         let mut direction = way(rng);
         let mut translations = [rng.grid(-3, 3) * half, rng.grid(-3, 3) * half];
         if !rng.one_in(4) {
-            // Mostly behind the other one.
+            // The moving body is mostly behind the other one.
             let behind = direction * rng.whole(0, 3);
             translations[0] = translations[1] + rng.grid(-1, 1) * half - behind;
         }
@@ -64,7 +64,7 @@ impl Setting {
             "sheets" => direction *= [1.0, 0.25, 3.0][rng.int(0, 2) as usize],
             "sheets-sheared" => {
                 shear = sheared(rng);
-                // Along planes of the grid, or not.
+                // Directions in planes of the grid, or general ones.
                 direction = if rng.one_in(4) { direction } else { shear * direction };
                 translations = translations.map(|t| shear * t);
             }
@@ -86,7 +86,7 @@ impl Setting {
         Ok(Self { bodies, solids, poses, direction, shear })
     }
 
-    /// What happens, exactly.
+    /// Returns the exact result.
     pub fn expected(&self) -> Crossing {
         let [s, t] = self.poses.map(|pose| Vector::new(pose.translation()));
         let maps = [self.poses[0].matrix(), self.shear];
@@ -94,10 +94,10 @@ impl Setting {
         Crossing::new([a, b], maps, &t.minus(&s), self.direction)
     }
 
-    /// Asks the library and compares.
+    /// Computes the answers, and judges them.
     ///
     /// # Errors
-    /// What disagrees.
+    /// A description of the first disagreement.
     pub fn examine(&self) -> Result<Seen, String> {
         let [a, b] = &self.solids;
         let cast = exactly([a, b], self.poses, self.direction)?;

@@ -1,15 +1,15 @@
-//! Bodies of cubes and of squares of a grid: what passes through what is known without facets.
+//! Bodies of cubes and squares of a grid, whose crossings follow without facets.
 //!
-//! As with [`cells`](super::cells), both bodies' grids are under one linear map, and all is exact. A cube
-//! and a square, taken without their rims, are products of open unit intervals and of points. Two such
-//! products, one of which moves, meet at the `t` of an open interval, or, where points have to fall upon
-//! points, at one `t` or always.
+//! As in [`cells`](super::cells), the grids of both bodies are mapped by one linear map, and all numbers are
+//! exact. A cube or a square without its boundary is a product of open unit intervals and points. Two such
+//! products, one of which moves, meet for the `t` of an open interval, or, if points must coincide, at one `t`
+//! or always.
 //!
-//! A square enters a body of cubes if it meets a cube, or the square between two of them. Two squares
-//! cross if they meet; those of parallel planes cross where they fall upon each other, and those of one
-//! plane in which they also move wherever they meet. That leaves what passes exactly through the edge
-//! that joins two squares: a square that moves along its own plane, or an edge of the other body, if the
-//! joined squares are on different sides of it.
+//! - A square enters a body of cubes if it meets a cube, or the square between two cubes.
+//! - Two squares cross if they meet. Squares in parallel planes cross where they coincide, and squares in one
+//!   plane along which they move cross wherever they meet.
+//! - An edge that joins two squares is crossed by a square that moves along its own plane, or by an edge of the
+//!   other body, if the joined squares are on different sides of it.
 
 use std::collections::BTreeMap;
 
@@ -21,11 +21,11 @@ use super::cells::{Cells, InGrid, cut};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::random::Random;
 
-/// A product of open unit intervals and points of the grid, by its lower corner.
+/// A product of open unit intervals and points of the grid, given by its lower corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Piece {
     at: [i32; 3],
-    /// 1 for an interval, 0 for a point.
+    /// For each axis 1 for an interval, 0 for a point.
     open: [i32; 3],
 }
 
@@ -36,18 +36,18 @@ impl Piece {
         Self { at, open }
     }
 
-    /// The axis across which a square lies.
+    /// Returns the axis perpendicular to a square.
     fn axis(&self) -> usize {
         (0..3).find(|&k| self.open[k] == 0).unwrap_or(0)
     }
 }
 
-/// Squares, each with its corners in order, none of which share an edge with more than one other.
+/// Squares with ordered corners. Each edge belongs to at most two squares.
 #[derive(Debug, Clone, Default)]
 pub struct Squares(Vec<[[i32; 3]; 4]>);
 
 impl Squares {
-    /// A connected surface of so many squares at most, not far from the origin.
+    /// Draws a connected surface of at most `count` squares, near the origin.
     pub fn random(count: usize, rng: &mut Random) -> Self {
         let axis = rng.int(0, 2) as usize;
         let mut squares = Self(vec![corners([0; 3], axis)]);
@@ -55,7 +55,7 @@ impl Squares {
             if squares.0.len() >= count {
                 break;
             }
-            // Across one side of one square, straight on or bent.
+            // Adds a square at a side of a square, in the same plane or perpendicular to it.
             let from = squares.0[rng.int(0, squares.0.len() as i64 - 1) as usize];
             let k = rng.int(0, 3) as usize;
             let side = [from[k], from[(k + 1) % 4]];
@@ -78,7 +78,7 @@ impl Squares {
         squares
     }
 
-    /// Whether every edge joins two squares.
+    /// Checks whether every edge joins two squares.
     fn is_closed(&self) -> bool {
         let mut edges: BTreeMap<[[i32; 3]; 2], i32> = BTreeMap::new();
         for q in &self.0 {
@@ -90,7 +90,8 @@ impl Squares {
         edges.values().all(|&count| count == 2)
     }
 
-    /// Whether a square shares its edges with one other each, that runs along them the other way.
+    /// Checks whether a square can be added: each of its edges belongs to at most one other square, in the
+    /// opposite direction.
     fn admits(&self, new: &[[i32; 3]; 4]) -> bool {
         let edges = |q: &[[i32; 3]; 4]| [0, 1, 2, 3].map(|k| [q[k], q[(k + 1) % 4]]);
         let same = |q: &[[i32; 3]; 4]| piece(q) == piece(new);
@@ -103,8 +104,8 @@ impl Squares {
             })
     }
 
-    /// Edges that join two squares which are straight across them: the edge, and the axis across which
-    /// both squares lie on either side of it.
+    /// Returns the edges that join two coplanar squares, each with the axis along which the squares are on its
+    /// two sides.
     fn straight_edges(&self) -> Vec<(Piece, usize)> {
         let mut around: BTreeMap<Piece, Vec<Piece>> = BTreeMap::new();
         for q in &self.0 {
@@ -145,7 +146,7 @@ fn piece(corners: &[[i32; 3]; 4]) -> Piece {
     Piece { at, open: [0, 1, 2].map(|k| high[k] - at[k]) }
 }
 
-/// The corners of a square across an axis.
+/// Returns the corners of a square perpendicular to an axis.
 fn corners(at: [i32; 3], axis: usize) -> [[i32; 3]; 4] {
     [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(a, b)| {
         let mut corner = at;
@@ -158,17 +159,17 @@ fn corners(at: [i32; 3], axis: usize) -> [[i32; 3]; 4] {
 /// A body of cubes, squares or both.
 #[derive(Debug, Clone)]
 pub struct Mixed {
-    /// Its closed part.
+    /// The closed part.
     pub cubes: Option<Cells>,
-    /// Its open part.
+    /// The open part.
     pub squares: Squares,
 }
 
 impl Mixed {
-    /// The body as a solid, its grid under a linear map.
+    /// Builds the solid of the body, with its grid under a linear map.
     ///
     /// # Errors
-    /// As the library's validation has them.
+    /// [`SolidError`] if the library rejects the surface.
     pub fn solid(&self, map: DMat3, rng: &mut Random) -> Result<Solid, SolidError> {
         let mut pieces = Vec::new();
         if let Some(cubes) = &self.cubes {
@@ -185,7 +186,7 @@ impl Mixed {
         }
     }
 
-    /// The cubes, and the squares between them.
+    /// Returns the cubes and the squares between them.
     fn inside(&self) -> Vec<Piece> {
         let Some(Cells(cells)) = &self.cubes else { return Vec::new() };
         let mut pieces: Vec<Piece> = cells.iter().map(|&at| Piece { at, open: [1; 3] }).collect();
@@ -206,26 +207,26 @@ impl Mixed {
     }
 }
 
-/// When two pieces meet.
+/// The `t` at which two pieces meet.
 enum Times {
     Between(Ratio, Ratio),
     At(Ratio),
 }
 
-/// When pieces of two bodies meet: what a motion meets, exactly.
+/// The exact result of a motion, from the times at which pieces of two bodies meet.
 #[derive(Debug, Clone, Default)]
 pub struct Crossing {
-    /// Whether something passes through something at the start.
+    /// Whether pieces cross at the start.
     pub overlaps: bool,
-    /// The smallest `t >= 0` from which on it would, if any.
+    /// The smallest `t >= 0` from which on pieces cross; `None` if there is none.
     pub stop: Option<Ratio>,
-    /// A `t` up to which it does, the largest, if any.
+    /// The largest `t` up to which pieces cross; `None` if there is none.
     pub last: Option<Ratio>,
 }
 
 impl Crossing {
-    /// What `moving` meets when it goes along `direction`, with `fixed` displaced by `offset`; both in
-    /// the world, the grids under the linear map `rotation shear`.
+    /// Computes the exact result of a motion of `moving` along `direction`, with `fixed` displaced by `offset`.
+    /// Both are in the world, and the grids are mapped by `rotation shear`.
     pub fn new(
         [moving, fixed]: [&Mixed; 2],
         maps: [DMat3; 2],
@@ -241,7 +242,8 @@ impl Crossing {
                 found.through(&grid, p, q);
             }
         }
-        // A square against what is inside: squares between cubes matter only in its own plane.
+        // Squares of one body with the interior of the other. Squares between cubes matter only in their own
+        // plane.
         let enters =
             |square: &Piece, inner: &Piece| inner.open == [1; 3] || inner.axis() == square.axis();
         for p in &sheets[0] {
@@ -281,7 +283,7 @@ impl Crossing {
         found
     }
 
-    /// Pieces that cross where they meet. What meets at one `t` alone does so beside other pieces,
+    /// Adds pieces that cross where they meet. Pieces that meet at a single `t` do so next to other pieces,
     /// unless that is the start.
     fn through(&mut self, grid: &InGrid, p: &Piece, q: &Piece) {
         let zero = Ratio::from_f64(0.0);
@@ -295,7 +297,7 @@ impl Crossing {
         }
     }
 
-    /// Squares of parallel planes.
+    /// Adds squares of parallel planes.
     fn upon(&mut self, grid: &InGrid, p: &Piece, q: &Piece) {
         match times(grid, p, q) {
             Some(Times::Between(first, last)) => self.ahead(first, last),
@@ -321,8 +323,8 @@ impl Crossing {
     }
 }
 
-/// The `t` at which two pieces meet; of pieces that meet always, which do not move in any direction in
-/// which they are open, there are none.
+/// Returns the `t` at which two pieces meet. `None` also for pieces that meet always, because they do not move
+/// along any axis in which they are open.
 fn times(grid: &InGrid, p: &Piece, q: &Piece) -> Option<Times> {
     let InGrid { shift, way, unit } = grid;
     let whole = |n: i32| &Dyadic::new(f64::from(n)) * unit;

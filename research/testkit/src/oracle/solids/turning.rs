@@ -1,5 +1,5 @@
-//! Judges first contacts of solids that turn: by the library's exact decision about solids at times on the way, by
-//! the convex search where both are convex, and by themselves with the bodies swapped.
+//! Judges first contacts of rotating solids: by exact decisions about solids at times on the way, by the convex
+//! search if both bodies are convex, and by exchanging the bodies.
 
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, SolidMotionProof};
 use colltrans::solid::SolidCast;
@@ -11,36 +11,37 @@ use crate::random::Random;
 use crate::shapes::random_hull;
 use crate::solids::{pin, thread, washer};
 
-/// Families beside those of distances: hulls against the convex search, pins in holes, threads in nuts.
+/// The families in addition to those of distances: hulls compared with the convex search, pins in holes,
+/// threads in nuts.
 pub const FAMILIES: [&str; 3] = ["hulls", "pins", "threads"];
 
-/// Times before a contact at which solids are asked.
+/// Number of times before a contact at which solids are checked.
 const TIMES: u32 = 100;
 
-/// Bodies that are so many times their size from the origin are far.
+/// Minimum ratio of the distance from the origin to the size for bodies to count as far.
 const FAR: f64 = 16.0;
 
-/// More pairs of facets than this are not asked.
+/// Maximum number of pairs of facets of a setting.
 const MOST_PAIRS: usize = 400_000;
 
-/// Contacts of convex bodies and of the same as solids agree to within this, besides their bounds, where bodies are
-/// about 1 large: solids are shrunk a little.
+/// Tolerance for contacts of convex bodies and of the same bodies as solids, in addition to their bounds, for
+/// bodies of size 1. Solids are slightly shrunk.
 const AGREEMENT: f64 = 1e-7;
 
-/// What came out, for statistics.
+/// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Seen {
-    /// The bodies overlap when the motion begins.
+    /// The bodies overlap at the start of the motion.
     Overlapping,
-    /// They never meet.
+    /// The bodies never meet.
     Free,
-    /// They come nearer than rounding can tell.
+    /// The bodies come nearer than rounding can decide.
     Grazing,
-    /// They meet.
+    /// The bodies meet.
     Contact,
 }
 
-/// Two solids and what they do.
+/// Two solids and their motions.
 #[derive(Debug, Clone)]
 pub struct Turning {
     solids: [Solid; 2],
@@ -50,10 +51,10 @@ pub struct Turning {
     convex: Option<[ConvexPolyhedron; 2]>,
 }
 
-/// Asks the library and compares; nothing of bodies that are no solids.
+/// Computes the answers, and judges them; `None` for bodies that are not solids.
 ///
 /// # Errors
-/// What disagrees.
+/// A description of the first disagreement.
 pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
     let Some(turning) = Turning::draw(family, seed)? else { return Ok(None) };
     if turning.solids.iter().map(|s| s.triangles().len()).product::<usize>() > MOST_PAIRS {
@@ -63,10 +64,10 @@ pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
 }
 
 impl Turning {
-    /// The setting of a family for a seed.
+    /// Draws the setting of a family with a seed.
     ///
     /// # Errors
-    /// An unknown family; a body that the library refuses.
+    /// A message if the family is unknown, or the library rejects a body.
     pub fn draw(family: &str, seed: u64) -> Result<Option<Self>, String> {
         let random = &mut Random::stream(seed, &[family.len() as u64, 0x7047]);
         match family {
@@ -97,7 +98,7 @@ impl Turning {
         let [moving, fixed] = if swapped { [b, a] } else { [a, b] };
         let cast = MotionCast::<Solid>::new(moving, fixed).and_then(|cast| cast.keeping(self.keep));
         let cast = cast.map_err(|e| e.to_string())?;
-        // A tolerance may leave nothing.
+        // A body may vanish when it is shrunk by the tolerance.
         let tolerance = self.tolerance.unwrap_or_else(|| cast.tolerance());
         Ok(cast.tolerating(tolerance).ok())
     }
@@ -131,8 +132,8 @@ impl Turning {
         }))
     }
 
-    /// How far the body can go: to where the bodies meet as the tolerance leaves them, not before what stops it has met in
-    /// its true place; and as far as convex ones.
+    /// Checks the clearance: it extends to the contact of the shrunk bodies, not before the nominal contact,
+    /// and as far as for convex bodies.
     fn how_far(&self, cast: &MotionCast<Solid>, first: &MotionOutcome<()>) -> Result<(), String> {
         let found = cast.clearance().map_err(|e| format!("clearance: {e}"))?;
         let object = |what: &str| Err(format!("clearance up to {:?}: {what}", found.time()));
@@ -165,13 +166,13 @@ impl Turning {
                 agree(contact.time.bounds(), place.bounds(), AGREEMENT)
                     .map_err(|e| format!("clearance, convex: {e}"))
             }
-            // As solids they are a little smaller.
+            // Solids are slightly smaller.
             other if place.upper < 1.0 - AGREEMENT => Err(format!("clearance, convex: {other:?}")),
             _ => Ok(()),
         }
     }
 
-    /// Exact solids at times before the contact, and at it.
+    /// Checks exact decisions about solids at times before the contact, and at it.
     fn on_the_way(
         &self,
         outcome: &MotionOutcome<SolidMotionProof>,
@@ -180,8 +181,8 @@ impl Turning {
         if matches!(outcome, MotionOutcome::Overlapping(_)) {
             return Ok(());
         }
-        // Poses are asked in the world here, where far away places are rounded: then bodies are asked as if they were
-        // a little smaller, and not whether they meet.
+        // Poses in the world are rounded at large distances. There, bodies are checked with a small tolerance,
+        // and not for the meeting.
         let far = self.motions.iter().map(|motion| {
             let ends =
                 [0.0, lower].map(|t| motion.at(t).map_or(0.0, |at| at.translation().length()));
@@ -206,7 +207,7 @@ impl Turning {
                 return Err(format!("free up to {lower}, but an overlap at {time}"));
             }
         }
-        // As near as a gap to be kept is not nearer, where rounding decides.
+        // With a gap, rounding decides whether the bodies are nearer.
         if upper <= 1.0 && self.keep == 0.0 && is_near && !overlaps(upper, tolerance)? {
             return Err(format!("met at {upper}, but no overlap"));
         }
@@ -214,7 +215,7 @@ impl Turning {
     }
 }
 
-/// The bounds of an answer's time.
+/// Returns the bounds of an answer's time.
 fn bounds<P>(outcome: &MotionOutcome<P>) -> [f64; 2] {
     match outcome {
         MotionOutcome::Contact(of)
@@ -224,7 +225,7 @@ fn bounds<P>(outcome: &MotionOutcome<P>) -> [f64; 2] {
     }
 }
 
-/// Whether two enclosures of one time have one in common, or are as near as this.
+/// Checks whether two enclosures of a time have a common point, up to a tolerance.
 fn agree(one: [f64; 2], other: [f64; 2], within: f64) -> Result<(), String> {
     let apart = one[0] > other[1] + within || other[0] > one[1] + within;
     // Only one of both may be free.
@@ -236,7 +237,8 @@ fn agree(one: [f64; 2], other: [f64; 2], within: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// A turn, a screw, a slide, a throw or a way over poses, of a body about so large.
+/// Draws a rotation, a screw motion, a translation, a throw or a motion through poses, of a body of about this
+/// size.
 fn motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result<Motion, String> {
     let at = pose.translation();
     let axis = if random.one_in(2) { random.pick(&DVec3::AXES) } else { random.direction() };
@@ -262,7 +264,7 @@ fn motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result<Moti
     .map_err(|e| e.to_string())
 }
 
-/// Convex bodies past each other.
+/// Draws convex bodies that pass each other.
 fn hulls(random: &mut Random) -> Result<Turning, String> {
     let body = |random: &mut Random| {
         let n = random.pick(&[4, 8, 16, 40]);
@@ -288,7 +290,7 @@ fn hulls(random: &mut Random) -> Result<Turning, String> {
     })
 }
 
-/// A pin that turns in a hole, and maybe leaves it or tips over.
+/// Draws a pin that rotates in a hole, and may leave it or tip over.
 fn pins(random: &mut Random) -> Result<Turning, String> {
     let sides = random.int(3, 24) as usize;
     let hole = random.pick(&[1.0, 1.01, 1.1, 1.5]);
@@ -309,7 +311,7 @@ fn pins(random: &mut Random) -> Result<Turning, String> {
     Ok(Turning { solids, motions, tolerance, keep: 0.0, convex: None })
 }
 
-/// A bolt in a nut, of the right pitch or not.
+/// Draws a bolt in a nut, with the matching or a different pitch.
 fn threads(random: &mut Random) -> Result<Turning, String> {
     let sides = random.int(6, 14) as usize;
     let of = |mesh: crate::shapes::Mesh| {

@@ -1,4 +1,4 @@
-//! What has to be the same, or more: bodies that are turned together, and a larger tolerance.
+//! Checks invariances of free directions: under rotation of both bodies, and with a larger tolerance.
 
 use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
 use colltrans::{Pose, QueryError, Solid};
@@ -7,12 +7,12 @@ use glam::{DMat3, DVec3};
 use super::{bodies::Bodies, direction};
 use crate::random::Random;
 
-/// Directions of each.
+/// Number of directions of each check.
 const DIRECTIONS: u64 = 20;
-/// How far areas of bodies that are turned, and so rounded, may be off.
+/// Tolerance of areas after a rotation, which is rounded.
 const ROUNDED: f64 = 1e-6;
 
-/// A larger tolerance frees what is free, and maybe more.
+/// Checks that all free directions remain free with a larger tolerance.
 pub(super) fn larger(
     all: &FreeDirections,
     bodies: &Bodies,
@@ -21,7 +21,7 @@ pub(super) fn larger(
 ) -> Result<u64, String> {
     let options = all.options().with_tolerance(tolerance);
     let [a, b] = [0, 1].map(|k| bodies.solids[k].at(bodies.poses[k]));
-    // Bodies that are thinner than that cannot be asked about.
+    // A body may vanish with this tolerance.
     if let Err(FreeError::Query(QueryError::NothingLeft { .. })) =
         FreeDirections::of(&a, &b, options)
     {
@@ -34,7 +34,7 @@ pub(super) fn larger(
     compare(rng, all, &loose, |d| d, |tight, loose| !tight || loose)
 }
 
-/// The same of bodies that are turned by quarter turns, exactly, and in any way, nearly.
+/// Checks the answers after quarter turns, exactly, and after arbitrary rotations, approximately.
 pub(super) fn turned(
     all: &FreeDirections,
     bodies: &Bodies,
@@ -78,7 +78,7 @@ fn asked(
     Ok(all)
 }
 
-/// Counts directions of which what is said here and there goes together.
+/// Counts the directions for which both answers are compatible.
 fn compare(
     rng: &mut Random,
     here: &FreeDirections,

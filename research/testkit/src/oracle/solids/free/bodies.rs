@@ -1,4 +1,5 @@
-//! Who is asked about: bodies of cubes, most of them tied, and convex bodies of up to 100 facets.
+//! Draws bodies for free directions: bodies of cubes, most of them with ties, and convex bodies of up to 100
+//! facets.
 
 use colltrans::{ConvexPolyhedron, Pose, Solid};
 use glam::DVec3;
@@ -6,21 +7,21 @@ use glam::DVec3;
 use crate::oracle::solids::settings::Setting;
 use crate::random::Random;
 
-/// The families: those of bodies of cubes, and convex ones.
+/// The families: bodies of cubes, and convex bodies.
 pub const FAMILIES: [&str; 9] =
     ["grid", "sheared", "quarter", "rotated", "mould", "halves", "boxes", "tetrahedra", "hulls"];
 
-/// Two solids and where they are.
+/// Two solids and their poses.
 pub(super) struct Bodies {
     pub(super) solids: [Solid; 2],
     pub(super) poses: [Pose; 2],
 }
 
-/// Draws two; `None` for an unknown family.
+/// Draws two solids; `None` for an unknown family.
 pub(super) fn draw(family: &str, seed: u64) -> Result<Option<Bodies>, String> {
     let mut rng = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x29);
     let rng = &mut rng;
-    // Half of the convex ones have their corners, and places, in a grid.
+    // Half of the convex bodies have corners and positions in a grid.
     let tied = rng.one_in(2);
     let points = match family {
         "boxes" => [0, 1].map(|_| cuboid(tied, rng)),
@@ -36,7 +37,7 @@ pub(super) fn draw(family: &str, seed: u64) -> Result<Option<Bodies>, String> {
     Ok(Some(Bodies { solids, poses: [p, q] }))
 }
 
-/// The hull of points, or a cube where they are flat.
+/// Returns the hull of points, or a cube if they are coplanar.
 fn solid(points: &[DVec3]) -> Result<Solid, String> {
     let hull = ConvexPolyhedron::from_points(points);
     if let Ok(Ok(solid)) = hull.map(|hull| Solid::from_convex(&hull)) {
@@ -64,7 +65,7 @@ fn cuboid(tied: bool, rng: &mut Random) -> Vec<DVec3> {
 }
 
 fn cloud(count: usize, tied: bool, rng: &mut Random) -> Vec<DVec3> {
-    // On a sphere, so that many of them are corners; within a grid where tied.
+    // On a sphere, so that many points are vertices, or in a grid.
     let point = |_| if tied { rng.grid(-2, 2) } else { rng.direction() };
     (0..count).map(point).collect()
 }

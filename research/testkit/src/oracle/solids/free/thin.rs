@@ -1,5 +1,6 @@
-//! Arcs and points of free directions, in fractions: each is the crossing of the planes that are said to make it, is
-//! free, and has blocked directions on all sides; and what is free with nothing but blocked directions around it is told.
+//! Judges lower-dimensional free directions (arcs and isolated directions) in rational arithmetic. Each is the
+//! intersection of its planes, is free, and has blocked directions on all sides. Conversely, every isolated
+//! free direction must be reported.
 
 use colltrans::free::{FreeArc, FreeDirections, FreePlane, FreePoint, PlaneFacets};
 use colltrans::{Placed, Solid};
@@ -9,24 +10,24 @@ use super::super::facets::{Judge, Triangle};
 use super::{facets, is_free_along};
 use crate::oracle::exact::{Dyadic, Vector, place};
 
-/// How many directions of each circle are judged.
+/// Number of directions of each circle that are judged.
 const AROUND: usize = 12;
-/// Arcs and points that are judged of one answer, at most.
+/// Maximum number of arcs and of isolated directions that are judged of an answer.
 const MOST: usize = 12;
 
-/// Two bodies in fractions.
+/// Two bodies in exact coordinates.
 struct World {
-    /// Where vertices are, and the numbers of facets'.
+    /// The vertices, and the vertex indices of the facets.
     vertices: [Vec<Vector>; 2],
     triangles: [Vec<[u32; 3]>; 2],
     facets: [Vec<Triangle>; 2],
 }
 
-/// Judges arcs and points of all that is said with no tolerance, and of directions of a grid whether they are one; how
-/// many were judged.
+/// Judges the arcs and isolated directions of an answer without a tolerance, and checks whether directions of a
+/// grid are isolated. Returns the number of judged directions.
 ///
 /// # Errors
-/// What is wrong.
+/// A description of the first disagreement.
 pub fn judge(all: &FreeDirections, bodies: [Placed<'_, Solid>; 2]) -> Result<u64, String> {
     let world = World {
         vertices: bodies.map(|b| place(b.pose.matrix(), b.pose.translation(), b.body.vertices())),
@@ -48,9 +49,9 @@ pub fn judge(all: &FreeDirections, bodies: [Placed<'_, Solid>; 2]) -> Result<u64
     Ok((all.points().len().min(MOST) + all.arcs().len().min(MOST)) as u64)
 }
 
-/// `d` moved by a very small part of another vector.
+/// Returns `d` displaced by a very small multiple of a vector.
 fn beside(d: &Vector, by: &Vector) -> Vector {
-    // Both of about the same length.
+    // Both vectors have about the same length.
     let factor = (by.to_f64().length() / d.to_f64().length()).log2().round() as i32 + 40;
     d.times(&Dyadic::new(2.0_f64.powi(factor))).plus(by)
 }
@@ -64,7 +65,7 @@ impl World {
         is_free_along(&self.facets, &Judge::along(d.clone()))
     }
 
-    /// The normal of a plane, exactly.
+    /// Returns the exact normal of a plane.
     fn normal(&self, plane: &FreePlane) -> Result<Vector, String> {
         let Some(PlaneFacets { triangles, vertices }) = plane.of else {
             return Err(format!("{plane:?} is of no facets"));
@@ -86,7 +87,7 @@ impl World {
         Ok(normal)
     }
 
-    /// A point with the normals of its planes.
+    /// Returns the direction of an isolated direction with the normals of its planes.
     fn direction(&self, point: &FreePoint) -> Result<[Vector; 3], String> {
         let [a, b] = [self.normal(&point.planes[0])?, self.normal(&point.planes[1])?];
         let d = a.cross(&b);
@@ -124,7 +125,7 @@ impl World {
                 Some([m, k, f])
             }
         };
-        // Two vectors in the plane, at right angles.
+        // Two orthogonal vectors in the plane.
         let first = DVec3::AXES[n.to_f64().abs().min_position()];
         let p = n.cross(&Vector::new(first));
         let q = n.cross(&p);
@@ -152,7 +153,8 @@ impl World {
         if arc.ends.is_none() && within < AROUND { Err("a circle has gaps".into()) } else { Ok(()) }
     }
 
-    /// An end is free; beyond it the circle is blocked, or it is the border of a region.
+    /// Checks that an end of an arc is free, and that the circle beyond it is blocked or is the border of a
+    /// region.
     fn end(&self, arc: &FreeArc, [e, n]: [&Vector; 2], inwards: &Vector) -> Result<(), String> {
         let beyond = beside(e, &negative(inwards));
         let sides = [beside(&beyond, n), beside(&beyond, &negative(n))];
@@ -165,7 +167,8 @@ impl World {
         Ok(())
     }
 
-    /// An axis that is free while all around is blocked is a point.
+    /// Checks that an axis which is free while its surroundings are blocked is reported as an isolated
+    /// direction.
     fn axis(&self, all: &FreeDirections, d: DVec3) -> Result<(), String> {
         let exactly = Vector::new(d);
         if !self.is_free(&exactly) {

@@ -1,4 +1,4 @@
-//! A few rows of the tables under criterion: `cargo bench -p colltrans-bench`.
+//! Measures a few rows of the tables with criterion: `cargo bench -p colltrans-bench`.
 
 use std::hint::black_box;
 
@@ -10,6 +10,7 @@ use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::random::Random;
 use criterion::{Criterion, criterion_group, criterion_main};
 
+/// Measures casts from scratch, ours and parry's.
 fn cast(criterion: &mut Criterion) {
     for (shape, n, meeting, name) in [
         (Shape::Ellipsoid, 8, Meeting::Colliding, "colliding"),
@@ -47,7 +48,7 @@ fn cast(criterion: &mut Criterion) {
     }
 }
 
-/// A sequence over and over, from scratch and tracked.
+/// Measures a repeated sequence, from scratch and tracked.
 fn track(criterion: &mut Criterion) {
     for (n, delta) in [(200, 0.01), (2_000, 0.01), (2_000, 0.0013), (20_000, 0.0013)] {
         let mut random = Random::stream(1, &[n as u64]);

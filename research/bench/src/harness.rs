@@ -1,7 +1,7 @@
-//! The harness of the measuring programs: arguments, the printed table, the file of figures.
+//! Reads the arguments of measuring programs, prints their tables, and writes their figures.
 //!
-//! A program declares the columns of its table ([`Run::table`]) and adds rows. A row is one JSON value: columns name the figures
-//! that the table prints, and the file has all of them.
+//! A program declares the columns of its table ([`Run::table`]) and adds rows. A row is one JSON value. The
+//! table prints the figures that its columns name; the file contains all figures.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -21,16 +21,16 @@ pub type Failure = Box<dyn Error>;
 /// Arguments of all programs.
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
-    /// Vertices per body, instead of the usual sizes
+    /// Vertices per body (default: depends on the program)
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
     pub sizes: Option<Vec<usize>>,
-    /// Fewer settings
+    /// Measure fewer settings
     #[arg(long)]
     pub quick: bool,
-    /// A file for the figures
+    /// Write the figures to this file (JSON)
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// What bodies and settings are drawn from
+    /// Seed of the random bodies and settings
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
 }
@@ -43,7 +43,7 @@ struct Command<A: Args> {
     own: A,
 }
 
-/// Runs a program: reads the common arguments and its own ones, measures, and writes the figures.
+/// Runs a program: reads the common and its own arguments, measures, and writes the figures.
 pub fn run<A: Args>(
     program: &str,
     about: &'static str,
@@ -63,12 +63,12 @@ pub fn run<A: Args>(
     }
 }
 
-/// Returns a function that puts what was measured before an error.
+/// Returns a function that puts the name of the measurement before an error.
 pub fn naming<E: Display>(what: impl Display) -> impl FnOnce(E) -> Failure {
     move |error| format!("{what}: {error}").into()
 }
 
-/// One run of a program.
+/// A run of a program.
 #[derive(Debug)]
 pub struct Run {
     /// Name of the program in the file of figures.
@@ -80,7 +80,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Returns the sizes that the arguments list, or the usual ones.
+    /// Returns the sizes from the arguments, or the usual ones.
     pub fn sizes(&self, usual: &[usize]) -> Vec<usize> {
         self.arguments.sizes.clone().unwrap_or_else(|| usual.to_vec())
     }
@@ -95,21 +95,21 @@ impl Run {
         Random::stream(self.arguments.seed, purpose)
     }
 
-    /// Begins a table: prints the legend and the heads of the columns, each unless it is empty.
+    /// Begins a table. Prints the legend and the heads of the columns, each unless it is empty.
     ///
-    /// A table is declared as a text, `HEAD:FORMAT=VALUE` for each column, with `;` between columns.
+    /// A text declares the table: `HEAD:FORMAT=VALUE` for each column, with `;` between columns.
     ///
-    /// - `FORMAT` is as in `format!`: `<18`, `>9.2`, `>9.1e`. On pages it can also be `,` for whole numbers in groups of
-    ///   three digits, or `~` for as many digits as matter.
-    /// - `VALUE` is a JSON pointer into a row without its first slash, or a text in quotation marks. Without `=VALUE` the
+    /// - `FORMAT` is as in `format!`: `<18`, `>9.2`, `>9.1e`. In Markdown tables, `,` groups the digits of
+    ///   whole numbers by three, and `~` prints the significant digits.
+    /// - `VALUE` is a JSON pointer into a row without its first slash, or a quoted text. Without `=VALUE`, the
     ///   head is the pointer.
-    /// - ` + POINTER` behind a pointer adds another figure. ` ÷ POINTER` divides by one, ` ÷ NUMBER UNIT` by a number and
-    ///   prints a unit, ` × NUMBER` multiplies.
-    /// - ` (FORMAT=VALUE)` adds another figure in brackets. `?TEXT` replaces figures that are missing. `|` before a column
-    ///   draws a bar.
+    /// - ` + POINTER` behind a pointer adds another figure. ` ÷ POINTER` divides by a figure, ` × NUMBER`
+    ///   multiplies. ` ÷ NUMBER UNIT` divides by a number and prints a unit.
+    /// - ` (FORMAT=VALUE)` adds another figure in brackets. `?TEXT` replaces missing figures. `|` before a
+    ///   column draws a bar.
     ///
     /// # Panics
-    /// If the columns are not declared in this way.
+    /// If the text does not have this form.
     pub fn table(&mut self, legend: &str, table: &str) {
         self.columns = columns(table);
         for line in [legend, &line(&self.columns, |column| column.head.clone())] {
@@ -131,7 +131,7 @@ impl Run {
         self.rows.push(row);
     }
 
-    /// Writes the rows with what they were measured on, if a file was named.
+    /// Writes the rows and the provenance, if a file is given.
     fn write(&self) -> Result<(), Failure> {
         let Some(path) = &self.arguments.json else { return Ok(()) };
         let mut report = Provenance::of_this_process("parry3d-f64 0.31.1").to_json();
@@ -142,7 +142,7 @@ impl Run {
     }
 }
 
-/// Returns an object with the entries of both; those of the second one replace others of the same name.
+/// Returns an object with the entries of both. Entries of the second one replace those with the same name.
 ///
 /// # Panics
 /// If one of them is not an object.
@@ -153,7 +153,7 @@ pub fn merged(row: impl Serialize, more: Value) -> Value {
     row
 }
 
-/// A column of a table: where its figures are in rows, and how they are printed.
+/// A column of a table: the pointers to its figures in rows, and their format.
 #[derive(Debug)]
 struct Column {
     head: String,
@@ -179,7 +179,7 @@ enum Style {
     Rounded,
 }
 
-/// Returns the columns of a declaration.
+/// Parses the columns of a declaration.
 ///
 /// # Panics
 /// If the text is not a declaration.
@@ -187,12 +187,13 @@ fn columns(text: &str) -> Vec<Column> {
     text.split(';').map(|column| Column::new(column.trim())).collect()
 }
 
-/// Returns what is before and behind a mark, the text alone if there is none.
+/// Splits a text at a mark. Returns the whole text and `None` if the mark is missing.
 fn split<'a>(text: &'a str, mark: &str) -> (&'a str, Option<&'a str>) {
     text.split_once(mark).map_or((text, None), |(before, behind)| (before, Some(behind)))
 }
 
 impl Column {
+    /// Parses the declaration of one column.
     fn new(text: &str) -> Self {
         let (bar, text) = text.strip_prefix('|').map_or(("", text), |text| ("| ", text));
         let (head, rest) = text.trim().split_once(':').expect("HEAD:FORMAT");
@@ -234,6 +235,7 @@ impl Column {
         }
     }
 
+    /// Formats the figures of a row.
     fn cell(&self, row: &Value) -> String {
         if let Some(text) = self.paths[0].strip_prefix('"') {
             return text.trim_end_matches('"').into();
@@ -259,7 +261,7 @@ impl Column {
     }
 }
 
-/// Returns a line of a printed table.
+/// Formats a line of a printed table.
 fn line(columns: &[Column], cell: impl Fn(&Column) -> String) -> String {
     let padded = |column: &Column| {
         let (bar, width, cell) = (column.bar, column.width, cell(column));
@@ -268,10 +270,10 @@ fn line(columns: &[Column], cell: impl Fn(&Column) -> String) -> String {
     columns.iter().map(padded).collect::<Vec<_>>().join(" ").trim_end().into()
 }
 
-/// Returns a table of rows for a page, with columns declared as for [`Run::table`].
+/// Formats rows as a Markdown table, with columns declared as in [`Run::table`].
 ///
 /// # Panics
-/// If the columns are not declared in that way.
+/// If the columns are not declared in this form.
 pub fn markdown<'a>(table: &str, rows: impl IntoIterator<Item = &'a Value>) -> String {
     let columns = columns(table);
     let line = |cell: &dyn Fn(&Column) -> String| {
@@ -283,7 +285,7 @@ pub fn markdown<'a>(table: &str, rows: impl IntoIterator<Item = &'a Value>) -> S
     heads.chain(rows.into_iter().map(|row| line(&|column| space(&column.cell(row))))).collect()
 }
 
-/// Returns a number without digits that a noisy machine does not know.
+/// Formats a number with its significant digits, without those below the noise of measurements.
 fn rounded(x: f64) -> String {
     match x {
         _ if x < 9.95 => format!("{x:.2}"),
@@ -292,7 +294,7 @@ fn rounded(x: f64) -> String {
     }
 }
 
-/// Returns a whole number in groups of three digits.
+/// Formats a whole number in groups of three digits.
 fn thousands(x: f64) -> String {
     let digits = format!("{x:.0}");
     let mut grouped = String::new();
@@ -310,7 +312,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_print_the_figures_that_they_name() {
+    fn columns_print_named_figures() {
         let row = json!({ "a": "x", "b": { "n": 3, "ns": 1500.0 }, "c": [0.25, null] });
         let table = "a:<3;n:>3=b/n;|us:>8.2=b/ns ÷ 1e3 us;:>5.1=b/ns ÷ b/n;:>2.0=b/n + b/n;:>.1e=c/0;\
             w:>4.1=c/1?none;:>4=\"who\";:,=b/ns (~=c/0)";
@@ -322,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn pages_have_tables_and_numbers_for_people() {
+    fn markdown_tables_and_rounded_numbers_are_formatted() {
         let page = "| a | | c |\n|---|---|---:|\n| x | ? | - |\n";
         assert_eq!(markdown("a:<; :<=b; c:~", [&json!({ "a": "x" })]), page);
         assert_eq!([1_234_567.0, 999.4].map(thousands), ["1,234,567", "999"]);

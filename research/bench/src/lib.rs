@@ -1,8 +1,9 @@
-//! Measurements of `colltrans` beside `parry3d-f64`.
+//! Compares the speed of `colltrans` with that of `parry3d-f64`.
 //!
-//! A program is one file in `bin`: it declares the columns of its table, draws cases, and has [`times`] let contestants
-//! answer them in turns; [`harness`] reads arguments, prints rows and writes them. Cases are bodies ([`shapes`], [`meshes`],
-//! [`ties`]) in settings (`colltrans_lab::settings`), the same in the other library by [`parry`].
+//! Each file in `bin` is a program. It declares the columns of its table and draws cases; [`times`] measures
+//! the contestants on these cases in turns. [`harness`] reads arguments, prints rows and writes them. A case
+//! consists of bodies ([`shapes`], [`meshes`], [`ties`]) and a setting (`colltrans_lab::settings`). [`parry`]
+//! converts cases for the other library.
 
 pub mod harness;
 pub mod meshes;

@@ -1,4 +1,4 @@
-//! Pairs of meshes that are not convex, made or read, for the programs that measure solids.
+//! Makes or reads pairs of non-convex meshes, for the programs that measure solids.
 
 use std::path::{Path, PathBuf};
 
@@ -6,25 +6,25 @@ use clap::Args;
 use colltrans::{Aabb, Solid};
 use colltrans_testkit::shapes::Mesh;
 
-/// Where meshes are, and which pairs are wanted.
+/// The folder of meshes, and the selection of pairs.
 #[derive(Debug, Args)]
 pub struct MeshArguments {
-    /// A folder with `trimesh/teapot.stl`, `gearbox/key.stl` and the like
+    /// Folder with `trimesh/teapot.stl`, `gearbox/key.stl` and similar files
     #[arg(long, value_name = "DIR", default_value = "../shared/data")]
     data: PathBuf,
-    /// Only the rows whose names contain this
+    /// Measure only rows whose names contain this text
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
 }
 
 impl MeshArguments {
-    /// Whether a row of this name is.
+    /// Whether a row with this name is selected.
     pub fn wants(&self, name: &str) -> bool {
         self.only.as_ref().is_none_or(|only| name.contains(only.as_str()))
     }
 
-    /// Those that are wanted, about their boxes' middles: made ones by name, then pairs of files, those
-    /// that are there.
+    /// Returns the selected pairs, each mesh centred on its box: first the given ones, then those read from
+    /// files. Missing files are skipped.
     pub fn pairs(
         &self,
         made: Vec<(&str, [Mesh; 2])>,
@@ -43,6 +43,7 @@ impl MeshArguments {
     }
 }
 
+/// Reads a mesh; `None` if it is missing or invalid.
 fn load(path: &Path) -> Option<Mesh> {
     if !path.exists() {
         return None;
@@ -56,12 +57,13 @@ fn load(path: &Path) -> Option<Mesh> {
     }
 }
 
+/// Moves the centre of the mesh's box to the origin.
 fn centered(mesh: Mesh) -> Mesh {
     let middle = Aabb::of_points(mesh.vertices.iter().copied()).center();
     mesh.translated(-middle)
 }
 
-/// A closed solid, or an open surface where the mesh is not closed.
+/// Builds a closed solid, or an open surface if the mesh is not closed.
 pub fn solid(mesh: &Mesh) -> Option<Solid> {
     Solid::from_mesh(&mesh.vertices, &mesh.faces)
         .or_else(|_| Solid::from_open_mesh(&mesh.vertices, &mesh.faces))

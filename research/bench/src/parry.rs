@@ -1,4 +1,4 @@
-//! The same bodies and settings in `parry3d-f64`.
+//! Converts bodies and settings for `parry3d-f64`.
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_lab::settings::{Meeting, Setting};
@@ -13,7 +13,7 @@ use parry3d_f64::shape::{Compound, Shape, SharedShape, TriMesh};
 
 use crate::times::Times;
 
-/// Our vertices and faces, the latter cut into fans of triangles; `None` if parry refuses them.
+/// Converts a body, with its faces cut into fans of triangles; `None` if parry rejects it.
 pub fn body(body: &ConvexPolyhedron) -> Option<ParryPolyhedron> {
     let points = body.vertices().iter().map(|v| vector(*v)).collect();
     let mut triangles = Vec::new();
@@ -41,24 +41,24 @@ impl ParrySetting {
         Self::placed([&setting.moving, &setting.fixed], setting.direction)
     }
 
-    /// Converts the poses of the moving and of the fixed body and a direction.
+    /// Converts the poses of the moving and of the fixed body, and a direction.
     pub fn placed(poses: [&Pose; 2], direction: DVec3) -> Self {
         Self { poses: poses.map(pose), velocity: vector(direction) }
     }
 
-    /// Asks parry for the distance, 0 if the bodies overlap.
+    /// Returns parry's distance; 0 if the bodies overlap.
     pub fn distance(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
         let [a, b] = &self.poses;
         query::distance(a, moving, b, fixed).ok().map(|found| found.distance)
     }
 
-    /// Asks parry how deep the bodies overlap.
+    /// Returns parry's penetration depth.
     pub fn depth(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
         let [a, b] = &self.poses;
         query::contact(a, moving, b, fixed, 0.0).ok()?.map(|contact| -contact.dist)
     }
 
-    /// Asks parry: the time of impact, if there is one.
+    /// Returns parry's time of impact, if there is one.
     pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
         let options = ShapeCastOptions {
             compute_impact_geometry_on_penetration: false,
@@ -72,18 +72,18 @@ impl ParrySetting {
     }
 }
 
-/// Parry's casts of two bodies of 8 vertices, measured along with every row: a unit that the
-/// machine's mood changes as much as ours.
+/// A reference measurement: parry's casts of two bodies with 8 vertices, measured along with every row. Changes
+/// of the machine's speed affect it like our queries.
 pub struct Scale {
     bodies: [ParryPolyhedron; 2],
     settings: Vec<ParrySetting>,
 }
 
 impl Scale {
-    /// Draws so many settings in which the bodies meet.
+    /// Draws `settings` settings in which the bodies collide.
     ///
     /// # Panics
-    /// If parry refuses a body.
+    /// If parry rejects a body.
     pub fn new(small: &Bodies, settings: usize, random: &mut Random) -> Self {
         let mut draw = || ParrySetting::new(&Setting::draw(small, Meeting::Colliding, random));
         let settings = (0..settings).map(|_| draw()).collect();
@@ -91,7 +91,7 @@ impl Scale {
         Self { bodies: small.pair.each_ref().map(convert), settings }
     }
 
-    /// Times every setting once.
+    /// Measures every setting once.
     pub fn measure(&self, times: &mut Times) {
         let stopwatch = Stopwatch::new();
         let [moving, fixed] = &self.bodies;
@@ -101,17 +101,18 @@ impl Scale {
     }
 }
 
-/// A vector in parry's type.
+/// Converts a vector.
 pub fn vector(v: DVec3) -> parry_math::Vector {
     parry_math::Vector::from_array(v.to_array())
 }
 
+/// Converts a pose.
 fn pose(pose: &Pose) -> parry_math::Pose {
     let rotation = parry_math::Rotation::from_array(pose.rotation().to_array());
     parry_math::Pose::from_parts(vector(pose.translation()), rotation)
 }
 
-/// A triangle mesh with its tree, from our vertices and triangles.
+/// Builds a triangle mesh with its tree.
 ///
 /// # Panics
 /// If there are no triangles.
@@ -120,10 +121,10 @@ pub fn triangle_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> TriMesh {
     TriMesh::new(points, triangles.to_vec()).expect("triangles")
 }
 
-/// Boxes of half-sides by number at these poses, with their tree.
+/// Builds a compound of boxes at these poses, with its tree. `half` returns the half-sides of a box by number.
 ///
 /// # Panics
-/// If there are none.
+/// If there are no poses.
 pub fn compound(poses: &[Pose], half: impl Fn(usize) -> DVec3) -> Compound {
     let boxed = |(k, at): (usize, &Pose)| {
         let half = half(k);
@@ -132,14 +133,14 @@ pub fn compound(poses: &[Pose], half: impl Fn(usize) -> DVec3) -> Compound {
     Compound::new(poses.iter().enumerate().map(boxed).collect())
 }
 
-/// A body that spins about a point that moves evenly, and one at rest, in parry's types.
+/// A body that spins about a uniformly moving point, and a body at rest, in parry's types.
 pub struct Spin {
     moving: query::NonlinearRigidMotion,
     fixed: query::NonlinearRigidMotion,
 }
 
 impl Spin {
-    /// The point and both velocities in the world.
+    /// Converts the motion; the point and both velocities are in the world.
     pub fn new(start: &Pose, center: DVec3, velocity: DVec3, spin: DVec3, there: &Pose) -> Self {
         let own = start.matrix().transpose() * (center - start.translation());
         let moving = query::NonlinearRigidMotion::new(
@@ -151,7 +152,7 @@ impl Spin {
         Self { moving, fixed: query::NonlinearRigidMotion::constant_position(pose(there)) }
     }
 
-    /// Asks parry: the time of impact from 0 to 1, if there is one.
+    /// Returns parry's time of impact from 0 to 1, if there is one.
     pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
         query::cast_shapes_nonlinear(&self.moving, moving, &self.fixed, fixed, 0.0, 1.0, true)
             .ok()?

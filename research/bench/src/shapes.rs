@@ -1,35 +1,35 @@
-//! Bodies to measure with: ellipsoids, hulls of random points, boxes, needles, plates and others.
+//! Draws bodies for measurements: ellipsoids, hulls of random points, boxes, needles, plates and others.
 
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self, Mesh};
 use glam::DVec3;
 
-/// A kind of body, of any number of vertices.
+/// A kind of body, with any number of vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// Vertices on an ellipsoid with random semi-axes from 0.6 to 1.4, in rings: nearly all faces
-    /// are trapezoids.
+    /// Vertices on an ellipsoid with random semi-axes from 0.6 to 1.4, in rings. Nearly all faces are
+    /// trapezoids.
     Ellipsoid,
-    /// Random points on a sphere: all faces are triangles.
+    /// Random points on a sphere; all faces are triangles.
     RandomHull,
-    /// An affine image of a ring ellipsoid, this many times longer than thick.
+    /// An affine image of a ring ellipsoid. Its length is the given multiple of its thickness.
     Needle(f64),
-    /// An affine image of a ring ellipsoid, this many times wider than thick.
+    /// An affine image of a ring ellipsoid. Its width is the given multiple of its thickness.
     Plate(f64),
-    /// Boxes with random sides (8 vertices whatever is asked for).
+    /// Boxes with random sides, always with 8 vertices.
     Box,
     /// `|x|^4 + |y|^4 + |z|^4 = 1`, with random semi-axes.
     Superellipsoid,
     /// Half an ellipsoid, with a flat base.
     HalfEllipsoid,
-    /// A prism of half as many sides.
+    /// A prism with half as many sides as vertices.
     Prism,
-    /// A round cylinder, as parts of machines are: a prism over a regular polygon.
+    /// A round cylinder, as in machine parts: a prism over a regular polygon.
     Cylinder,
-    /// A cylinder whose rims are cut off by a hundredth of its radius.
+    /// A cylinder with rims chamfered by 1/100 of its radius.
     Chamfered,
-    /// A round cone: its apex has all others for neighbours.
+    /// A round cone; its apex is adjacent to all other vertices.
     Cone,
     /// A cone without its tip.
     Frustum,
@@ -37,11 +37,11 @@ pub enum Shape {
     Bicone,
 }
 
-/// What is cut off the rims of a chamfered cylinder of radius 1.
+/// Chamfer of the rims of a cylinder with radius 1.
 const CHAMFER: f64 = 0.01;
 
 impl Shape {
-    /// The name in tables.
+    /// Returns the name in tables.
     pub fn name(self) -> String {
         match self {
             Self::Ellipsoid => "ellipsoid".into(),
@@ -60,24 +60,24 @@ impl Shape {
         }
     }
 
-    /// Two bodies with about `n` vertices each.
+    /// Draws two bodies with about `n` vertices each.
     ///
     /// # Errors
-    /// As the constructors of [`ConvexPolyhedron`].
+    /// The errors of the constructors of [`ConvexPolyhedron`].
     pub fn pair(self, n: usize, random: &mut Random) -> Result<[ConvexPolyhedron; 2], BuildError> {
         Ok([self.draw(n, random)?, self.draw(n, random)?])
     }
 
-    /// One body with about `n` vertices.
+    /// Draws a body with about `n` vertices.
     ///
     /// # Errors
-    /// As the constructors of [`ConvexPolyhedron`].
+    /// The errors of the constructors of [`ConvexPolyhedron`].
     pub fn draw(self, n: usize, random: &mut Random) -> Result<ConvexPolyhedron, BuildError> {
         let semi_axes = DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4)));
         let [around, rings] = shapes::even_rings(n);
         let scaled = |mesh: Mesh, by: DVec3| mesh.mapped(|v| v * by);
         let round = DVec3::new(semi_axes.x, semi_axes.x, semi_axes.z);
-        // About as many vertices on so many rings of these radii and heights.
+        // About `n` vertices, on rings with these radii and heights.
         let turned = |rings: &[[f64; 2]], apexes: &[f64]| {
             scaled(shapes::revolved(rings, apexes, (n / rings.len()).max(3)), round)
         };
@@ -85,8 +85,7 @@ impl Shape {
         body(&match self {
             Self::Ellipsoid => scaled(shapes::ring_sphere(around, rings), semi_axes),
             Self::RandomHull => shapes::random_hull(n, random),
-            // Of the same length whatever the ratio; the rings run around the long axis or across
-            // the plate.
+            // The length does not depend on the ratio. The rings run around the long axis or across the plate.
             Self::Needle(ratio) => {
                 let thin = semi_axes * DVec3::new(1.0 / ratio, 1.0 / ratio, 1.0);
                 scaled(shapes::ring_sphere(around, rings), thin)
@@ -110,11 +109,11 @@ impl Shape {
     }
 }
 
-/// A mesh as a body; the corners of a polygon are rounded, so it is flat to within a few units in
-/// the last place.
+/// Builds a body from a mesh. The corners of a polygon are rounded, so it is flat to within a few units in the
+/// last place.
 ///
 /// # Errors
-/// As the constructors of [`ConvexPolyhedron`].
+/// The errors of the constructors of [`ConvexPolyhedron`].
 pub fn body(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
     if mesh.faces.is_empty() {
         ConvexPolyhedron::from_points(&mesh.vertices)

@@ -1,9 +1,9 @@
-//! Settings that are tied by design, as parts of machines are: aligned, resting, edge over edge,
-//! vertex over vertex.
+//! Draws settings with exact ties, as between machine parts: aligned, resting, edge over edge, vertex over
+//! vertex.
 //!
-//! Notation. A tied setting is made with the direction `-z` in the frame of a *jig*; the
-//! [`Placement`] turns the jig. In the identity and in quarter turns the ties survive in every bit;
-//! in a general rotation the entries are rounded and near-ties are left.
+//! Notation. A tied setting is drawn with the direction `-z` in the frame of a *jig*; the [`Placement`] rotates
+//! the jig. The identity and quarter turns preserve ties in every bit. A general rotation rounds the entries,
+//! so near-ties remain.
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_lab::settings::{Meeting, Setting};
@@ -14,27 +14,27 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::shapes::body;
 
-/// What is tied.
+/// A kind of tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tie {
-    /// Boxes with random sides, upright, moved straight down at a random place.
+    /// Boxes with random sides, upright, translated straight down at a random place.
     UprightBoxes,
     /// Unit cubes on a grid of quarters, face on face; one in three exactly centred.
     CubesFaceOnFace,
-    /// Two roofs, their ridges crossing at right angles.
+    /// Two roofs whose ridges cross at right angles.
     EdgesCrossing,
-    /// Two roofs, their ridges one exactly over the other.
+    /// Two roofs, one ridge exactly over the other.
     EdgesLinedUp,
-    /// Two octahedra, a vertex exactly over the other.
+    /// Two octahedra, one vertex exactly over the other.
     VertexOverVertex,
-    /// Prisms of 24 sides of one radius, their sides aligned.
+    /// Prisms with 24 sides and equal radii, with aligned sides.
     AlignedPrisms,
-    /// A prism of 25 sides (50 vertices) sliding along a wall at zero clearance.
+    /// A prism with 25 sides (50 vertices) that slides along a wall at zero clearance.
     ZeroClearance,
 }
 
 impl Tie {
-    /// All of them.
+    /// All ties.
     pub const ALL: [Self; 7] = [
         Self::UprightBoxes,
         Self::CubesFaceOnFace,
@@ -45,7 +45,7 @@ impl Tie {
         Self::ZeroClearance,
     ];
 
-    /// The name in tables.
+    /// Returns the name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::UprightBoxes => "upright boxes",
@@ -58,10 +58,10 @@ impl Tie {
         }
     }
 
-    /// A pair of bodies.
+    /// Draws a pair of bodies.
     ///
     /// # Panics
-    /// Never: they are convex.
+    /// Never, because the meshes are convex.
     pub fn bodies(self, random: &mut Random) -> Bodies {
         let mut half = || DVec3::from_array([0; 3].map(|_| random.range(0.3, 1.0)));
         let cube = || shapes::cuboid(DVec3::splat(0.5));
@@ -92,7 +92,7 @@ impl Tie {
         Bodies::new(pair.map(|mesh| body(&mesh).expect("a convex body")))
     }
 
-    /// Where the moving body is before it moves along `-z`, in the jig.
+    /// Draws the position of the moving body in the jig, before it moves along `-z`.
     fn offset(self, bodies: &Bodies, random: &mut Random) -> DVec3 {
         let ahead = 3.0;
         let quarters = |random: &mut Random| random.int(-3, 3) as f64 * 0.25;
@@ -115,10 +115,10 @@ impl Tie {
         DVec3::new(x, y, ahead)
     }
 
-    /// A tied setting.
+    /// Draws a tied setting.
     ///
     /// # Panics
-    /// Never: the poses are in range.
+    /// Never, because the poses are in range.
     pub fn draw(self, bodies: &Bodies, placement: Placement, random: &mut Random) -> Setting {
         if placement == Placement::General {
             return Setting::draw(bodies, Meeting::Colliding, random);
@@ -131,29 +131,29 @@ impl Tie {
     }
 }
 
-/// Half a body's extent along an axis, for bodies symmetric about the origin.
+/// Returns half the extent along an axis of a body that is symmetric about the origin.
 fn largest(body: &ConvexPolyhedron, axis: usize) -> f64 {
     body.vertices().iter().map(|v| v[axis]).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How a jig stands in the world.
+/// The rotation of a jig in the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Placement {
-    /// As it is.
+    /// No rotation.
     Identity,
-    /// In one of the 24 rotations that map the axes to each other, exact in every entry.
+    /// One of the 24 rotations that permute the axes, exact in every entry.
     QuarterTurns,
-    /// In a random rotation: the entries are rounded.
+    /// A random rotation, with rounded entries.
     Rotated,
     /// No jig: the same bodies in general position, for comparison.
     General,
 }
 
 impl Placement {
-    /// All of them.
+    /// All placements.
     pub const ALL: [Self; 4] = [Self::Identity, Self::QuarterTurns, Self::Rotated, Self::General];
 
-    /// The name in tables.
+    /// Returns the name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Identity => "identity",
@@ -163,6 +163,7 @@ impl Placement {
         }
     }
 
+    /// Draws the rotation.
     fn turn(self, random: &mut Random) -> DMat3 {
         match self {
             Self::Identity | Self::General => DMat3::IDENTITY,
@@ -185,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tied_settings_meet_as_their_names_say() {
+    fn tied_settings_have_contacts_of_their_kind() {
         let mut random = Random::new(1);
         for tie in Tie::ALL {
             for placement in [Placement::Identity, Placement::QuarterTurns] {

@@ -1,4 +1,4 @@
-//! Times of queries, the turns in which contestants answer them, and what both come to.
+//! Measures queries of contestants in turns, and summarises the times.
 
 use std::hint::black_box;
 
@@ -17,22 +17,22 @@ use crate::parry::Scale;
 pub struct Times(Vec<f64>);
 
 impl Times {
-    /// Adds one.
+    /// Adds a time.
     pub fn add(&mut self, nanoseconds: f64) {
         self.0.push(nanoseconds);
     }
 
-    /// Returns their number.
+    /// Returns the number of times.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// Returns the time that a share of them does not exceed; NaN if there are none.
+    /// Returns the time that this share of the times does not exceed; NaN if there are no times.
     pub fn quantile(&self, share: f64) -> f64 {
         quantile(&self.0, share)
     }
 
-    /// Returns the median; NaN if there are none.
+    /// Returns the median; NaN if there are no times.
     pub fn median(&self) -> f64 {
         self.quantile(0.5)
     }
@@ -55,21 +55,21 @@ impl Serialize for Times {
     }
 }
 
-/// Times queries.
+/// Measures the time of queries.
 #[derive(Debug, Clone, Copy)]
 pub struct Clock {
     stopwatch: Stopwatch,
-    /// Number of repetitions of each query, of whose times the mean counts.
+    /// Number of repetitions of each query; their mean is the query's time.
     pub repeat: u32,
 }
 
 impl Clock {
-    /// Returns a clock that takes the mean of so many repetitions of each query, at least one.
+    /// Returns a clock that takes the mean of `repeat` repetitions of each query, at least one.
     pub fn new(repeat: u32) -> Self {
         Self { stopwatch: Stopwatch::new(), repeat: repeat.max(1) }
     }
 
-    /// Returns the last answer of a query, and the nanoseconds of one.
+    /// Returns the last answer of a query, and the nanoseconds of one repetition.
     pub fn time<T>(self, mut query: impl FnMut() -> T) -> (T, f64) {
         let all = || {
             (1..self.repeat).for_each(|_| drop(black_box(query())));
@@ -79,7 +79,7 @@ impl Clock {
         (answer, spent / f64::from(self.repeat))
     }
 
-    /// Returns the answers and times of two queries, of which the second one is asked first in every other turn.
+    /// Returns the answers and times of two queries. Their order changes from turn to turn.
     pub fn both<A, B>(
         self,
         turn: usize,
@@ -96,14 +96,14 @@ impl Clock {
     }
 }
 
-/// Times of the same queries asked of this library and of another one.
+/// Times of the same queries in this library and in another one.
 #[derive(Debug, Clone, Default)]
 pub struct Beside {
     /// Times of this library.
     pub ours: Times,
-    /// Times of the other one.
+    /// Times of the other library.
     pub theirs: Times,
-    /// Ratio of the times of each query, theirs over ours.
+    /// Ratios of the times of each query, theirs over ours.
     pub ratios: Times,
 }
 
@@ -115,7 +115,7 @@ impl Beside {
         self.ratios.add(theirs / ours);
     }
 
-    /// Asks both a query, which of them first changes from query to query, and returns the answers.
+    /// Sends a query to both libraries and returns the answers. The order changes from query to query.
     pub fn ask<A, B>(
         &mut self,
         clock: Clock,
@@ -127,9 +127,10 @@ impl Beside {
         (mine, other)
     }
 
-    /// Asks both all queries, a block of so many in turns, and hands on both answers to each.
+    /// Sends all queries to both libraries, in alternating blocks of `length`, and passes both answers of each
+    /// query on.
     ///
-    /// The contestants return an answer and the time that it took.
+    /// The contestants return an answer and its time.
     pub fn in_blocks<S, A, B>(
         queries: &[S],
         length: usize,
@@ -149,7 +150,7 @@ impl Beside {
         beside
     }
 
-    /// Returns the medians of ours, of theirs and of the ratios.
+    /// Returns the medians of our times, of theirs, and of the ratios.
     pub fn medians(&self) -> [f64; 3] {
         [&self.ours, &self.theirs, &self.ratios].map(Times::median)
     }
@@ -172,22 +173,22 @@ impl Beside {
 pub struct Measured {
     /// Times of its queries.
     pub times: Times,
-    /// Work of all queries that were answered.
+    /// Work of all answered queries.
     pub steps: Steps,
-    /// Number of queries that began with the features of the last answer.
+    /// Number of queries that started from the features of the last answer.
     pub by_features: u32,
     /// Number of queries without an answer.
     pub failures: u32,
 }
 
 impl Measured {
-    /// Adds the time of a query, and what it came to.
+    /// Adds the time and the outcome of a query.
     pub fn note(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
         self.times.add(spent);
         self.count(outcome);
     }
 
-    /// Counts what a query came to, and returns whether it was answered.
+    /// Counts the outcome of a query, and returns whether it was answered.
     pub fn count(&mut self, outcome: &Result<Outcome, QueryError>) -> bool {
         let Ok(outcome) = outcome else {
             self.failures += 1;
@@ -203,7 +204,8 @@ impl Measured {
     }
 }
 
-/// The figures of the times; planar problems, supports, pivots, iterations and starts from features on average; failures.
+/// As JSON: the figures of the times; the means of planar problems, supports, pivots, iterations and starts
+/// from features; the failures.
 impl Serialize for Measured {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let average = |count: u32| f64::from(count) / self.times.count().max(1) as f64;
@@ -219,10 +221,10 @@ impl Serialize for Measured {
     }
 }
 
-/// Bodies, and settings of them that a contestant answers one after the other.
+/// Bodies, and the settings of them that a contestant answers in a row.
 pub type Block<'a> = (&'a Bodies, Vec<Setting>);
 
-/// Draws so many blocks of several pairs in turn.
+/// Draws `count` blocks, of several pairs in turn.
 pub fn blocks(
     bodies: &[Bodies],
     count: usize,
@@ -231,10 +233,10 @@ pub fn blocks(
     bodies.iter().cycle().take(count).map(|bodies| (bodies, draw(bodies))).collect()
 }
 
-/// Lets contestants answer blocks in turns, and measures parry's casts after each.
+/// Measures contestants on blocks in turns, and parry's casts after each block.
 ///
-/// Who comes first changes from block to block. `answer` answers a block as one of the contestants, `compare` takes
-/// the answers of all to a block.
+/// The order changes from block to block. `answer` answers a block as one of the contestants. `compare` takes
+/// the answers of all contestants to a block.
 pub fn in_rotation<'a, R: Default, const N: usize>(
     blocks: &[Block<'a>],
     scale: &Scale,

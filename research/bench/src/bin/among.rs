@@ -1,10 +1,10 @@
-//! `among`: one body among many beside `parry3d-f64`, in the same run on the same scenes.
+//! `among`: compares one body among many with `parry3d-f64`, in one run on the same scenes.
 //!
-//! Boxes of random sizes and orientations, evenly in a cube with a share of it filled; the same boxes are a
-//! `Compound` of parry's, which has a tree of its own (`Bvh`). A box is asked about at random places, along
-//! random directions. Both answer each query, in turns; figures are medians of times and of the queries' ratios,
-//! of building the thread's own time on a processor, the mean of nine.
-//! Then boxes move, a little and anywhere, and queries are asked again.
+//! Boxes of random sizes and orientations are spread uniformly in a cube and fill a share of it. For parry, the
+//! same boxes are a `Compound`, which has its own tree (`Bvh`). Queries place a box at random and cast it along
+//! random directions. Both libraries answer each query, in turns. The figures are medians of the times and of
+//! the queries' ratios. The time to build a scene is processor time of the thread, the mean of nine builds.
+//! Then boxes move, slightly and anywhere, and the queries are repeated.
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -20,20 +20,20 @@ use serde_json::{Value, json};
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
-/// How many different boxes there are.
+/// Number of different boxes.
 const SHAPES: usize = 16;
 
-/// How often a scene is built.
+/// Number of builds of a scene.
 const BUILDS: u32 = 9;
 
-/// The share of space that boxes fill.
+/// Share of space filled by boxes.
 const FILLED: f64 = 0.02;
 
-/// Bodies closer than this are asked for, a length: about that of a box.
+/// Threshold of the proximity query, a length: about that of a box.
 const CLOSE: f64 = 0.5;
 
 fn main() -> ExitCode {
-    let about = "Measures one body among many boxes beside parry3d-f64; prints a table";
+    let about = "Compares one body among many boxes with parry3d-f64; prints a table";
     harness::run("among", about, |run, (): &()| {
         let columns = "boxes:>9; build ms:>8.2=build_ms; parry:>8.2=parry_build_ms;
             nearest:>8.0=nearest/0; parry:>8.0=nearest/1; ratio:>8.2=nearest/2;
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// A scene, for both.
+/// A scene, for both libraries.
 struct Scene {
     side: f64,
     shapes: Vec<Arc<ConvexPolyhedron>>,
@@ -65,6 +65,7 @@ impl Scene {
         Self { side, shapes, halves, poses }
     }
 
+    /// Builds the scene in this library.
     fn ours(&self) -> (Obstacles, Vec<ObstacleId>) {
         let mut obstacles = Obstacles::new();
         let body = |k: usize| self.shapes[k % SHAPES].clone();
@@ -73,16 +74,19 @@ impl Scene {
         (obstacles, ids)
     }
 
+    /// Builds the scene in parry.
     fn theirs(&self) -> Compound {
         parry::compound(&self.poses, |k| self.halves[k % SHAPES])
     }
 }
 
+/// Draws a pose in a cube.
 fn anywhere(side: f64, random: &mut Random) -> Pose {
     let at = (random.vector() * 0.5 + DVec3::splat(0.5)) * side;
     Pose::new(random.rotation(), at).expect("a pose")
 }
 
+/// Measures the row of a size.
 fn row(n: usize, run: &Run) -> Value {
     let count = run.choose(200, 2_000);
     let random = &mut run.random(&[n as u64]);
@@ -107,29 +111,29 @@ fn row(n: usize, run: &Run) -> Value {
     })
 }
 
-/// Returns for how long this thread is on a processor with some work, in nanoseconds; others are on the machine as well.
+/// Returns the processor time of this thread for some work, in nanoseconds. Other programs do not count.
 fn own_time(clock: Clock, work: impl FnMut()) -> f64 {
     let (before, ((), wall)) = (on_processor(), clock.time(work));
     before.zip(on_processor()).map_or(wall, |(before, after)| after - before)
 }
 
-/// Returns for how long this thread has been on a processor, where the system tells.
+/// Returns the processor time of this thread until now, where the system reports it.
 fn on_processor() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     stat.split(' ').next()?.parse().ok()
 }
 
-/// Who asks.
+/// Queries on a scene.
 struct Asked<'a> {
     scene: &'a Scene,
     clock: Clock,
     random: &'a mut Random,
-    /// Answers of parry's that are not between our bounds, by more than a millionth.
+    /// Number of parry's answers outside our bounds by more than a millionth.
     wrong: u32,
 }
 
 impl Asked<'_> {
-    /// Nearest ones and casts, beside parry.
+    /// Measures nearest bodies and casts in both libraries.
     fn beside(&mut self, obstacles: &Obstacles, compound: &Compound, count: usize) -> [Beside; 2] {
         let [mut nearest, mut casts] = <[Beside; 2]>::default();
         let (shape, half) = (&self.scene.shapes[0], self.scene.halves[0]);
@@ -156,6 +160,7 @@ impl Asked<'_> {
         [nearest, casts]
     }
 
+    /// Returns the median time of a query.
     fn median(&mut self, count: usize, obstacles: &Obstacles, ask: impl Fn(&Among) -> bool) -> f64 {
         let mut times = Times::default();
         for _ in 0..count {
@@ -169,8 +174,8 @@ impl Asked<'_> {
         times.median()
     }
 
-    /// Moves, half of them by a tenth of a box and half anywhere: as many as there are boxes, at least; the
-    /// mean time of one.
+    /// Moves boxes, half of them by a tenth of a box and half anywhere, at least as often as there are boxes.
+    /// Returns the mean time of a move.
     fn moves(&mut self, obstacles: &mut Obstacles, ids: &[ObstacleId], count: usize) -> f64 {
         let moves: Vec<(ObstacleId, Pose)> = (0..count.max(ids.len()))
             .map(|k| {

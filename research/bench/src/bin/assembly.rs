@@ -1,4 +1,4 @@
-//! `assembly`: how assemblies grow: parts, facets, directions; and a folder of meshes, if one is given.
+//! `assembly`: measures growing assemblies by parts, facets and directions, and optionally a folder of meshes.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,15 +21,15 @@ use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
 struct Own {
-    /// A folder of meshes
+    /// Folder of meshes
     folder: Option<PathBuf>,
-    /// Its tolerance
+    /// Tolerance for the folder
     #[arg(default_value_t = 0.0)]
     tolerance: f64,
 }
 
 fn main() -> ExitCode {
-    let about = "Measures how assemblies grow: parts, facets, directions; prints a table";
+    let about = "Measures growing assemblies by parts, facets and directions; prints a table";
     harness::run("assembly", about, |run, own: &Own| {
         let columns = "series:>10; parts:>5; facets:>7; directions:>10; ready, s:>9.3=ready_s; rooms, s:>9.3=rooms_s;
             contacts to plan, s:>19.3=plan_s; steps:>5";
@@ -51,7 +51,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Unit spheres in a cube of rows, a little apart.
+/// Builds unit spheres in a cubic grid, slightly apart.
 fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Failure> {
     let Mesh { vertices, faces, .. } = ring_sphere(around, rings);
     let mut parts = Vec::new();
@@ -67,6 +67,7 @@ fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Failure> {
     Ok(Assembly::new(parts)?)
 }
 
+/// Measures an assembly.
 fn measured(
     series: &str,
     assembly: &Assembly,

@@ -1,8 +1,8 @@
-//! `bulk`: one pair of bodies asked many times with one rotation of each, by the faces of their difference, beside
-//! the ordinary cast and the tracker, which ask the same in the same run.
+//! `bulk`: compares many casts of one pair with fixed rotations, by the faces of the difference, with ordinary
+//! casts and the tracker in the same run.
 //!
-//! Whoever is compared answers all casts of a set before the next takes its turn, again and again; the least time of
-//! a set counts, a cast's share of it. Making the casts is in all of them.
+//! Each contestant answers all casts of a set before the next one, several times. The least time of a set,
+//! divided by the number of casts, is the figure. It includes the construction of the casts.
 
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -20,17 +20,17 @@ use serde_json::{Map, Value, json};
 
 const SIZES: [usize; 5] = [8, 16, 32, 64, 128];
 
-/// Casts of a set.
+/// Number of casts in a set.
 const CASTS: usize = 4096;
 
-/// What places and directions are drawn of.
+/// A distribution of places and directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Set {
-    /// Along one direction from many places, about every second a hit.
+    /// Along one direction from many places; about every second cast hits.
     Places,
-    /// From one place along many directions, about every second a hit.
+    /// From one place along many directions; about every second cast hits.
     Rays,
-    /// Boxes that are not turned, along an axis, from places nowhere in particular.
+    /// Boxes without rotation, along an axis, from random places.
     EdgeOnFacet,
     /// The same from places on a grid of quarters: mostly ties.
     Tied,
@@ -46,7 +46,7 @@ impl Set {
         }
     }
 
-    /// Poses of the moving body, the fixed one's, and directions.
+    /// Draws the poses and directions of the moving body, and the pose of the fixed one.
     fn draw(self, random: &mut Random) -> (Vec<(Pose, DVec3)>, Pose) {
         let pose = |rotation, at| Pose::new(rotation, at).expect("a rotation");
         let (p, q) = (random.rotation(), random.rotation());
@@ -77,11 +77,11 @@ impl Set {
     }
 }
 
-/// Who is compared.
+/// The contestants.
 const WHO: [&str; 4] = ["cast", "tracker", "any direction", "one direction"];
 
 fn main() -> ExitCode {
-    let about = "Measures casts of bodies that do not turn beside ordinary ones and a tracker; prints a table";
+    let about = "Compares bulk casts with fixed rotations with ordinary casts and a tracker; prints a table";
     harness::run("bulk", about, |run, (): &()| {
         let columns = "set:<8; body:<12=shape; n:>4=vertices; hit%:>4.0=hits × 100;
             |cast:>6.0=ns/cast; tracker:>7.0=ns/tracker; any:>6.0=ns/any direction; one:>6.0=ns/one direction;
@@ -107,6 +107,7 @@ fn main() -> ExitCode {
     })
 }
 
+/// Draws the bodies of a set.
 fn bodies(
     set: Set,
     shape: Shape,
@@ -120,6 +121,7 @@ fn bodies(
     shape.pair(n, random)
 }
 
+/// Measures a set.
 fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
     let mut random = run.random(&[n as u64, set as u64]);
     let [p, q] = bodies(set, shape, n, &mut random)?;
@@ -141,7 +143,8 @@ fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildEr
             let mut tracker = Tracker::new();
             let spent = seconds(|| {
                 for of in &casts {
-                    // Matched in place: casts and outcomes are large, and moving them costs as much as an answer.
+                    // Matched in place: casts and outcomes are large, and moving them takes as long as an
+                    // answer.
                     answers.push(match cast(black_box(of)) {
                         Err(error) => Err(error),
                         Ok(cast) => match who {
@@ -178,6 +181,7 @@ fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildEr
     }))
 }
 
+/// Returns the seconds of a run.
 fn seconds(run: impl FnOnce()) -> f64 {
     let started = Instant::now();
     run();

@@ -1,8 +1,8 @@
-//! `coherence`: trackers against casts from scratch, on the same sequences in the same run, with
-//! parry's cast of bodies of 8 vertices beside them for scale.
+//! `coherence`: compares trackers with casts from scratch, on the same sequences in one run. Parry's cast of
+//! bodies with 8 vertices provides the scale.
 //!
-//! Every solver works through a whole sequence before the next takes its turn; the order
-//! changes from sequence to sequence. A query is timed alone, with the clock's own cost taken off.
+//! Every solver works through a whole sequence before the next solver. The order changes from sequence to
+//! sequence. Each query is measured alone; the cost of the clock is subtracted.
 
 use std::process::ExitCode;
 
@@ -19,7 +19,7 @@ use serde_json::{Map, json};
 
 const SIZES: [usize; 4] = [200, 2_000, 20_000, 200_000];
 
-/// Configurations in a sequence.
+/// Number of configurations in a sequence.
 const LENGTH: usize = 100;
 
 /// Change per step, in diameters.
@@ -28,12 +28,12 @@ const DELTAS: [f64; 4] = [0.01, 0.005, 0.0025, 0.0013];
 /// Degrees per step of the orbit.
 const ALPHAS_DEG: [f64; 10] = [0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 90.0, 180.0];
 
-/// Who answers the queries of a sequence.
+/// A solver that answers the queries of a sequence.
 #[derive(Debug, Clone, Copy)]
 struct Compared {
     name: &'static str,
     solver: Solver,
-    /// If none, the tracker decides.
+    /// Memory of the tracker; `None` stands for the tracker's default.
     focus: Option<Focus>,
     narrowing: cta::Options,
 }
@@ -60,11 +60,11 @@ const COMPARED: [Compared; 6] = [
 const REGION: Focus = Focus::NONE.with_region(cta::Region::Automatic);
 const BOTH: Focus = Focus::NONE.with_features(true).with_region(cta::Region::Automatic);
 
-/// The paper's: from the centre of the levels until the exit test; of no effect on the others.
+/// The paper's variant: from the centre of the levels until the exit test. It has no effect on other solvers.
 const PAPER: cta::Options = cta::Options::new(cta::Start::Center, cta::Until::Exit);
 
 fn main() -> ExitCode {
-    let about = "Measures trackers against casts from scratch on the same sequences; prints tables";
+    let about = "Compares trackers with casts from scratch on the same sequences; prints tables";
     harness::run("coherence", about, |run, (): &()| {
         for n in run.sizes(&SIZES) {
             measure_size(n, run).map_err(naming(format!("ellipsoids with {n} vertices")))?;
@@ -73,6 +73,7 @@ fn main() -> ExitCode {
     })
 }
 
+/// Begins the table.
 fn begin_table(run: &mut Run) {
     let solver = |compared: &Compared| {
         let name = compared.name;
@@ -97,7 +98,7 @@ fn begin_table(run: &mut Run) {
     run.table(legend, &columns);
 }
 
-/// All rows of a size.
+/// Adds all rows of a size.
 fn measure_size(n: usize, run: &mut Run) -> Result<(), BuildError> {
     let mut random = run.random(&[n as u64]);
     let mut pair = |n| Shape::Ellipsoid.pair(n, &mut random).map(Bodies::new);
@@ -131,7 +132,7 @@ fn measure_size(n: usize, run: &mut Run) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Lets every solver follow every sequence, and adds the row.
+/// Measures every solver on every sequence, and adds the row.
 fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mut Run) {
     let mut differences = 0;
     let (measured, parry) = in_rotation::<Vec<_>, { COMPARED.len() }>(
@@ -152,7 +153,7 @@ fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mu
     }));
 }
 
-/// Lets a solver follow a sequence.
+/// Measures a solver on a sequence.
 fn follow(
     measured: &mut Measured,
     compared: &Compared,
@@ -182,7 +183,7 @@ fn follow(
     outcomes
 }
 
-/// Whether two answers are the same, within what their certificates leave open.
+/// Whether two answers agree within their certificates.
 fn agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bool {
     match (a, b) {
         (Ok(Outcome::Contact(a)), Ok(Outcome::Contact(b))) => {

@@ -1,9 +1,9 @@
-//! `distance`: distances and depths beside `parry3d-f64`, in the same run on the same settings.
+//! `distance`: compares distances and depths with `parry3d-f64`, in one run on the same settings.
 //!
-//! Bodies at random orientations, brought to a gap or a depth along the normal of their distance. A query
-//! is timed alone, so that it finds in the caches what the other library has left there, and no branch
-//! foretold; or several times in a row. Both answer each setting, in turns, and the figures are medians of
-//! times and of the settings' ratios. *Wrong* are answers of parry's that differ from our bounds by more than a share of the
+//! Bodies have random orientations and a given gap or depth along the normal of their distance. Each query is
+//! measured alone, so that caches and branch prediction hold the state left by the other library, or several
+//! times in a row. Both libraries answer each setting, in turns. The figures are medians of the times and of
+//! the settings' ratios. Parry's answer is *wrong* if it differs from our bounds by more than a share of the
 //! gap.
 
 use std::process::ExitCode;
@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
 struct Own {
-    /// Times each query so many times in a row, and takes the mean
+    /// Run each query N times in a row, and take the mean
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: u32,
 }
@@ -31,14 +31,14 @@ const SIZES: [usize; 5] = [8, 32, 128, 2_000, 20_000];
 /// Gaps of the bodies; negative ones are depths.
 const GAPS: [f64; 4] = [0.5, 1e-6, 1e-9, -0.1];
 
-/// An answer of parry's is wrong that is off by more than this share of the gap.
+/// Parry's answer is wrong if its error exceeds this share of the gap.
 const SHARE: f64 = 1e-2;
 
-/// How far bodies move, and turn in radians, from one setting of a sequence to the next.
+/// Translation, and rotation in radians, between successive settings of a sequence.
 const STEP: f64 = 0.01;
 
 fn main() -> ExitCode {
-    let about = "Measures distances and depths beside parry3d-f64; prints a table";
+    let about = "Compares distances and depths with parry3d-f64; prints a table";
     harness::run("distance", about, |run, own: &Own| {
         let columns =
             "vertices:>8; gap:>8.0e; ours ns:>9.0=ours/median_ns; parry ns:>9.0=parry/median_ns;
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Two bodies of a size at a gap, so many times.
+/// Measures two bodies of a size at a gap, several times.
 fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
     let mut random = run.random(&[n as u64]);
     let pairs: Vec<[ConvexPolyhedron; 2]> = (0..if n > 1_000 { 2 } else { 8 })
@@ -90,7 +90,7 @@ fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
         "coherent": coherent.median(),
     })
 }
-/// The time of a tracked distance after a small change, beside that of the same one from scratch.
+/// Returns the time of a tracked distance after a small change, relative to the same distance from scratch.
 fn followed(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
     let mut tracker = Tracker::new();
     tracker.distance(pair).expect("an answer");
@@ -99,14 +99,14 @@ fn followed(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
     let moved = Pose::new(turn.normalize(), at).expect("a pose");
     let next = Pair::new(pair.moving().at(moved), pair.fixed().at(pair.fixed_pose()));
     let next = next.expect("a pair");
-    // Of each repetition its own, made before the clock starts.
+    // Each repetition has its own tracker, cloned before the clock starts.
     let mut trackers = vec![tracker; clock.repeat as usize];
     let mut last = trackers.iter_mut();
     let (_, tracked) = clock.time(|| last.next().map(|tracker| tracker.distance(&next)));
     clock.time(|| next.distance()).1.recip() * tracked
 }
 
-/// Poses at random orientations in which the bodies have a gap.
+/// Draws poses with random orientations in which the bodies have a gap.
 fn at_gap(
     p: &ConvexPolyhedron,
     q: &ConvexPolyhedron,
@@ -121,7 +121,7 @@ fn at_gap(
     Some([moved, b])
 }
 
-/// What the library states as its rounding error, `32 u S`.
+/// Returns the rounding error that the library states, `32 u S`.
 fn noise(pair: &Pair) -> f64 {
     let vertices = [pair.moving().vertices(), pair.fixed().vertices()];
     16.0 * f64::EPSILON * size(vertices, [&pair.moving_pose(), &pair.fixed_pose()])

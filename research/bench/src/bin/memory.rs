@@ -1,7 +1,7 @@
-//! `memory`: what sections add to a body, in bytes and in the time of building it.
+//! `memory`: measures the sections of a body, in bytes and in building time.
 //!
-//! A body makes its sections when the paper's algorithm first asks for them. Built with and without, in
-//! turns, from the same corners; times are judged by their ratio within a turn.
+//! A body makes its sections when the paper's algorithm first needs them. It is built with and without them, in
+//! turns, from the same corners. The result is the ratio of the times within a turn.
 
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// The row of a shape and a size.
+/// Measures the row of a shape and a size.
 fn measure(shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
     let corners = shape.draw(n, &mut run.random(&[n as u64]))?.vertices().to_vec();
     let body = ConvexPolyhedron::from_points(&corners)?;
@@ -53,7 +53,7 @@ fn measure(shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
     }))
 }
 
-/// Nanoseconds of building once, without or with sections; small bodies several times over.
+/// Returns the nanoseconds of one build, without or with sections. Small bodies are built several times.
 fn build(corners: &[DVec3], sections: bool) -> f64 {
     let build = || {
         let body = ConvexPolyhedron::from_points(black_box(corners));

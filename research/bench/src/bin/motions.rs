@@ -1,11 +1,11 @@
-//! `motions`: first contacts of bodies that turn beside `parry3d-f64`'s nonlinear cast, in the same run on
-//! the same settings.
+//! `motions`: compares first contacts of rotating bodies with the nonlinear cast of `parry3d-f64`, in one run
+//! on the same settings.
 //!
-//! Families: random spins to 6 radians past each other, a blade that passes or grazes a tip, a door that
-//! closes on its frame face to face, a box that spins above a table, a pin of 48 sides beside a wall. Both
-//! libraries answer each setting in turns; a query is timed alone, and the figures are medians. Parry's
-//! answer is *missed* where a contact is proven and it has none, *late* if it is more than a millionth after
-//! the proven bounds, *false* where none is possible or it is earlier.
+//! Families: random spins up to 6 radians past each other, a blade that passes or grazes a tip, a door that
+//! closes on its frame face to face, a box that spins above a table, a pin with 48 sides near a wall. Both
+//! libraries answer each setting in turns. Each query is measured alone; the figures are medians. Parry's
+//! answer is *missed* where a contact is proven and it has none. It is *late* if it is more than a millionth
+//! after the proven bounds. It is *false* where no contact is possible or it is earlier than the bounds.
 
 use std::f64::consts::TAU;
 use std::process::ExitCode;
@@ -25,15 +25,15 @@ use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
 struct Own {
-    /// A bolt of 1,200 triangles in a nut of 576 instead
+    /// Measure a bolt with 1,200 triangles in a nut with 576 instead
     #[arg(long)]
     threads: bool,
 }
 
-/// By how much of the motion parry may be off.
+/// Accepted error of parry's answer, as a share of the motion.
 const OFF: f64 = 1e-6;
 
-/// A body that spins about a point of it, which moves evenly, and one at rest.
+/// A body that spins about a uniformly moving point, and a body at rest.
 struct Turning {
     bodies: [ConvexPolyhedron; 2],
     start: Pose,
@@ -44,7 +44,7 @@ struct Turning {
 }
 
 fn main() -> ExitCode {
-    let about = "Measures first contacts of bodies that turn beside parry3d-f64; prints a table";
+    let about = "Compares first contacts of rotating bodies with parry3d-f64; prints a table";
     harness::run("motions", about, |run, own: &Own| {
         if own.threads {
             bolts(run);
@@ -55,6 +55,7 @@ fn main() -> ExitCode {
     })
 }
 
+/// Measures all families.
 fn families(run: &mut Run) {
     let columns = "family:<28; ours ns:>9.0=ours/median_ns; parry ns:>9.0=parry/median_ns; ratio:>7.2; contact:>7=contacts;
         looks:>6; most:>6=most_looks; width:>9.1e; missed:>7; late:>6; false:>6";
@@ -75,7 +76,7 @@ fn families(run: &mut Run) {
     }
 }
 
-/// A bolt in a nut; parry is not asked in a quick run.
+/// Measures a bolt in a nut; a quick run leaves parry out.
 fn bolts(run: &mut Run) {
     run.program = "threads".into();
     let solid = |mesh: &Mesh| Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
@@ -109,6 +110,7 @@ fn bolts(run: &mut Run) {
     }
 }
 
+/// Measures a family.
 fn row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> Value {
     let mut random = run.random(&[name.len() as u64]);
     let (clock, mut times) = (Clock::new(1), Beside::default());
@@ -150,12 +152,13 @@ fn row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> 
     })
 }
 
+/// Builds a box.
 fn cuboid(half: [f64; 3]) -> Option<ConvexPolyhedron> {
     let half = DVec3::from_array(half);
     ConvexPolyhedron::cuboid(-half, half).ok()
 }
 
-/// Ellipsoids that pass each other, one of them turning.
+/// Draws ellipsoids that pass each other, one of them rotating.
 fn spinning(n: usize, random: &mut Random) -> Option<Turning> {
     let bodies = [(); 2].map(|()| Shape::Ellipsoid.draw(n, random).expect("a body"));
     let from = random.direction() * random.range(3.0, 5.0);
@@ -166,7 +169,7 @@ fn spinning(n: usize, random: &mut Random) -> Option<Turning> {
     Some(Turning { bodies, start, center: from, velocity, spin, there })
 }
 
-/// A blade turns past a tip, or into it; deep cuts are of a cube.
+/// Draws a blade that turns past a tip or into it. For deep cuts, the other body is a cube.
 fn blade(gap: f64, random: &mut Random) -> Option<Turning> {
     let half = [1.0, random.range(0.02, 0.1), random.range(0.1, 0.3)];
     let reach = (half[0] * half[0] + half[1] * half[1]).sqrt();
@@ -184,7 +187,7 @@ fn blade(gap: f64, random: &mut Random) -> Option<Turning> {
     Some(Turning { bodies: [blade, tip], start: Pose::IDENTITY, center, velocity, spin, there })
 }
 
-/// A door closes on its frame, face to face.
+/// Draws a door that closes on its frame, face to face.
 fn door(random: &mut Random) -> Option<Turning> {
     let door = cuboid([1.0, random.range(0.02, 0.06), 2.0])?;
     let frame = cuboid([0.05, 0.05, 2.2])?;
@@ -196,7 +199,7 @@ fn door(random: &mut Random) -> Option<Turning> {
     Some(Turning { bodies: [door, frame], start, center, velocity, spin, there })
 }
 
-/// A box spins above a table.
+/// Draws a box that spins above a table.
 fn table(gap: f64, random: &mut Random) -> Option<Turning> {
     let bodies = [cuboid([0.5, 0.3, 0.25])?, cuboid([3.0, 3.0, 0.5])?];
     let start = Pose::new(DQuat::from_rotation_z(random.range(0.0, 1.0)), DVec3::ZERO).ok()?;
@@ -205,7 +208,7 @@ fn table(gap: f64, random: &mut Random) -> Option<Turning> {
     Some(Turning { bodies, start, center, velocity, spin: DVec3::Z * 6.0, there })
 }
 
-/// A pin of 48 sides turns beside a wall.
+/// Draws a pin with 48 sides that turns near a wall.
 fn pin(gap: f64, random: &mut Random) -> Option<Turning> {
     let pin = Shape::Prism.draw(96, random).ok()?;
     let reach = |v: &DVec3| v.truncate().length();

@@ -1,11 +1,11 @@
-//! `paper`: the collision translation algorithm against portal refinement, on the paper's bodies,
-//! in the same run.
+//! `paper`: compares the collision translation algorithm with portal refinement, on the paper's bodies in one
+//! run.
 //!
-//! Every solver answers a block of settings twice, and its second pass is timed: caches hold
-//! what the block needs, for all of them alike. The order changes from block to block. A query is
-//! timed alone, with the clock's own cost taken off. Parry's cast of bodies of 8 vertices stands
-//! beside every row, so that rows of different runs can be compared. Where the time goes is asked in
-//! a further pass, of the search from the centre to the end.
+//! Every solver answers a block of settings twice; the second pass is measured. All solvers thus find the
+//! block's data in the caches. The order changes from block to block. Each query is measured alone; the cost of
+//! the clock is subtracted. Every row contains parry's cast of bodies with 8 vertices, so that rows of
+//! different runs can be compared. A further pass, of the search from the centre to the end, measures the
+//! phases.
 
 use std::process::ExitCode;
 
@@ -32,14 +32,14 @@ struct Own {
 
 const SIZES: [usize; 4] = [200, 2_000, 20_000, 200_000];
 
-/// Settings of a block.
+/// Number of settings of a block.
 const BLOCK: usize = 20;
 
-/// Configurations in a sequence, and its change per step in diameters.
+/// Number of configurations in a sequence, and its change per step in diameters.
 const LENGTH: usize = 50;
 const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 
-/// How a solver narrows the search: `None` is portal refinement alone.
+/// The options of a solver's search; `None` is portal refinement alone.
 const COMPARED: [(&str, Option<cta::Options>); 4] = [
     ("portal", None),
     ("rough", Some(cta::Options::ROUGH)),
@@ -47,24 +47,24 @@ const COMPARED: [(&str, Option<cta::Options>); 4] = [
     ("centre end", Some(to(cta::Until::Exit))),
 ];
 
-/// The same in sequences: to where, and what the tracker remembers.
+/// The solvers for sequences: the end of the search, and the memory of the tracker.
 const FOLLOWED: [(&str, cta::Until, Focus); 3] = [
     ("focus 1%", cta::Until::Gap(0.01), REGION),
     ("focus end", cta::Until::Exit, REGION),
     ("centre end", cta::Until::Exit, Focus::NONE),
 ];
 
-/// From the centre to here, across cells where little of the region is left.
+/// Returns the options of a search from the centre to `until`, across cells that contain little of the region.
 const fn to(until: cta::Until) -> cta::Options {
     cta::Options::new(cta::Start::Center, until).with_keeps_to_cell(false)
 }
 
-/// Bodies to measure on.
+/// A kind of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     /// Ellipsoids with faces as long as wide.
     Balanced,
-    /// Ellipsoids with faces [`STRETCH`] times as long as wide.
+    /// Ellipsoids with faces whose length is [`STRETCH`] times their width.
     Thin,
     Other(Shape),
 }
@@ -79,7 +79,7 @@ const KINDS: [Kind; 5] = [
 
 const STRETCH: f64 = 100.0;
 
-/// Only the region of the last solution is remembered.
+/// A memory of only the region of the last solution.
 const REGION: Focus = Focus::NONE.with_region(cta::Region::Automatic);
 
 impl Kind {
@@ -95,7 +95,7 @@ impl Kind {
         let mut one = || match self {
             Self::Balanced => Shape::Ellipsoid.draw(n, random),
             Self::Thin => {
-                // The parallels' edges are `STRETCH` times the meridians'.
+                // The edges along parallels are `STRETCH` times as long as those along meridians.
                 let around = (n as f64 * 4.0 / (std::f64::consts::PI * STRETCH)).sqrt().max(8.0);
                 let around = around.round();
                 let rings = (n as f64 / around).round();
@@ -110,7 +110,7 @@ impl Kind {
 
 fn main() -> ExitCode {
     let about =
-        "Measures the collision translation algorithm against portal refinement; prints tables";
+        "Compares the collision translation algorithm with portal refinement; prints tables";
     harness::run("paper", about, |run, own: &Own| {
         for n in run.sizes(&SIZES) {
             measure_size(n, !own.no_focus, run)
@@ -120,6 +120,7 @@ fn main() -> ExitCode {
     })
 }
 
+/// Declares the columns for these solvers.
 fn columns(names: &[&str]) -> String {
     let solver = |who: &&str| {
         format!(
@@ -137,6 +138,7 @@ fn columns(names: &[&str]) -> String {
     )
 }
 
+/// Measures all rows of a size.
 fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> {
     let mut random = run.random(&[n as u64]);
     let small = Bodies::new(Shape::Ellipsoid.pair(8, &mut random)?);
@@ -178,7 +180,7 @@ fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> 
     Ok(())
 }
 
-/// The row of solvers, with their medians over a unit.
+/// Returns the row of the solvers, with their medians over a unit.
 fn row(
     name: &str,
     n: usize,
@@ -197,6 +199,7 @@ fn row(
     })
 }
 
+/// Returns the options of a query.
 fn options(narrowing: Option<cta::Options>) -> Options {
     match narrowing {
         None => Options::default().with_solver(Solver::Portal),
@@ -204,7 +207,7 @@ fn options(narrowing: Option<cta::Options>) -> Options {
     }
 }
 
-/// Lets a solver answer a block twice without a memory, and times the second pass.
+/// Answers a block twice without a memory, and measures the second pass.
 fn one_off(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
     let stopwatch = Stopwatch::new();
     let options = options(COMPARED[who].1);
@@ -218,7 +221,7 @@ fn one_off(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
     }
 }
 
-/// Lets a tracker follow a sequence.
+/// Follows a sequence with a tracker.
 fn tracked(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
     let stopwatch = Stopwatch::new();
     let (_, until, focus) = FOLLOWED[who];
@@ -231,8 +234,8 @@ fn tracked(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
     }
 }
 
-/// Median nanoseconds of each phase of a search from the centre to the end: in second passes over blocks, or, with region
-/// focus, in sequences.
+/// Returns the median nanoseconds of each phase of a search from the centre to the end. The searches are second
+/// passes over blocks, or, with region focus, sequences.
 fn phases(blocks: &[Block], is_focused: bool) -> Value {
     let options = options(Some(to(cta::Until::Exit)));
     let mut spent: Vec<(&str, Times)> = Vec::new();

@@ -1,9 +1,9 @@
-//! `paths`: a six-axis arm on a path of 1,000 rows among 50 obstacles, with the proof and its check.
+//! `paths`: measures a six-axis arm on a path with 1,000 rows among 50 obstacles, with the proof and its check.
 //!
-//! Links are ellipsoids of 100 vertices, obstacles are ellipsoids of 50 vertices, or bumpy balls of 1,000 triangles that
-//! are not convex, around the arm where it passes by. Those that the path meets are taken out one by one, and others
-//! come in their places, until 50 are left and the path is free; that one is measured. No other library
-//! is asked: none gives an answer between samples.
+//! Links are ellipsoids with 100 vertices. Obstacles are ellipsoids with 50 vertices, or non-convex bumpy balls
+//! with 1,000 triangles, around the path of the arm. An obstacle that the path meets is replaced by another
+//! one, until the path is free of 50 obstacles. That path is measured. There is no comparison, because no other
+//! library answers between samples.
 
 use std::process::ExitCode;
 
@@ -20,7 +20,7 @@ use colltrans_testkit::timing;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// Rows of the path, obstacles, and how often each is measured.
+/// Number of rows of the path, of obstacles, and of measurements.
 const ROWS: usize = 1_000;
 const OBSTACLES: usize = 50;
 const TIMES: usize = 11;
@@ -39,6 +39,7 @@ fn main() -> ExitCode {
     })
 }
 
+/// Measures a scene.
 fn measured(name: &str, solids: bool, times: usize) -> Result<Value, PathError> {
     let mut random = Random::new(5);
     let (arm, links) = (arm()?, links(&mut random));
@@ -74,7 +75,7 @@ fn measured(name: &str, solids: bool, times: usize) -> Result<Value, PathError> 
     }
 }
 
-/// Shoulder, elbow and wrist of three joints each way, as many arms have them, in metres.
+/// Builds an arm with three joints each for shoulder and wrist and the usual layout, in metres.
 fn arm() -> Result<Mechanism, PathError> {
     let (turns, tips) = (Joint::Turning(DVec3::Z), Joint::Turning(DVec3::Y));
     let frames = [
@@ -92,6 +93,7 @@ fn arm() -> Result<Mechanism, PathError> {
     Mechanism::new(frames.into_iter().enumerate().map(frame).collect::<Result<_, PathError>>()?)
 }
 
+/// Builds the links.
 fn links(random: &mut Random) -> Vec<AnyBody> {
     [0.1, 0.425, 0.39, 0.05, 0.08, 0.1]
         .map(|length| {
@@ -103,6 +105,7 @@ fn links(random: &mut Random) -> Vec<AnyBody> {
         .into()
 }
 
+/// Returns the rows of the path.
 fn rows() -> Vec<Vec<f64>> {
     let row = |k: usize| {
         let t = std::f64::consts::TAU * k as f64 / ROWS as f64;
@@ -112,6 +115,7 @@ fn rows() -> Vec<Vec<f64>> {
     (0..ROWS).map(row).collect()
 }
 
+/// Draws an obstacle.
 fn obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
     let size = random.range(0.03, 0.1);
     let body = if solids {
@@ -127,7 +131,7 @@ fn obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
     (body, Pose::new(random.rotation(), at).expect("a pose"))
 }
 
-/// All links against all obstacles, and those against each other that are no neighbours.
+/// Checks all links against all obstacles, and against each other except for neighbours.
 fn cast<'a>(
     arm: &'a Mechanism,
     path: &'a JointPath,
@@ -140,7 +144,7 @@ fn cast<'a>(
         carried.chain(obstacles.iter().map(|(body, pose)| PathBody::standing(body.at(*pose))));
     let (own, all) = (links.len(), links.len() + obstacles.len());
     let pairs = (0..own).flat_map(|a| (own..all).map(move |b| [a, b]));
-    // The wrist's links are made into each other.
+    // The links of the wrist are built into each other.
     let apart = [[0, 2], [0, 3], [0, 4], [0, 5], [1, 3], [1, 4], [1, 5], [2, 4], [2, 5]];
     PathCast::new(arm, path, bodies.collect(), pairs.chain(apart).collect())
 }

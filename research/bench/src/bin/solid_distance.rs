@@ -1,9 +1,10 @@
-//! `solid_distance`: how far apart two meshes are, beside `parry3d-f64`'s distance of two triangle meshes.
+//! `solid_distance`: compares the distance of two meshes with the distance of two triangle meshes in
+//! `parry3d-f64`.
 //!
-//! A pair is asked in random rotations: *apart*, by 0.3 to 1 times the sum of the radii beyond balls around them; and
-//! at a *gap* of a share of that sum, put there along the normal of their distance. A rod in a nut is asked in the
-//! thread, where the clearance is the same all around. Each query is timed alone, both libraries on the same
-//! settings, in blocks.
+//! Pairs have random rotations. *Apart*, the balls around the meshes have a distance of 0.3 to 1 times the sum
+//! of their radii. At a *gap*, the meshes have a distance of a share of that sum, along the normal of their
+//! distance. A rod in a nut is measured in the thread, where the clearance is uniform. Each query is measured
+//! alone, with both libraries on the same settings, in blocks.
 
 use std::process::ExitCode;
 
@@ -20,13 +21,14 @@ use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-/// Gaps as shares of the sum of the radii; the first stands for bodies that are apart.
+/// Gaps as shares of the sum of the radii; the first value stands for bodies apart.
 const GAPS: [f64; 4] = [f64::INFINITY, 1e-2, 1e-4, 1e-9];
-/// Queries of one library in a row.
+/// Number of queries of one library in a row.
 const BLOCK: usize = 25;
 
 fn main() -> ExitCode {
-    let about = "Measures distances of solids and of parry3d-f64's triangle meshes on the same settings; prints a table";
+    let about =
+        "Compares distances of solids with those of triangle meshes in parry3d-f64; prints a table";
     harness::run("solid_distance", about, |run, meshes: &MeshArguments| {
         let columns = "pair:<44=name; facets:>9; ours:>11.1=median_ns ÷ 1e3 us; p99:>11.0=p99_ns ÷ 1e3 us;
             parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>6.2=ratio_of_medians; mean:>7.2=ratio; nodes:>9; leaves:>8;
@@ -56,7 +58,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Two meshes by name.
+/// Returns the pairs of meshes with their names.
 fn pairs(meshes: &MeshArguments) -> Vec<(String, [Mesh; 2])> {
     let ball = || bumpy_ball(16_000);
     let plate = || perforated_plate([6, 4], 0.4, 32);
@@ -71,7 +73,7 @@ fn pairs(meshes: &MeshArguments) -> Vec<(String, [Mesh; 2])> {
     meshes.pairs(made, &files)
 }
 
-/// So many poses of both bodies, apart or at a gap.
+/// Draws `count` poses of both bodies, apart or at a gap.
 fn placements([p, q]: [&Solid; 2], gap: f64, count: usize) -> Vec<[Pose; 2]> {
     let size = reach(p.vertices()) + reach(q.vertices());
     let mut random = Random::stream(27, &[p.triangles().len() as u64]);
@@ -91,7 +93,7 @@ fn placements([p, q]: [&Solid; 2], gap: f64, count: usize) -> Vec<[Pose; 2]> {
     (0..count).filter_map(|_| draw()).collect()
 }
 
-/// A rod turned and moved on as its thread asks.
+/// Returns poses of a rod that follows its thread.
 fn in_thread(count: usize) -> Vec<[Pose; 2]> {
     let turn = |k: usize| {
         let angle = 0.3 + 0.7 * k as f64;
@@ -102,6 +104,7 @@ fn in_thread(count: usize) -> Vec<[Pose; 2]> {
     (0..count).filter_map(|k| Some([turn(k)?, Pose::IDENTITY])).collect()
 }
 
+/// Measures a pair.
 fn measure(
     name: &str,
     meshes: [&Mesh; 2],

@@ -1,17 +1,16 @@
-//! `solids`: meshes that are not convex, beside `parry3d-f64`'s cast of two triangle meshes.
+//! `solids`: compares casts of non-convex meshes with the cast of two triangle meshes in `parry3d-f64`.
 //!
-//! Four groups. *Pairs*: random rotations and directions, the moving mesh starting beside the fixed
-//! one. *Convex*: the same of convex bodies, beside the cast of convex polyhedra as well. *Growth*: the same bumpy ball in more and more facets. *Flat*: two slabs, of few facets or many in one
-//! plane, resting, sliding, parting, with a gap, and passing over each other. Of all each query is timed
-//! alone, both libraries on the same settings, fifty at a time in turns: a query of a library behind one of the other
-//! would find the caches full of the other's.
+//! There are four groups. *Pairs* have random rotations and directions. *Convex* measures pairs of convex
+//! bodies, also with the cast of convex polyhedra. *Growth* measures the same bumpy ball with more and more
+//! facets. *Flat* measures two slabs with few or many facets in one plane: resting, sliding, parting, with a
+//! gap, or passing over each other. Each query is measured alone, with both libraries on the same settings, 50
+//! at a time in turns. Otherwise the caches would contain the data of the other library.
 //!
-//! A pair starts in four ways. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
-//! one, up to 0.7 times it aside, whether they meet or not. *Near*: of these settings those that meet,
-//! the moving mesh put forward to [`NEAR`] times the sum before it meets the fixed one. *Near miss*: those
-//! that meet, started as far, the moving mesh put aside along a random axis until it misses the fixed one
-//! by at most [`MISS`] times the sum, found by halving between none and twice the sum. *Touching*: put forward until it
-//! meets the fixed one, and by [`SUNK`] times the sum more.
+//! A pair has four kinds of starts. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
+//! one and up to 0.7 times aside. *Near*: the meshes meet, and the start is [`NEAR`] times the sum before the
+//! contact. *Near miss*: a near start is shifted along a random axis until the meshes miss each other by at
+//! most [`MISS`] times the sum (bisection). *Touching*: the moving mesh starts [`SUNK`] times the sum beyond
+//! the contact.
 
 use std::process::ExitCode;
 
@@ -28,20 +27,20 @@ use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-/// Two answers agree when they differ by less than this share of the bodies' size.
+/// Two answers agree if they differ by less than this share of the bodies' size.
 const AGREEMENT: f64 = 1e-4;
-/// Shares of the sum of the radii: how far before they meet bodies start that start near, and the most by
-/// which they miss each other narrowly.
+/// Shares of the sum of the radii: the distance of near starts from the contact, and the largest gap of a near
+/// miss.
 const NEAR: f64 = 0.02;
 const MISS: f64 = 0.01;
-/// The same: how deep bodies overlap that touch.
+/// Depth of touching starts, as a share of the sum of the radii.
 const SUNK: f64 = 1e-6;
-/// Queries of one library in a row.
+/// Number of queries of one library in a row.
 const BLOCK: usize = 50;
 
 fn main() -> ExitCode {
     let about =
-        "Measures solids and parry3d-f64's triangle meshes on the same settings; prints a table";
+        "Compares solids with triangle meshes in parry3d-f64 on the same settings; prints a table";
     harness::run("solids", about, |run, meshes: &MeshArguments| {
         let columns = "what:<48=name; facets:>9; ours:>11.2=median_ns ÷ 1e3 us; mean:>11.2=mean_ns ÷ 1e3 us;
             p99:>9.0=p99_ns ÷ 1e3 us; parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>8.2=ratio_of_medians; hits:>5";
@@ -62,14 +61,14 @@ fn main() -> ExitCode {
     })
 }
 
-/// Two meshes to measure with.
+/// A pair of meshes.
 struct Pair {
     group: &'static str,
     name: String,
     bodies: [Mesh; 2],
 }
 
-/// Convex bodies.
+/// Returns the convex pairs.
 fn convex_pairs() -> Vec<Pair> {
     let cube = || slab(DVec3::splat(-0.5), DVec3::splat(0.5), [1, 1, 1]);
     let block = || slab(DVec3::new(-1.0, -0.4, -0.1), DVec3::new(1.0, 0.4, 0.1), [1, 1, 1]);
@@ -85,6 +84,7 @@ fn convex_pairs() -> Vec<Pair> {
         .collect()
 }
 
+/// Returns the pairs that are not convex.
 fn pairs(meshes: &MeshArguments) -> Vec<Pair> {
     let ball = || bumpy_ball(16_000);
     let plate = || perforated_plate([6, 4], 0.4, 32);
@@ -109,7 +109,7 @@ fn pairs(meshes: &MeshArguments) -> Vec<Pair> {
     pairs.map(|(name, bodies)| Pair { group: "pairs", name, bodies }).collect()
 }
 
-/// How a pair starts: see the module's head.
+/// The kind of start of a pair; see the module documentation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Start {
     Far,
@@ -137,7 +137,7 @@ struct Placement {
 }
 
 impl Placement {
-    /// The moving body beside the fixed one, heading for it, more or less.
+    /// Draws a far start: the moving body beyond the reach of the fixed one, directed roughly towards it.
     fn draw(radii: [f64; 2], random: &mut Random) -> Self {
         let direction = random.direction();
         let reach = radii[0] + radii[1];
@@ -148,18 +148,18 @@ impl Placement {
         Self { poses, direction }
     }
 
-    /// The question about two bodies here.
+    /// Returns the cast of two bodies from this placement.
     fn cast<'a>(&self, p: &'a Solid, q: &'a Solid) -> Cast<'a, Solid> {
         let [moving, fixed] = self.poses;
         Cast::new(p.at(moving), q.at(fixed), self.direction).expect("poses in range")
     }
 
-    /// The distance after which the bodies meet, if they do.
+    /// Returns the distance until the bodies meet, if they meet.
     fn distance(&self, [p, q]: [&Solid; 2], workspace: &mut Workspace) -> Option<f64> {
         self.cast(p, q).clearance_in(workspace).ok()?.distance().filter(|d| d.is_finite())
     }
 
-    /// Of bodies that meet the same, the moving one put aside until they do not.
+    /// Shifts the moving body of a meeting pair sideways until it misses the other one.
     fn missing(&self, aside: DVec3, bodies: [&Solid; 2], workspace: &mut Workspace) -> Self {
         let (mut meets, mut misses) = (0.0, 2.0);
         while misses - meets > MISS {
@@ -170,7 +170,7 @@ impl Placement {
         self.moved(aside * misses)
     }
 
-    /// The same with the moving body elsewhere.
+    /// Returns the placement with the moving body translated.
     fn moved(&self, by: DVec3) -> Self {
         let [moving, fixed] = self.poses;
         let at = moving.translation() + by;
@@ -180,7 +180,7 @@ impl Placement {
 }
 
 impl Pair {
-    /// So many settings.
+    /// Draws `count` placements.
     fn placements(
         &self,
         bodies: [&Solid; 2],
@@ -209,10 +209,11 @@ impl Pair {
             let aside = random.direction().reject_from_normalized(placement.direction);
             Some(placement.missing(aside.normalize_or_zero() * size, bodies, &mut workspace))
         };
-        // Not all that are drawn meet.
+        // Not all drawn placements meet.
         (0..100 * count).filter_map(|_| draw()).take(count).collect()
     }
 
+    /// Measures the pair from a kind of start.
     fn measure(&self, start: Start, run: &mut Run) {
         let (Some(p), Some(q)) = (solid(&self.bodies[0]), solid(&self.bodies[1])) else { return };
         let count = if start == Start::Far { run.choose(60, 300) } else { 60 };
@@ -236,14 +237,14 @@ impl Pair {
     }
 }
 
-/// Times both libraries on the same settings.
+/// Measures both libraries on the same settings.
 fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement]) -> Value {
     let meshes = [p, q].map(|body| triangle_mesh(body.vertices(), body.triangles()));
     let size: f64 = [p, q].map(|body| body.bounds().size().length()).into_iter().sum();
     let stopwatch = Stopwatch::new();
     let (mut hits, mut apart) = (0, 0);
     let mut workspace = Workspace::default();
-    // What a solid prepares in its first query is no part of the others.
+    // The preparation of a solid in its first query does not count.
     placements.first().and_then(|first| first.distance([p, q], &mut workspace));
     let times = Beside::in_blocks(
         placements,
@@ -279,7 +280,7 @@ fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement
     merged(times.to_json(), row)
 }
 
-/// Times the same bodies as solids and as convex polyhedra.
+/// Measures the same bodies as solids and as convex polyhedra.
 fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Beside> {
     let hull = |body: &Solid| ConvexPolyhedron::from_points(body.vertices()).ok();
     let (a, b) = (hull(p)?, hull(q)?);
@@ -297,7 +298,7 @@ fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Beside> {
     Some(Beside::in_blocks(placements, BLOCK, solids, polyhedra, |(), ()| ()))
 }
 
-/// The same body in more and more facets.
+/// Measures the same body with more and more facets.
 fn growth(run: &mut Run) {
     let sizes = [16_000, 64_000, 256_000, 1_000_000];
     for size in run.choose(vec![sizes[0], sizes[3]], sizes.into()) {
@@ -314,7 +315,7 @@ fn growth(run: &mut Run) {
     }
 }
 
-/// A slab on another one, at random places.
+/// Measures a slab on another one, at random places.
 fn flat(run: &mut Run) {
     let oblique = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
     let cases = [

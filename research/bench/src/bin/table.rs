@@ -1,9 +1,9 @@
-//! `table`: all solvers and `parry3d-f64` in the same run on the same settings.
+//! `table`: compares all solvers and `parry3d-f64` in one run on the same settings.
 //!
-//! A query is timed alone, with the clock's own cost taken off. The solvers take turns, each on a
-//! block of settings that none of the others has just visited: each meets its bodies as cold as a
-//! program that does many different queries does, and a disturbance of the machine hits all of
-//! them. *Cold* rows go through 4 MiB of other data before each query.
+//! Each query is measured alone; the cost of the clock is subtracted. The solvers take turns on blocks of
+//! settings that no other solver has just visited. The bodies are thus as cold as in a program with many
+//! different queries, and a disturbance of the machine affects all solvers. In *cold* rows, a pass over 4 MiB
+//! of other data precedes each query.
 
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -24,10 +24,10 @@ use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
 struct Own {
-    /// Only these rows
+    /// Measure only these rows
     #[arg(long, value_enum)]
     group: Option<Group>,
-    /// Of random positions only shapes with this in their names
+    /// Of random positions, measure only shapes whose names contain this text
     #[arg(long)]
     shape: Option<String>,
 }
@@ -38,7 +38,7 @@ enum Group {
     General,
     /// Aligned, resting, edge over edge
     Ties,
-    /// The same after other work
+    /// Ties after other work
     Cold,
 }
 
@@ -47,18 +47,18 @@ const SOLVERS: [(&str, Solver); 3] =
 
 const SIZES: [usize; 8] = [8, 32, 128, 512, 2_000, 10_000, 50_000, 200_000];
 
-/// Settings that one solver works through before the next takes its turn.
+/// Number of settings that one solver answers before the next.
 const BLOCK: usize = 25;
 
-/// Our solvers and parry.
+/// Number of contestants: our solvers and parry.
 const COMPARED: usize = SOLVERS.len() + 1;
 
-/// Two answers agree when they differ by less than this share of the bodies' length; parry stops at
-/// about as much.
+/// Two answers agree if they differ by less than this share of the bodies' length. Parry stops at about this
+/// accuracy.
 const AGREEMENT: f64 = 1e-4;
 
 fn main() -> ExitCode {
-    let about = "Measures all solvers and parry3d-f64 on the same settings; prints a table";
+    let about = "Compares all solvers and parry3d-f64 on the same settings; prints a table";
     harness::run("table", about, |run, own: &Own| {
         let legend = "ns: median and 99th percentile; x: parry's median over ours, mx: parry's mean over ours \
              (means without the slowest hundredth); planar problems and supports on average";
@@ -97,7 +97,7 @@ const COLUMNS: &str = "shape:<18; n:>6=vertices; :<16=meeting; build ms:>8.2=bui
     s port:>6.1=portal/supports; fail:>4.0=cta/failures + portal/failures + auto/failures;
     diff:>4.0=parry_disagreements + parry/failures";
 
-/// Which shapes in which sizes: all sizes of ellipsoids; of the others some.
+/// Returns the shapes and sizes: all sizes of ellipsoids, and some sizes of the others.
 fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
     use Shape::{
         Bicone, Box, Chamfered, Cone, Cylinder, Ellipsoid, Frustum, HalfEllipsoid, Needle, Plate,
@@ -129,20 +129,21 @@ fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
     rows.into_iter().flat_map(of).collect()
 }
 
-/// Bytes that are gone through before each query where the caches are to be cold.
+/// Bytes of other data read before each query for cold caches.
 const OTHER: usize = 4 << 20;
 
-/// Pairs of bodies and settings of them.
+/// Pairs of bodies and their settings.
 struct Cases {
     pairs: Vec<Bodies>,
-    /// With the number of its pair.
+    /// Each setting with the number of its pair.
     settings: Vec<(usize, Setting)>,
     build: Duration,
-    /// What else is gone through before each query, if it is.
+    /// Data read before each query, for cold caches.
     other: Option<RefCell<Vec<u64>>>,
 }
 
 impl Cases {
+    /// Goes through the other data, if there is any.
     fn other_work(&self) {
         if let Some(other) = &self.other {
             other.borrow_mut().iter_mut().for_each(|x| *x = x.wrapping_add(1));
@@ -177,7 +178,7 @@ fn general(shape: Shape, n: usize, run: &mut Run) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// A row of tied settings.
+/// Returns a row of tied settings.
 fn tied(
     tie: Tie,
     placement: Placement,
@@ -196,12 +197,12 @@ fn tied(
     row((tie.name().into(), 0), name, &cases, run)
 }
 
-/// Asks `colltrans`.
+/// Answers a setting with `colltrans`.
 fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, QueryError> {
     setting.cast(bodies, &Options::default().with_solver(solver))?.first_contact()
 }
 
-/// Asks all settings of a block.
+/// Measures a solver on all settings of a block.
 fn measure(measured: &mut Measured, cases: &Cases, solver: Solver, block: &[(usize, Setting)]) {
     let stopwatch = Stopwatch::new();
     for (pair, setting) in block {
@@ -235,7 +236,7 @@ fn row((shape, asked): (String, usize), meeting: &str, cases: &Cases, run: &Run)
     })
 }
 
-/// Measures all solvers and parry, and counts the settings to which parry gave another answer.
+/// Measures all solvers and parry, and counts the settings with a different answer of parry.
 fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMPARED], u32) {
     let (mut measured, mut disagreements) = (<[Measured; COMPARED]>::default(), 0);
     let theirs: Vec<_> =
@@ -250,7 +251,7 @@ fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMP
             for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
                 measure(&mut ours[index], cases, solver, block(index));
             }
-            // Parry's linear support search at these sizes needs no second look.
+            // Parry's linear support search at these sizes needs no second measurement.
             if pass == 0 || vertices < 9_000 {
                 let differ = measure_parry(parry, cases, &theirs, block(SOLVERS.len()), pass == 0);
                 disagreements += differ;
@@ -260,7 +261,7 @@ fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMP
     (measured, disagreements)
 }
 
-/// Asks parry all settings of a block, and counts those to which it gives another answer if they are compared.
+/// Measures parry on all settings of a block. If `compare`, counts those with a different answer.
 fn measure_parry(
     measured: &mut Measured,
     cases: &Cases,
@@ -284,11 +285,11 @@ fn measure_parry(
     disagreements
 }
 
-/// Whether parry's answer is ours, within what parry promises.
+/// Whether parry's answer agrees with ours within parry's accuracy.
 fn agrees(setting: &Setting, bodies: &Bodies, theirs: Option<f64>) -> bool {
     match (ask(bodies, setting, Solver::Portal), theirs) {
         (Ok(Outcome::Contact(contact)), Some(time)) => {
-            // Parry knows no contacts that lie behind.
+            // Parry does not report contacts behind the start.
             (contact.translation - time).abs() <= AGREEMENT || contact.translation < AGREEMENT
         }
         (Ok(Outcome::Separated(_)), None) | (Ok(Outcome::Grazing(_)), _) => true,

@@ -1,5 +1,5 @@
-//! Plans, judged by what does not share the planner's code: boxes in the frame of each direction for how far it is, rays for
-//! what is in the way. Only whether a shorter direction is free is asked of the library, pair by pair.
+//! Judges plans without the planner's code: boxes in the frame of each direction for the travel, rays for
+//! obstructions. Only the freedom of shorter directions is determined by the library, pair by pair.
 
 use std::collections::HashMap;
 
@@ -10,25 +10,26 @@ use colltrans_assembly::{Bodies, Findings, Room};
 use colltrans_testkit::random::Random;
 use glam::{DVec2, DVec3};
 
-/// Rays of each part of a step.
+/// Number of rays of each part of a step.
 const RAYS: usize = 200;
-/// Directions of the sphere that are asked beside those of the plan.
+/// Number of directions of the sphere checked in addition to those of the plan.
 const SAMPLES: usize = 162;
-/// How deep below its surface rays of a part begin, as a share of the assembly's size, beside the tolerance of each pair.
+/// Depth of the ray origins below the surface, as a share of the assembly's size, in addition to the tolerance
+/// of each pair.
 const BELOW: f64 = 1e-6;
 
-/// What came of it.
+/// The result of the judgement.
 #[derive(Default)]
 pub(crate) struct Judged {
-    /// Lengths of all steps in one straight move.
+    /// Sum of the travels of all steps in one straight move.
     pub(crate) travel: f64,
-    /// The least that each of them may be, over all directions asked, added.
+    /// Sum of the least possible travels, over all checked directions.
     pub(crate) least: f64,
-    /// The largest ratio of the two.
+    /// The largest ratio of travel to least travel.
     pub(crate) worst: f64,
-    /// Rays from points of what moves, along its way.
+    /// Number of rays from points of moving parts, along their way.
     pub(crate) rays: usize,
-    /// By step, those that meet what is left.
+    /// For each step, the number of rays that meet the remaining parts.
     pub(crate) crossing: Vec<(usize, usize)>,
 }
 
@@ -65,7 +66,7 @@ impl Judged {
             }
             judged.travel += own;
             judged.least += least;
-            // What is short against all that is there is as good as nothing.
+            // Travels that are short relative to the assembly count as 0.
             if own > 1e-3 * size {
                 judged.worst = judged.worst.max(own / least.max(1e-3 * size));
             }
@@ -79,6 +80,7 @@ impl Judged {
     }
 }
 
+/// Whether a group can leave along a direction.
 fn is_free(
     bodies: &Bodies,
     group: &[usize],
@@ -91,14 +93,15 @@ fn is_free(
     pairs.all(|pair| bodies.room(pair, d, None, start, workspace) == Room::Free)
 }
 
-/// All parts in frames whose third axis is a direction.
+/// The boxes of all parts in frames whose third axis is a direction.
 struct Frames<'a> {
     bodies: &'a Bodies<'a>,
     known: HashMap<[u64; 3], Vec<Aabb>>,
 }
 
 impl Frames<'_> {
-    /// How far a group goes until its boxes are beyond those of all that is left and beside its way.
+    /// Returns the travel of a group until its boxes are beyond those of the remaining parts that lie in its
+    /// way.
     fn travel(&mut self, group: &[usize], left: &[usize], d: DVec3) -> f64 {
         let parts = self.bodies.assembly().parts();
         let boxes = self.known.entry(d.to_array().map(f64::to_bits)).or_insert_with(|| {
@@ -121,8 +124,8 @@ impl Frames<'_> {
     }
 }
 
-/// How many rays from points below the surface of what moves meet what is left. Of two parts whose overlap at the start is
-/// let pass nothing is asked.
+/// Counts the rays from points below the surface of the moving parts that meet remaining parts. Pairs with an
+/// accepted overlap at the start are left out.
 fn crossing(bodies: &Bodies, group: &[usize], left: &[usize], d: DVec3, seed: usize) -> usize {
     let assembly = bodies.assembly();
     let (u, v) = d.any_orthonormal_pair();
@@ -165,13 +168,14 @@ fn crossing(bodies: &Bodies, group: &[usize], left: &[usize], d: DVec3, seed: us
     crossing
 }
 
-/// A point as seen along a direction, which goes that way to infinity.
+/// A point in the projection along a direction, with a ray to infinity.
 struct Ray {
     at: DVec2,
     from: f64,
 }
 
 impl Ray {
+    /// Whether the ray meets a triangle.
     fn meets(&self, heights: [f64; 3], [a, b, c]: [DVec2; 3]) -> bool {
         let whole = (b - a).perp_dot(c - a);
         let shares = [
@@ -185,7 +189,7 @@ impl Ray {
     }
 }
 
-/// Points below facets, each drawn by its area.
+/// Draws points below facets, each facet with its area as weight.
 fn points(
     vertices: &[DVec3],
     triangles: &[[u32; 3]],

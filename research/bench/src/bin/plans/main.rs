@@ -1,6 +1,7 @@
-//! Plans that a mechanic would follow: machines whose right order is known, and real ones where they are. How far each comes
-//! apart, with which reason if not wholly; how much longer its ways are than the shortest that are free, and what rays say
-//! of them ([`judge`]); and how long it takes.
+//! `plans`: compares plans with known disassembly orders, on generated machines and on real assemblies.
+//!
+//! The figures are the number of separated parts, with the reason for the others; the travel relative to the
+//! shortest free travel; the result of rays ([`judge`]); and the time.
 
 mod judge;
 
@@ -27,25 +28,25 @@ use judge::Judged;
 
 #[derive(Debug, Args)]
 struct Own {
-    /// Where real assemblies are
+    /// Folder of real assemblies
     #[arg(long, default_value = "../shared/data")]
     data: PathBuf,
-    /// Only those whose names begin so
+    /// Measure only assemblies whose names begin with this text
     #[arg(long, default_value = "")]
     only: String,
-    /// How much longer it takes if all is turned anyhow, so that no facets that touch are in one plane to the bit
+    /// Measure the additional time for a rotated machine, in which touching facets are not exactly coplanar
     #[arg(long)]
     turned: bool,
-    /// Machines of three million facets
+    /// Measure machines with three million facets
     #[arg(long)]
     fine: bool,
-    /// Also write the parts of the machines that are made here, for other judges
+    /// Also write the parts of the generated machines into this folder
     #[arg(long)]
     parts: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
-    let about = "Plans how machines come apart, and judges the plans";
+    let about = "Plans the disassembly of machines, and judges the plans";
     harness::run("plans", about, |run, own: &Own| {
         let made = if own.fine && !own.turned { fine() } else { machines() };
         for (name, parts) in made.into_iter().filter(|(name, _)| name.starts_with(&own.only)) {
@@ -70,6 +71,7 @@ fn main() -> ExitCode {
     })
 }
 
+/// Returns the generated machines.
 fn machines() -> Vec<(String, Vec<NamedPart>)> {
     let mut all: Vec<_> =
         [8, 16, 32, 64, 256].map(|bolts| (format!("flange_{bolts}"), flange(bolts, 32))).into();
@@ -81,7 +83,8 @@ fn machines() -> Vec<(String, Vec<NamedPart>)> {
     all
 }
 
-/// Of some three million facets: long thin ones, as programs make them of large cylinders, and many small ones.
+/// Returns machines with about three million facets: long thin ones, as CAD programs make them for large
+/// cylinders, and many small ones.
 fn fine() -> Vec<(String, Vec<NamedPart>)> {
     let quartered = |sides: usize, times: usize| {
         let mut parts = flange(8, sides);
@@ -95,6 +98,7 @@ fn fine() -> Vec<(String, Vec<NamedPart>)> {
     vec![("fine_sides".into(), quartered(880, 2)), ("fine_facets".into(), quartered(56, 4))]
 }
 
+/// Returns the names and folders of the real assemblies.
 fn real(data: &Path) -> Vec<(String, PathBuf)> {
     let mut all = vec![("gearbox".to_owned(), data.join("gearbox"))];
     let folder = data.join("assemblies");
@@ -109,6 +113,7 @@ fn real(data: &Path) -> Vec<(String, PathBuf)> {
     all
 }
 
+/// Builds an assembly at a pose.
 fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Failure> {
     let part = |(name, bodies): &NamedPart| -> Result<Part, Failure> {
         let piece = |mesh: &colltrans_testkit::shapes::Mesh| Piece {
@@ -121,7 +126,7 @@ fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Failure> 
     Ok(Assembly::new(parts)?.with_unit("mm"))
 }
 
-/// Each body as a file, and a manifest of all parts.
+/// Writes each body as a file, and a manifest of all parts.
 fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder)?;
     let mut entries = Vec::new();
@@ -139,7 +144,7 @@ fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
     Ok(std::fs::write(folder.join("assembly.json"), manifest.to_string())?)
 }
 
-/// A plan without options, and if it is not whole another one with what is suggested.
+/// Plans without options; if that plan is incomplete, plans again with the suggested options.
 fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Failure> {
     let question = Question::default();
     let fit = Fit::default_for(assembly);
@@ -158,7 +163,7 @@ fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Failure> 
     Ok(json!({ "name": name, "plans": told }))
 }
 
-/// What is found, and what of the time went where.
+/// Plans, and measures the time of the phases.
 fn asked<'a>(
     question: &Question,
     bodies: &'a Bodies<'a>,
@@ -182,6 +187,7 @@ fn asked<'a>(
     Ok((found, format!("of it {} s; {directions} directions", each.join(", "))))
 }
 
+/// Returns the row of a plan.
 fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {
     let (plan, assembly) = (&found.plan, found.bodies.assembly());
     let facets: usize = assembly.parts().iter().map(Part::facets).sum();
@@ -216,7 +222,7 @@ fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool)
     })
 }
 
-/// The same machine as it is and turned anyhow, in turns.
+/// Measures the same machine in its original pose and rotated, in turns.
 fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Failure> {
     let mut random = Random::new(31);
     let mut ratios = Vec::new();
@@ -248,7 +254,7 @@ fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Failure> {
     Ok(json!({ "name": name, "ratios": ratios }))
 }
 
-/// Time of all processors that this process takes, where the system tells it; else time on the wall.
+/// Processor time of this process where the system reports it; else wall-clock time.
 struct Clock {
     wall: Instant,
     spent: Option<f64>,
@@ -267,7 +273,7 @@ impl Clock {
     }
 }
 
-/// In hundredths of seconds, as Linux counts them for programs.
+/// Returns the processor time. Linux reports it in hundredths of a second.
 fn spent() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();

@@ -1,10 +1,11 @@
-//! The page's part on the collision translation algorithm, from runs of `paper`.
+//! Formats the part of the page on the collision translation algorithm, from runs of `paper`.
 
 use colltrans_bench::harness::markdown;
 use serde_json::Value;
 
 use super::{provenance, rows};
 
+/// Formats the section.
 pub(super) fn section(run: &Value) -> String {
     let is_one_off = |row: &&Value| row["solvers"]["portal"].is_object();
     let failures: f64 = rows(run)
@@ -60,7 +61,7 @@ pub(super) fn section(run: &Value) -> String {
 /// Columns of the bodies.
 const BODIES: &str = "bodies:<=settings; vertices:,";
 
-/// Columns of the ratio, planar problems and exchanges of one solver.
+/// Declares the columns for the ratio, planar problems and exchanges of one solver.
 fn trio(head: &str, who: &str) -> String {
     format!(
         "{head}:~=solvers/{who}/ratio; planar:>.2=solvers/{who}/planar_problems; left:>.2=solvers/{who}/pivots"

@@ -1,10 +1,11 @@
-//! The section about one pair that is asked many times.
+//! Formats the section on many casts of one pair.
 
 use colltrans_bench::harness::markdown;
 use serde_json::Value;
 
 use super::{number, provenance, rows};
 
+/// Formats the section.
 pub(super) fn section(run: &Value) -> String {
     let mut rows = rows(run).to_vec();
     for row in &mut rows {

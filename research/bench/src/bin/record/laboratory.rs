@@ -1,4 +1,4 @@
-//! The claims of the paper with their verdicts, from two runs of the laboratory with different seeds.
+//! Formats the claims of the paper with their verdicts, from two runs of the laboratory with different seeds.
 
 use std::fmt::Write as _;
 
@@ -8,12 +8,12 @@ use serde_json::Value;
 
 use super::{Failure, number, string};
 
-/// The verdicts in the order in which they are counted.
+/// The verdicts in the order of their counts.
 const VERDICTS: [Verdict; 4] =
     [Verdict::Holds, Verdict::Better, Verdict::Undecided, Verdict::Fails];
 
-/// Where the numbers come from, every claim of the first run, and why some do not hold. Runs that were
-/// broken off before all claims were tested are refused.
+/// Formats the provenance, every claim of the first run, and the reasons of those that do not hold. Rejects
+/// runs without results for all claims.
 pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, Failure> {
     let mut page = String::new();
     origin(&mut page, run, again, all)?;
@@ -43,7 +43,7 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
     Ok(page)
 }
 
-/// The claims about thin faces, with what both readings of "thin" make of them.
+/// Formats the claims about thin faces, with their results under both readings of "thin".
 fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
     let [(first, _), (second, _)] = READINGS;
     let of = |id: &str| list(run).iter().find(|claim| string(claim, "id") == id);
@@ -81,15 +81,18 @@ fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Returns the claims of a run.
 fn list(run: &Value) -> &[Value] {
     run["claims"].as_array().map_or(&[], Vec::as_slice)
 }
 
+/// Returns the verdict of the other run.
 fn of_again<'v>(claim: &Value, again: &'v Value) -> Option<&'v str> {
     let same = list(again).iter().find(|other| string(other, "id") == string(claim, "id"))?;
     Some(string(same, "verdict"))
 }
 
+/// Formats the provenance.
 fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(), Failure> {
     for run in [run, again] {
         if list(run).len() < all {
@@ -135,21 +138,25 @@ fn overlap(claim: &Value, again: &Value) -> bool {
     })
 }
 
+/// Returns the measured numbers of a claim.
 fn numbers(claim: &Value) -> &[Value] {
     claim["measured"].as_array().map_or(&[], Vec::as_slice)
 }
 
+/// Formats an estimate with its interval.
 fn estimate(one: &Value) -> String {
     let [value, low, high] = ["value", "low", "high"].map(|key| number(one, key));
     Estimate { value, low, high }.to_string()
 }
 
+/// Formats the measured numbers of a claim.
 fn measured(claim: &Value) -> String {
     let each =
         numbers(claim).iter().map(|one| format!("{} {}", estimate(one), string(one, "what")));
     each.collect::<Vec<_>>().join("; ")
 }
 
+/// Formats the verdict, with a deviating one of the other run.
 fn verdict(claim: &Value, again: &Value) -> String {
     let first = string(claim, "verdict");
     match of_again(claim, again) {
@@ -180,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn every_claim_has_a_line_and_other_verdicts_are_said() {
+    fn every_claim_has_a_line_with_deviating_verdicts() {
         let page =
             claims(&run(["holds", "undecided"]), &run(["holds", "does not hold"]), 2).unwrap();
         let row = "| It is fast. (`5`) | 1/5; V | 12.3 (0.50 to 346) ratio | holds |\n";
@@ -195,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn both_readings_of_thin_stand_side_by_side() {
+    fn readings_of_thin_are_in_one_table() {
         let mut run = run(["holds", "undecided"]);
         for (claim, id) in
             run["claims"].as_array_mut().unwrap().iter_mut().zip(["7-x-stretch", "7-x-meridians"])
@@ -208,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_that_were_broken_off_are_refused() {
+    fn incomplete_runs_are_rejected() {
         let run = run(["holds", "undecided"]);
         assert!(claims(&run, &run, 2).is_ok() && claims(&run, &run, 3).is_err());
     }

@@ -1,10 +1,10 @@
-//! `record`: from the dated runs in `docs/measurements/` to what people read.
+//! `record`: writes pages, pictures and tables from the dated runs in `docs/measurements/`.
 //!
-//! The runs are the JSON files that `table`, `paper`, `coherence`, `bulk` and `solids` write, and the text that
-//! `campaign` prints, named `YYYY-MM-DD-WHAT.json` or `.txt`. Of each kind the newest one goes into
-//! `docs/measurements.md`, the picture `docs/speed.svg` and the table of the README, so that no
-//! number there is typed by hand. The claims of the laboratory (`claims.json` of two runs with
-//! different seeds, `laboratory` and `laboratory-again`) go into `docs/laboratory.md`.
+//! The runs are the JSON files of `table`, `paper`, `coherence`, `bulk` and `solids`, and the output of
+//! `campaign`, named `YYYY-MM-DD-WHAT.json` or `.txt`. The newest run of each kind goes into
+//! `docs/measurements.md`, the picture `docs/speed.svg` and the table of the README. No number there is typed
+//! by hand. The claims of the laboratory go into `docs/laboratory.md`. They come from `claims.json` of two runs
+//! with different seeds, `laboratory` and `laboratory-again`.
 
 mod algorithm;
 mod bulk;
@@ -24,14 +24,14 @@ use colltrans_lab::draw::draw;
 use colltrans_lab::finding::{Axis, Figure, Point, Series};
 use serde_json::Value;
 
-/// Makes docs/measurements.md, docs/speed.svg, the README's table and the claims in
-/// docs/laboratory.md from the runs in docs/measurements
+/// Writes docs/measurements.md, docs/speed.svg, the README's table and the claims in docs/laboratory.md from
+/// the runs in docs/measurements
 #[derive(Debug, Parser)]
 struct Command {
-    /// The root of the repository
+    /// Root of the repository
     #[arg(default_value = ".")]
     root: PathBuf,
-    /// Write nothing; fail if something would change
+    /// Write nothing; fail if a file would change
     #[arg(long)]
     check: bool,
 }
@@ -59,10 +59,10 @@ fn main() -> ExitCode {
 
 type Failure = Box<dyn Error>;
 
-/// Makes a section of the page from a run.
+/// Formats a section of the page from a run.
 type Section = fn(&Value) -> String;
 
-/// The newest run of each kind, by the kind: the file's name without date and ending.
+/// Returns the newest run of each kind. The kind is the file's name without date and extension.
 fn newest(folder: &Path) -> Result<BTreeMap<String, (String, String)>, Failure> {
     let mut runs = BTreeMap::new();
     let mut names: Vec<String> = fs::read_dir(folder)
@@ -81,7 +81,7 @@ fn newest(folder: &Path) -> Result<BTreeMap<String, (String, String)>, Failure> 
     Ok(runs)
 }
 
-/// Writes what has changed, or only says so.
+/// Writes the changed files, or only lists them.
 fn run(command: &Command) -> Result<Vec<String>, Failure> {
     let docs = command.root.join("docs");
     let runs = newest(&docs.join("measurements"))?;
@@ -147,6 +147,7 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
     Ok(changed)
 }
 
+/// Returns the title of a kind.
 fn title(kind: &str) -> String {
     let mut letters = kind.replace('-', " ").chars().collect::<Vec<_>>();
     if let Some(first) = letters.first_mut() {
@@ -155,25 +156,28 @@ fn title(kind: &str) -> String {
     letters.into_iter().collect()
 }
 
+/// Returns the rows of a run.
 fn rows(run: &Value) -> &[Value] {
     run["rows"].as_array().map_or(&[], Vec::as_slice)
 }
 
+/// Returns a text of a row; `?` if it is missing.
 fn string<'v>(row: &'v Value, key: &str) -> &'v str {
     row[key].as_str().unwrap_or("?")
 }
 
-/// The figure at a JSON pointer without its first slash; NaN if there is none.
+/// Returns the figure at a JSON pointer without its first slash; NaN if there is none.
 fn number(row: &Value, path: &str) -> f64 {
     row.pointer(&format!("/{path}")).and_then(Value::as_f64).unwrap_or(f64::NAN)
 }
 
-/// The sum of the figures at these places in all rows that have them.
+/// Returns the sum of the figures at these pointers in all rows.
 fn sum(run: &Value, paths: &[String]) -> f64 {
     let figures = rows(run).iter().flat_map(|row| paths.iter().map(|path| number(row, path)));
     figures.filter(|figure| !figure.is_nan()).sum()
 }
 
+/// Formats the provenance of a run.
 fn provenance(run: &Value) -> String {
     let machine = &run["machine"];
     format!(
@@ -187,7 +191,7 @@ fn provenance(run: &Value) -> String {
     )
 }
 
-/// The command as one types it in the repository, without folders of the machine it ran on.
+/// Formats the command as typed in the repository, without folders of the original machine.
 fn cargo_command(run: &Value) -> String {
     let mut words = string(run, "command").split_whitespace();
     let program = words.next().unwrap_or_default();
@@ -199,16 +203,19 @@ fn cargo_command(run: &Value) -> String {
     line
 }
 
-/// The paper's algorithm, by key and name: all of it, or, in runs that have no more, where it starts roughly.
+/// Returns the key and the name of the paper's algorithm: the whole algorithm, or, in older runs, its rough
+/// start.
 fn paper(run: &Value) -> (&'static str, &'static str) {
     let is_whole = rows(run).iter().any(|row| row["cta"].is_object());
     if is_whole { ("cta", "`cta`") } else { ("rough", "`cta`, rough") }
 }
 
+/// Whether a row has tied settings.
 fn is_tied(row: &Value) -> bool {
     !["colliding", "separated"].contains(&string(row, "meeting"))
 }
 
+/// Formats the section on general positions.
 fn general(run: &Value) -> String {
     let (paper, name) = paper(run);
     let columns = format!(
@@ -229,6 +236,7 @@ fn general(run: &Value) -> String {
     )
 }
 
+/// Formats the section on ties.
 fn ties(run: &Value) -> String {
     let mut tied: Vec<Value> = rows(run).iter().filter(|row| is_tied(row)).cloned().collect();
     if tied.is_empty() {
@@ -252,6 +260,7 @@ fn ties(run: &Value) -> String {
     )
 }
 
+/// Formats the section on coherence.
 fn coherence(run: &Value) -> String {
     let is_whole = rows(run).iter().any(|row| row["solvers"]["cta"].is_object());
     let (paper, until) =
@@ -276,6 +285,7 @@ fn coherence(run: &Value) -> String {
     )
 }
 
+/// Formats the section on solids.
 fn solids(run: &Value) -> String {
     let ratio_of = |row: &Value| row["ratio_of_medians"].as_f64().unwrap_or(0.0);
     let mut sorted: Vec<Value> = rows(run).to_vec();
@@ -305,6 +315,7 @@ fn solids(run: &Value) -> String {
     )
 }
 
+/// Formats the section on building.
 fn building(run: &Value) -> String {
     let columns = "shape:<; vertices:,; bytes a vertex:>.0=bytes_per_vertex; ms:~=build_ms";
     format!(
@@ -315,7 +326,7 @@ fn building(run: &Value) -> String {
     )
 }
 
-/// Median times of colliding ellipsoids against the number of vertices.
+/// Draws the median times of colliding ellipsoids against the number of vertices.
 fn speed(run: &Value) -> Figure {
     let of = |who: &str, name: &str| Series {
         name: name.into(),
@@ -346,7 +357,7 @@ fn speed(run: &Value) -> Figure {
     }
 }
 
-/// Rows of the README's table: shape, and the number of vertices asked for (0: tied).
+/// Rows of the README's table: shape, and the number of vertices (0 for ties).
 const SMALL: [(&str, u64, &str); 9] = [
     ("ellipsoid", 8, "colliding"),
     ("ellipsoid", 128, "colliding"),
@@ -359,6 +370,7 @@ const SMALL: [(&str, u64, &str); 9] = [
     ("cubes face on face", 0, "identity"),
 ];
 
+/// Formats the README's table.
 fn small_table(run: &Value) -> Result<String, Failure> {
     let row = |(shape, asked, meeting): (&str, u64, &str)| {
         let mut of_shape = rows(run).iter().filter(|row| string(row, "shape") == shape);
@@ -376,10 +388,10 @@ fn small_table(run: &Value) -> Result<String, Failure> {
     ))
 }
 
-/// A page with other text between the markers `NAME: begin` and `NAME: end`.
+/// Replaces the text between the markers `NAME: begin` and `NAME: end` of a page.
 fn between(name: &str, page: &str, text: &str) -> Result<String, Failure> {
     let [begin, end] = ["begin", "end"].map(|edge| format!("<!-- {name}: {edge} -->"));
-    let missing = |marker: &str| format!("the marker {marker} is missing");
+    let missing = |marker: &str| format!("missing marker {marker}; add it to the page");
     let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;
     let (_, after) = rest.split_once(&end).ok_or_else(|| missing(&end))?;
     Ok(format!("{before}{begin}\n{text}{end}{after}"))
@@ -390,21 +402,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_replaced_between_its_markers() {
+    fn text_between_markers_is_replaced() {
         let page = |text: &str| format!("a\n<!-- x: begin -->\n{text}<!-- x: end -->\nb\n");
         assert_eq!(between("x", &page("old\n"), "new\n").unwrap(), page("new\n"));
         assert!(between("y", &page("old\n"), "new").is_err());
     }
 
     #[test]
-    fn pages_are_made_of_the_runs_beside_them() {
+    fn pages_match_the_newest_runs() {
         let root = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
         let changed = run(&Command { root, check: true }).unwrap();
         assert!(changed.is_empty(), "not up to date with docs/measurements: {changed:?}");
     }
 
     #[test]
-    fn commands_name_no_folders() {
+    fn commands_contain_no_folders() {
         let run = serde_json::json!({ "command": "table --quick --json /elsewhere/t.json" });
         let line = cargo_command(&run);
         assert_eq!(

@@ -1,5 +1,7 @@
-//! Fuzz targets for what the library reads as JSON: lines of batches, proofs, cases. An input begins with a
-//! byte: if it is even the rest is the text, else [`written::json`] changes a few values of a valid document.
+//! Contains the fuzz targets for JSON documents of the library: lines of batches, proofs, cases.
+//!
+//! An input begins with a byte. After an even byte, the rest is the text; otherwise [`written::json`] changes a
+//! few values of a valid document.
 
 use std::sync::LazyLock;
 
@@ -14,7 +16,7 @@ mod written;
 #[path = "batch/mod.rs"]
 mod batch;
 
-/// The text after the first byte, or a changed one of `seeds`.
+/// Returns the text after the first byte, or a changed one of `seeds`.
 fn text_of(bytes: &[u8], seeds: &[String]) -> Option<String> {
     let (&first, rest) = bytes.split_first()?;
     let text = if first % 2 == 0 {
@@ -25,21 +27,25 @@ fn text_of(bytes: &[u8], seeds: &[String]) -> Option<String> {
     String::from_utf8(text).ok()
 }
 
+/// Returns a unit cube.
 fn cube() -> ConvexPolyhedron {
     ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube")
 }
 
+/// Returns a cast of two cubes along x.
 fn cast(cube: &ConvexPolyhedron, start: DVec3) -> Cast<'_> {
     let start = Pose::from_translation(start).expect("a pose");
     Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X).expect("a query")
 }
 
+/// Runs a function on a cast of a rotating cube.
 fn motion(cube: &ConvexPolyhedron, run: impl FnOnce(&MotionCast<'_>) -> String) -> String {
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0).expect("a turn");
     let fixed = Pose::from_translation(DVec3::X * 1.2).expect("a pose");
     run(&MotionCast::new(cube.along(&turn), cube.at(fixed)).expect("a query"))
 }
 
+/// Reads lines of a batch.
 pub(crate) fn lines(bytes: &[u8]) {
     static SEEDS: LazyLock<Vec<String>> = LazyLock::new(|| {
         let body = r#"{"points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}"#;
@@ -60,6 +66,7 @@ pub(crate) fn lines(bytes: &[u8]) {
     batch::check(&text);
 }
 
+/// Reads proofs.
 pub(crate) fn proofs(bytes: &[u8]) {
     static SEEDS: LazyLock<Vec<String>> = LazyLock::new(|| {
         let cube = cube();
@@ -94,6 +101,7 @@ pub(crate) fn proofs(bytes: &[u8]) {
     }
 }
 
+/// Reads cases.
 pub(crate) fn cases(bytes: &[u8]) {
     static SEEDS: LazyLock<Vec<String>> = LazyLock::new(|| {
         let cube = cube();

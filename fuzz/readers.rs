@@ -1,7 +1,8 @@
-//! Fuzz targets for the readers of meshes, robots, tables and assemblies: arbitrary bytes as sources, from
-//! memory. Whatever they hold, the answer is a mesh, an assembly or an error. Inputs of the targets of one
-//! format begin with a byte: if it is even the rest is the file, else [`written`] generates the file from the
-//! rest. The corpora run as ordinary tests too
+//! Contains the fuzz targets for the readers of meshes, robots, tables and assemblies.
+//!
+//! The targets read arbitrary bytes as sources from memory. The result must be a mesh, an assembly or an error.
+//! Inputs of targets for one format begin with a byte: after an even byte, the rest is the file; otherwise
+//! [`written`] generates the file from the rest. The corpora are also ordinary tests
 //! (`crates/colltrans-assembly/tests/assembly/fuzz_corpus.rs`).
 
 use std::collections::BTreeMap;
@@ -20,6 +21,7 @@ mod written;
 const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
     4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
+/// Reads a source from memory, and checks the result.
 fn open(name: &str, bytes: &[u8]) {
     let mut files: BTreeMap<PathBuf, Vec<u8>> = BTreeMap::new();
     files.insert("c.off".into(), CUBE.into());
@@ -33,22 +35,23 @@ fn open(name: &str, bytes: &[u8]) {
     }
 }
 
-/// glTF, or GLB by how it begins.
+/// Reads GLB if the bytes begin with its mark, else glTF.
 pub(crate) fn gltf(bytes: &[u8]) {
     open(if bytes.starts_with(b"glTF") { "a.glb" } else { "a.gltf" }, bytes);
 }
 
-/// A robot.
+/// Reads a robot.
 pub(crate) fn urdf(bytes: &[u8]) {
     open("a.urdf", bytes);
 }
 
-/// A manifest: JSON if it begins with a brace, else TOML.
+/// Reads a manifest: JSON if it begins with a brace, else TOML.
 pub(crate) fn manifest(bytes: &[u8]) {
     open(if bytes.starts_with(b"{") { "a.json" } else { "a.toml" }, bytes);
 }
 
-/// A 3MF package, if it begins as a zip archive does; else the models of one, between lines of `----`.
+/// Reads a 3MF package if the bytes begin like a zip archive. Otherwise, the bytes are the models of a package,
+/// between lines of `----`.
 pub(crate) fn threemf(bytes: &[u8]) {
     if bytes.starts_with(b"PK") {
         return open("a.3mf", bytes);
@@ -65,7 +68,7 @@ pub(crate) fn threemf(bytes: &[u8]) {
     open("a.3mf", &zip.finish().expect("memory").into_inner());
 }
 
-/// The bytes of a file: those after the first byte, or what `generate` writes from them.
+/// Returns the bytes of a file: those after the first byte, or the output of `generate` from them.
 fn file_of(
     bytes: &[u8],
     generate: impl FnOnce(&mut Unstructured<'_>) -> arbitrary::Result<Vec<u8>>,
@@ -74,7 +77,7 @@ fn file_of(
     if first % 2 == 0 { Some(rest.to_vec()) } else { generate(&mut Unstructured::new(rest)).ok() }
 }
 
-/// Reads a mesh, and checks what the library promises of every mesh that it reads.
+/// Reads a mesh, and checks the guarantees for every mesh.
 fn mesh(format: Format, file: Option<Vec<u8>>) {
     let Some(file) = file else { return };
     match colltrans_mesh::parse(format, file, Path::new("a.mesh")) {
@@ -87,27 +90,32 @@ fn mesh(format: Format, file: Option<Vec<u8>>) {
     }
 }
 
+/// Reads an STL file.
 pub(crate) fn stl(bytes: &[u8]) {
     mesh(Format::Stl, file_of(bytes, written::stl));
 }
 
+/// Reads an OBJ file.
 pub(crate) fn obj(bytes: &[u8]) {
     mesh(Format::Obj, file_of(bytes, written::obj));
 }
 
+/// Reads a PLY file.
 pub(crate) fn ply(bytes: &[u8]) {
     mesh(Format::Ply, file_of(bytes, written::ply));
 }
 
+/// Reads an OFF file.
 pub(crate) fn off(bytes: &[u8]) {
     mesh(Format::Off, file_of(bytes, written::off));
 }
 
+/// Reads a COLLADA file.
 pub(crate) fn dae(bytes: &[u8]) {
     mesh(Format::Dae, file_of(bytes, written::dae));
 }
 
-/// Pairs of links that an SRDF file disables; the file is one of the temporary folder.
+/// Reads the pairs of links that an SRDF file in the temporary folder disables.
 pub(crate) fn srdf(bytes: &[u8]) {
     let Some(file) = file_of(bytes, written::srdf) else { return };
     let path = std::env::temp_dir().join(format!("colltrans-fuzz-{}.srdf", std::process::id()));
@@ -118,7 +126,7 @@ pub(crate) fn srdf(bytes: &[u8]) {
     std::fs::remove_file(&path).expect("the temporary file");
 }
 
-/// A table of joint values, CSV or JSON.
+/// Reads a table of joint values, CSV or JSON.
 pub(crate) fn csv(bytes: &[u8]) {
     let Some(file) = file_of(bytes, written::csv) else { return };
     match Table::parse(&String::from_utf8_lossy(&file)) {

@@ -1,7 +1,7 @@
-//! Generators of files that are mostly valid: each writes a small body in one format, with faults in some
-//! counts, strides, indices, numbers and characters. Arbitrary bytes choose the body and the faults.
+//! Generates mostly valid files: each function writes a small body in one format. Some counts, strides,
+//! indices, numbers and characters have faults. Arbitrary bytes choose the body and the faults.
 //!
-//! Readers reject bytes of no structure early. These generators reach the code behind the first checks.
+//! Readers reject bytes without structure early. These generators reach the code behind the first checks.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use arbitrary::{Result, Unstructured};
 
 /// One in this many numbers, counts and indices is wrong.
 const ONE_IN: u8 = 24;
-/// Numbers at the limits of what readers hold.
+/// Numbers at the limits of readers.
 const NUMBERS: [&str; 18] = [
     "1e300",
     "-1e300",
@@ -49,16 +49,17 @@ const COUNTS: [&str; 13] = [
 
 type Bytes<'a, 'b> = &'a mut Unstructured<'b>;
 
+/// Whether the next value has a fault.
 fn is_wrong(u: Bytes) -> Result<bool> {
     u.ratio(1, ONE_IN)
 }
 
-/// A number, rarely one of [`NUMBERS`].
+/// Writes a number, rarely one of [`NUMBERS`].
 fn number(u: Bytes, value: f64) -> Result<String> {
     Ok(if is_wrong(u)? { (*u.choose(&NUMBERS)?).into() } else { format!("{value}") })
 }
 
-/// A count or an index, rarely one off or one of [`COUNTS`].
+/// Writes a count or an index, rarely a close one or one of [`COUNTS`].
 fn count(u: Bytes, value: usize) -> Result<String> {
     if !is_wrong(u)? {
         return Ok(value.to_string());
@@ -69,12 +70,12 @@ fn count(u: Bytes, value: usize) -> Result<String> {
     Ok((value as i64 + u.int_in_range(-2..=2)?).to_string())
 }
 
-/// A count in four bytes, rarely a wrong one.
+/// Returns a count in four bytes, rarely a wrong one.
 fn word(u: Bytes, value: usize) -> Result<u32> {
     Ok(if is_wrong(u)? { u.arbitrary()? } else { value as u32 })
 }
 
-/// White space, rarely another one than a blank.
+/// Returns white space, rarely another character than a blank.
 fn space(u: Bytes) -> Result<&'static str> {
     Ok(if is_wrong(u)? {
         *u.choose(&["\t", "  ", "\n", "\r\n", "\x0b", "", "\\\n", ","])?
@@ -83,13 +84,14 @@ fn space(u: Bytes) -> Result<&'static str> {
     })
 }
 
-/// A closed body: a tetrahedron, a cube of quadrilaterals or a prism of polygons.
+/// A closed body: a tetrahedron, a cube of quadrilaterals or a prism with polygonal faces.
 struct Shape {
     vertices: Vec<[f64; 3]>,
     faces: Vec<Vec<usize>>,
 }
 
 impl Shape {
+    /// Draws a body.
     fn any(u: Bytes) -> Result<Self> {
         let sides = u.int_in_range(3..=7_usize)?;
         let size = f64::from(u.int_in_range(-3..=9_i8)?).exp2();
@@ -111,22 +113,24 @@ impl Shape {
         Ok(Self { vertices, faces })
     }
 
+    /// Returns the faces as triangles.
     fn triangles(&self) -> Vec<Vec<usize>> {
         self.faces.iter().flat_map(|face| fan(face)).collect()
     }
 
+    /// Writes the coordinates of a vertex.
     fn point(&self, u: Bytes, vertex: usize) -> Result<String> {
         let [x, y, z] = self.vertices[vertex];
         Ok(format!("{}{}{}{}{}", number(u, x)?, space(u)?, number(u, y)?, space(u)?, number(u, z)?))
     }
 }
 
-/// The triangles around the first corner of a face.
+/// Returns the triangles around the first corner of a face.
 fn fan(face: &[usize]) -> Vec<Vec<usize>> {
     (2..face.len()).map(|k| vec![face[0], face[k - 1], face[k]]).collect()
 }
 
-/// Returns text with a few faults of encoding: bytes that are not UTF-8, NUL, Ctrl-Z, comments, marks, cuts.
+/// Adds a few faults of encoding: bytes that are not UTF-8, NUL, Ctrl-Z, comments, marks, cuts.
 fn spoiled(u: Bytes, mut text: Vec<u8>, comment: &str) -> Result<Vec<u8>> {
     const INSERTED: [&[u8]; 10] = [
         b"\0",
@@ -167,6 +171,7 @@ fn spoiled(u: Bytes, mut text: Vec<u8>, comment: &str) -> Result<Vec<u8>> {
     Ok(text)
 }
 
+/// Writes an STL file, ASCII or binary.
 pub(crate) fn stl(u: Bytes) -> Result<Vec<u8>> {
     let shape = Shape::any(u)?;
     let triangles = shape.triangles();
@@ -203,6 +208,7 @@ pub(crate) fn stl(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, bytes, "")
 }
 
+/// Writes an OBJ file.
 pub(crate) fn obj(u: Bytes) -> Result<Vec<u8>> {
     let shape = Shape::any(u)?;
     let mut text = String::from("o part\n");
@@ -242,6 +248,7 @@ pub(crate) fn obj(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, text.into_bytes(), "#")
 }
 
+/// Writes an OFF file.
 pub(crate) fn off(u: Bytes) -> Result<Vec<u8>> {
     let shape = Shape::any(u)?;
     let mut text = (*u.choose(&[
@@ -275,6 +282,7 @@ pub(crate) fn off(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, text.into_bytes(), "#")
 }
 
+/// Writes a PLY file, ASCII or binary.
 pub(crate) fn ply(u: Bytes) -> Result<Vec<u8>> {
     let shape = Shape::any(u)?;
     let encoding = *u.choose(&["ascii", "ascii", "binary_little_endian", "binary_big_endian"])?;
@@ -334,6 +342,7 @@ pub(crate) fn ply(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, bytes, "")
 }
 
+/// Writes a COLLADA file.
 pub(crate) fn dae(u: Bytes) -> Result<Vec<u8>> {
     let shape = Shape::any(u)?;
     let mut text = String::from("<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\"><asset>");
@@ -415,6 +424,7 @@ pub(crate) fn dae(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, text.into_bytes(), "<!-- -->")
 }
 
+/// Writes an SRDF file.
 pub(crate) fn srdf(u: Bytes) -> Result<Vec<u8>> {
     let mut text = String::from("<?xml version=\"1.0\"?>\n<robot name=\"r\">\n");
     for _ in 0..u.int_in_range(0..=6)? {
@@ -438,6 +448,7 @@ pub(crate) fn srdf(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, text.into_bytes(), "<!-- -->")
 }
 
+/// Writes a table of joint values.
 pub(crate) fn csv(u: Bytes) -> Result<Vec<u8>> {
     let columns = u.int_in_range(1..=4_usize)?;
     let separator = *u.choose(&[",", ",", ";", "\t", " "])?;
@@ -460,7 +471,7 @@ pub(crate) fn csv(u: Bytes) -> Result<Vec<u8>> {
     spoiled(u, text.into_bytes(), "#")
 }
 
-/// A JSON document with a few of its values replaced, dropped, repeated or moved by units in the last place.
+/// Replaces, drops, repeats or slightly changes a few values of a JSON document.
 pub(crate) fn json(u: Bytes, seeds: &[String]) -> Result<Vec<u8>> {
     let seed = u.choose(seeds)?;
     let mut document: serde_json::Value = serde_json::from_str(seed).expect("a document");

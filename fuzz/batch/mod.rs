@@ -1,4 +1,4 @@
-//! The sources of the command line that read lines of a batch, and a check of one way against the other.
+//! Includes the sources of the command line that read lines of a batch, and compares the two readers.
 
 #[path = "../../crates/colltrans-cli/src/batch/fast_path.rs"]
 pub(crate) mod fast_path;
@@ -6,7 +6,7 @@ pub(crate) mod fast_path;
 pub(crate) mod source;
 
 pub(crate) mod motion {
-    /// Any value: motions are not on the fast path.
+    /// Accepts any value, because motions are not on the fast path.
     #[derive(serde::Deserialize)]
     pub(crate) struct MotionSource(serde::de::IgnoredAny);
 }
@@ -15,13 +15,13 @@ use serde_json::value::RawValue;
 
 use source::Query;
 
-/// Checks that the fast path reads a line as `serde_json` reads it.
+/// Checks that the fast path reads a line like `serde_json`.
 pub(crate) fn check(text: &str) {
     let Some(fast) = fast_path::read(text) else {
         let _ = serde_json::from_str::<Query<'_, source::BodySource>>(text);
         return;
     };
-    // Bodies are handed on as they are written: one that is not JSON is refused later.
+    // The fast path returns bodies as text; a later step rejects bodies that are not JSON.
     let are_bodies =
         [fast.moving, fast.fixed].map(|body| serde_json::from_str::<&RawValue>(body).is_ok());
     let slow: Query<'_, &RawValue> = match serde_json::from_str(text) {

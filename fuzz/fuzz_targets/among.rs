@@ -1,4 +1,4 @@
 #![no_main]
-//! See [`colltrans_testkit::oracle::fuzz::among`]: the corpus runs through it as an ordinary test too.
+//! Fuzzes [`colltrans_testkit::oracle::fuzz::among`]. An ordinary test also runs its corpus.
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| colltrans_testkit::oracle::fuzz::among(bytes));

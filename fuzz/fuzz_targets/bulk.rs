@@ -1,4 +1,4 @@
 #![no_main]
-//! See [`colltrans_testkit::oracle::fuzz::bulk`]: the corpus runs through it as an ordinary test too.
+//! Fuzzes [`colltrans_testkit::oracle::fuzz::bulk`]. An ordinary test also runs its corpus.
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| colltrans_testkit::oracle::fuzz::bulk(bytes));

@@ -1,5 +1,5 @@
 #![no_main]
-//! See `readers::manifest`: the corpus runs through it as an ordinary test too.
+//! Fuzzes `readers::manifest`. An ordinary test also runs its corpus.
 
 #[path = "../readers.rs"]
 #[allow(dead_code, reason = "each target is one of its functions")]

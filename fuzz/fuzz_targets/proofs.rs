@@ -1,5 +1,5 @@
 #![no_main]
-//! See `documents::proofs`.
+//! Fuzzes `documents::proofs`.
 
 #[path = "../documents.rs"]
 #[allow(dead_code, reason = "each target is one of its functions")]

@@ -21,7 +21,7 @@ def load(path: Path) -> Any:
 
 
 def remembered(described: Any) -> Any:
-    """The check of a convex body, done once of bodies that follow each other: most mutants leave them as they are."""
+    """Returns the check of a convex body, which skips recently checked bodies: most mutants do not change them."""
     known: set[str] = set()
 
     def check(points: Any, content: Any) -> None:

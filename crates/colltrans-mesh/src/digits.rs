@@ -13,10 +13,11 @@
 //!   few digits is rounded nevertheless if zeros fill up each number to the same place ([`fixed_places`]).
 //! - More than [`ALL`] digits: doubles with all their digits.
 //!
-//! Up to one number in [`OUTLIERS`] may have more digits than the format has: somebody edited it.
+//! Up to one number in [`OUTLIERS`] may have more digits than the format has, for example after edits by
+//! hand.
 //!
 //! Digits are those of the shortest decimal that reads as the same double. Up to 15 significant digits that is
-//! the text of the file. Exponents and trailing zeros are no part of a double, so readers record these
+//! the text of the file. A double does not contain exponents and trailing zeros, so readers record these
 //! ([`Printed`]).
 //!
 //! The format alone may be finer than the numbers: a program that computes in single precision prints them with
@@ -380,8 +381,8 @@ impl Decimal {
         self.digits - self.decimals - 1
     }
 
-    /// Checks whether a writer may have rounded the number: it is no binary fraction, or it is a whole number that
-    /// an exponent cuts off before its last digit, or right there.
+    /// Checks whether a writer may have rounded the number: it is not a binary fraction, or it is a whole
+    /// number with an exponent, whose printed digits may end at or before its last digit.
     fn may_be_rounded(&self, printed: Printed) -> bool {
         if self.decimals > 0 { !self.is_binary_fraction() } else { printed.has_exponent }
     }

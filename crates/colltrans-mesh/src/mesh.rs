@@ -93,8 +93,8 @@ impl Mesh {
         Some(used.fold([first, first], |[low, high], v| [low.min(v), high.max(v)]))
     }
 
-    /// Returns the longest edge of the bounding box of the [vertices in use](Self::vertices_in_use); 0 if there
-    /// are no vertices.
+    /// Returns the longest edge of the bounding box of the [vertices in use](Self::vertices_in_use); 0 for a mesh
+    /// without vertices.
     pub fn extent(&self) -> f64 {
         self.bounds().map_or(0.0, |[low, high]| (high - low).max_element())
     }

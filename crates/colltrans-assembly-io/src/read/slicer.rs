@@ -1,5 +1,5 @@
-//! Reads the files that slicers add to a 3MF package: names of objects, and bodies that are no parts of the
-//! model but instructions for the slicer. These files do not affect shapes; a file that cannot be parsed is
+//! Reads the files that slicers add to a 3MF package: names of objects, and bodies that instruct the
+//! slicer and are not parts of the model. These files do not affect shapes; a file that cannot be parsed is
 //! ignored.
 //!
 //! - `Metadata/model_settings.config` has a `part` for each component of an object. Its id is that of the

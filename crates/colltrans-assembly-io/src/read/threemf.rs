@@ -8,8 +8,8 @@
 //!   identified by its file and its id. Paths may have escapes such as `%20`.
 //! - Objects of the types `support`, `solidsupport` and `other` (3.4) are left out with a note. Surfaces are
 //!   parts that may be open.
-//! - The module `slicer` supplies names and bodies that are no parts. `printable="0"` is noted and otherwise
-//!   ignored.
+//! - The module `slicer` supplies names, and marks bodies that instruct the slicer. `printable="0"` causes a
+//!   note and has no other effect.
 //! - A required extension that is unknown and may have shapes is rejected.
 
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};

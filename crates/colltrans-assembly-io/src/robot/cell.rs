@@ -129,7 +129,7 @@ impl Cell {
         &self.dents
     }
 
-    /// Returns notes on pairs that are not checked although nobody excluded them by name, and on exclusions
+    /// Returns notes on pairs that are not checked although no option excludes them, and on exclusions
     /// without effect.
     pub fn notes(&self) -> &[String] {
         &self.notes

@@ -61,7 +61,7 @@ enum Change {
 pub struct Walk {
     /// The current setting.
     pub setting: Setting,
-    /// The number of changes so far.
+    /// The number of past changes.
     pub step: u32,
     other: Configuration,
     change: Change,

@@ -1,6 +1,6 @@
 //! Campaign of motions: the bodies of a setting, one or both rotating, in screw motions or thrown, with minimum
 //! gaps and tolerated depths. The library checks all proofs, and a sample is judged with the motion as a real
-//! function. The clearance is examined likewise, with depths and distances on the way.
+//! function. The clearance is examined in the same way, with depths and distances on the way.
 
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
 use colltrans::{MIN_MAGNITUDE, Pair, Pose, QueryError};

@@ -20,7 +20,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Checks whether the proof was accepted, as far as it was checked.
+    /// Whether all completed checks accepted the proof.
     pub fn accepts(&self) -> bool {
         matches!(self, Self::Holds | Self::HoldsPartly)
     }

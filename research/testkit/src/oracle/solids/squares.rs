@@ -6,8 +6,8 @@
 //! or always.
 //!
 //! - A square enters a body of cubes if it meets a cube, or the square between two cubes.
-//! - Two squares cross if they meet. Squares in parallel planes cross where they coincide, and squares in one
-//!   plane along which they move cross wherever they meet.
+//! - Two squares cross if they meet. Squares in parallel planes cross where they coincide, and squares that
+//!   move in one plane cross at every common point.
 //! - An edge that joins two squares is crossed by a square that moves along its own plane, or by an edge of the
 //!   other body, if the joined squares are on different sides of it.
 

@@ -111,7 +111,7 @@ impl Run {
     /// # Panics
     /// If the text does not have this form.
     pub fn table(&mut self, legend: &str, table: &str) {
-        self.columns = columns(table);
+        self.columns = parse_columns(table);
         for line in [legend, &line(&self.columns, |column| column.head.clone())] {
             if !line.trim_matches([' ', '|']).is_empty() {
                 println!("{line}");
@@ -126,7 +126,7 @@ impl Run {
     pub fn add(&mut self, row: impl Serialize) {
         let row = serde_json::to_value(row).expect("a row of numbers and names");
         if !self.columns.is_empty() {
-            println!("{}", line(&self.columns, |column| column.cell(&row)));
+            println!("{}", line(&self.columns, |column| column.format_cell(&row)));
         }
         self.rows.push(row);
     }
@@ -183,12 +183,12 @@ enum Style {
 ///
 /// # Panics
 /// If the text is not a declaration.
-fn columns(text: &str) -> Vec<Column> {
+fn parse_columns(text: &str) -> Vec<Column> {
     text.split(';').map(|column| Column::new(column.trim())).collect()
 }
 
 /// Splits a text at a mark. Returns the whole text and `None` if the mark is missing.
-fn split<'a>(text: &'a str, mark: &str) -> (&'a str, Option<&'a str>) {
+fn split_at_mark<'a>(text: &'a str, mark: &str) -> (&'a str, Option<&'a str>) {
     text.split_once(mark).map_or((text, None), |(before, behind)| (before, Some(behind)))
 }
 
@@ -197,16 +197,16 @@ impl Column {
     fn new(text: &str) -> Self {
         let (bar, text) = text.strip_prefix('|').map_or(("", text), |text| ("| ", text));
         let (head, rest) = text.trim().split_once(':').expect("HEAD:FORMAT");
-        let (rest, missing) = split(rest, "?");
-        let (rest, bracketed) = split(rest, " (");
-        let (format, value) = split(rest, "=");
-        let (value, factor) = split(value.unwrap_or(head), " × ");
-        let (value, divisor) = split(value, " ÷ ");
-        let (scale, unit) = split(divisor.unwrap_or("1"), " ");
+        let (rest, missing) = split_at_mark(rest, "?");
+        let (rest, bracketed) = split_at_mark(rest, " (");
+        let (format, value) = split_at_mark(rest, "=");
+        let (value, factor) = split_at_mark(value.unwrap_or(head), " × ");
+        let (value, divisor) = split_at_mark(value, " ÷ ");
+        let (scale, unit) = split_at_mark(divisor.unwrap_or("1"), " ");
         let scale = scale.parse::<f64>();
-        let (width, digits) = split(format.trim_start_matches(['<', '>']), ".");
+        let (width, digits) = split_at_mark(format.trim_start_matches(['<', '>']), ".");
         let number = |digits: &str| digits.parse().expect("a number of digits");
-        let style = match (width, digits.map(|digits| split(digits, "e"))) {
+        let style = match (width, digits.map(|digits| split_at_mark(digits, "e"))) {
             (",", _) => Style::Grouped,
             ("~", _) => Style::Rounded,
             (_, None) => Style::Plain,
@@ -236,7 +236,7 @@ impl Column {
     }
 
     /// Formats the figures of a row.
-    fn cell(&self, row: &Value) -> String {
+    fn format_cell(&self, row: &Value) -> String {
         if let Some(text) = self.paths[0].strip_prefix('"') {
             return text.trim_end_matches('"').into();
         }
@@ -253,10 +253,11 @@ impl Column {
             _ if value.is_nan() => return self.missing.clone(),
             Style::Fixed(digits) => format!("{value:.digits$}"),
             Style::Power(digits) => format!("{value:.digits$e}"),
-            Style::Grouped => thousands(value),
-            Style::Rounded => rounded(value),
+            Style::Grouped => group_thousands(value),
+            Style::Rounded => round_to_significant(value),
         };
-        let bracketed = self.bracketed.as_ref().map(|other| format!(" ({})", other.cell(row)));
+        let bracketed =
+            self.bracketed.as_ref().map(|other| format!(" ({})", other.format_cell(row)));
         text + &self.unit + &bracketed.unwrap_or_default()
     }
 }
@@ -275,27 +276,29 @@ fn line(columns: &[Column], cell: impl Fn(&Column) -> String) -> String {
 /// # Panics
 /// If the columns are not declared in this form.
 pub fn markdown<'a>(table: &str, rows: impl IntoIterator<Item = &'a Value>) -> String {
-    let columns = columns(table);
+    let columns = parse_columns(table);
     let line = |cell: &dyn Fn(&Column) -> String| {
         format!("|{}\n", columns.iter().map(|column| cell(column) + "|").collect::<String>())
     };
     let space = |text: &str| if text.is_empty() { " ".into() } else { format!(" {text} ") };
     let rule = |column: &Column| if column.is_left { "---" } else { "---:" }.to_owned();
     let heads = [line(&|column| space(&column.head)), line(&rule)].into_iter();
-    heads.chain(rows.into_iter().map(|row| line(&|column| space(&column.cell(row))))).collect()
+    heads
+        .chain(rows.into_iter().map(|row| line(&|column| space(&column.format_cell(row)))))
+        .collect()
 }
 
 /// Formats a number with its significant digits, without those below the noise of measurements.
-fn rounded(x: f64) -> String {
+fn round_to_significant(x: f64) -> String {
     match x {
         _ if x < 9.95 => format!("{x:.2}"),
         _ if x < 99.5 => format!("{x:.1}"),
-        _ => thousands(x),
+        _ => group_thousands(x),
     }
 }
 
 /// Formats a whole number in groups of three digits.
-fn thousands(x: f64) -> String {
+fn group_thousands(x: f64) -> String {
     let digits = format!("{x:.0}");
     let mut grouped = String::new();
     for (k, digit) in digits.chars().enumerate() {
@@ -316,9 +319,9 @@ mod tests {
         let row = json!({ "a": "x", "b": { "n": 3, "ns": 1500.0 }, "c": [0.25, null] });
         let table = "a:<3;n:>3=b/n;|us:>8.2=b/ns ÷ 1e3 us;:>5.1=b/ns ÷ b/n;:>2.0=b/n + b/n;:>.1e=c/0;\
             w:>4.1=c/1?none;:>4=\"who\";:,=b/ns (~=c/0)";
-        let columns = columns(table);
+        let columns = parse_columns(table);
         let printed = "x     3 |  1.50 us 500.0  6 2.5e-1 none  who 1,500 (0.25)";
-        assert_eq!(line(&columns, |column| column.cell(&row)), printed);
+        assert_eq!(line(&columns, |column| column.format_cell(&row)), printed);
         let heads = line(&columns, |column| column.head.clone());
         assert_eq!(heads, format!("a     n |       us{:>15}", "w"));
     }
@@ -327,7 +330,7 @@ mod tests {
     fn markdown_tables_and_rounded_numbers_are_formatted() {
         let page = "| a | | c |\n|---|---|---:|\n| x | ? | - |\n";
         assert_eq!(markdown("a:<; :<=b; c:~", [&json!({ "a": "x" })]), page);
-        assert_eq!([1_234_567.0, 999.4].map(thousands), ["1,234,567", "999"]);
-        assert_eq!([0.333, 12.34, 345.6].map(rounded), ["0.33", "12.3", "346"]);
+        assert_eq!([1_234_567.0, 999.4].map(group_thousands), ["1,234,567", "999"]);
+        assert_eq!([0.333, 12.34, 345.6].map(round_to_significant), ["0.33", "12.3", "346"]);
     }
 }

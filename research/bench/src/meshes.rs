@@ -34,17 +34,20 @@ impl MeshArguments {
         let read = |[a, b]: &[&str; 2]| {
             let name = [a, b].map(|file| file.rsplit('/').next().unwrap_or(file)).join(" x ");
             self.wants(&name).then(|| {
-                Some((name, [load(&folder.join(a))?, load(&folder.join(b))?].map(centered)))
+                Some((
+                    name,
+                    [read_mesh(&folder.join(a))?, read_mesh(&folder.join(b))?].map(center_on_box),
+                ))
             })?
         };
         let made = made.into_iter().filter(|(name, _)| self.wants(name));
-        let made = made.map(|(name, meshes)| (name.to_owned(), meshes.map(centered)));
+        let made = made.map(|(name, meshes)| (name.to_owned(), meshes.map(center_on_box)));
         made.chain(files.iter().filter_map(read)).collect()
     }
 }
 
 /// Reads a mesh; `None` if it is missing or invalid.
-fn load(path: &Path) -> Option<Mesh> {
+fn read_mesh(path: &Path) -> Option<Mesh> {
     if !path.exists() {
         return None;
     }
@@ -58,7 +61,7 @@ fn load(path: &Path) -> Option<Mesh> {
 }
 
 /// Moves the centre of the mesh's box to the origin.
-fn centered(mesh: Mesh) -> Mesh {
+fn center_on_box(mesh: Mesh) -> Mesh {
     let middle = Aabb::of_points(mesh.vertices.iter().copied()).center();
     mesh.translated(-middle)
 }

@@ -43,7 +43,7 @@ impl ParrySetting {
 
     /// Converts the poses of the moving and of the fixed body, and a direction.
     pub fn placed(poses: [&Pose; 2], direction: DVec3) -> Self {
-        Self { poses: poses.map(pose), velocity: vector(direction) }
+        Self { poses: poses.map(convert_pose), velocity: vector(direction) }
     }
 
     /// Returns parry's distance; 0 if the bodies overlap.
@@ -107,7 +107,7 @@ pub fn vector(v: DVec3) -> parry_math::Vector {
 }
 
 /// Converts a pose.
-fn pose(pose: &Pose) -> parry_math::Pose {
+fn convert_pose(pose: &Pose) -> parry_math::Pose {
     let rotation = parry_math::Rotation::from_array(pose.rotation().to_array());
     parry_math::Pose::from_parts(vector(pose.translation()), rotation)
 }
@@ -128,7 +128,7 @@ pub fn triangle_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> TriMesh {
 pub fn compound(poses: &[Pose], half: impl Fn(usize) -> DVec3) -> Compound {
     let boxed = |(k, at): (usize, &Pose)| {
         let half = half(k);
-        (pose(at), SharedShape::cuboid(half.x, half.y, half.z))
+        (convert_pose(at), SharedShape::cuboid(half.x, half.y, half.z))
     };
     Compound::new(poses.iter().enumerate().map(boxed).collect())
 }
@@ -144,12 +144,12 @@ impl Spin {
     pub fn new(start: &Pose, center: DVec3, velocity: DVec3, spin: DVec3, there: &Pose) -> Self {
         let own = start.matrix().transpose() * (center - start.translation());
         let moving = query::NonlinearRigidMotion::new(
-            pose(start),
+            convert_pose(start),
             vector(own),
             vector(velocity),
             vector(spin),
         );
-        Self { moving, fixed: query::NonlinearRigidMotion::constant_position(pose(there)) }
+        Self { moving, fixed: query::NonlinearRigidMotion::constant_position(convert_pose(there)) }
     }
 
     /// Returns parry's time of impact from 0 to 1, if there is one.

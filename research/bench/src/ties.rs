@@ -93,13 +93,13 @@ impl Tie {
     }
 
     /// Draws the position of the moving body in the jig, before it moves along `-z`.
-    fn offset(self, bodies: &Bodies, random: &mut Random) -> DVec3 {
+    fn draw_offset(self, bodies: &Bodies, random: &mut Random) -> DVec3 {
         let ahead = 3.0;
         let quarters = |random: &mut Random| random.int(-3, 3) as f64 * 0.25;
         let (x, y) = match self {
             Self::UprightBoxes => {
                 let reach = |k: usize| {
-                    let sides = bodies.pair.each_ref().map(|b| largest(b, k));
+                    let sides = bodies.pair.each_ref().map(|b| half_extent(b, k));
                     0.95 * (sides[0] + sides[1])
                 };
                 let mut within = |reach: f64| random.range(-reach, reach);
@@ -123,16 +123,16 @@ impl Tie {
         if placement == Placement::General {
             return Setting::draw(bodies, Meeting::Colliding, random);
         }
-        let turn = placement.turn(random);
+        let turn = placement.draw_rotation(random);
         let at =
             |offset: DVec3| Pose::new(DQuat::from_mat3(&turn), turn * offset).expect("a rotation");
-        let moving = at(self.offset(bodies, random));
+        let moving = at(self.draw_offset(bodies, random));
         Setting { moving, fixed: at(DVec3::ZERO), direction: turn * DVec3::NEG_Z }
     }
 }
 
 /// Returns half the extent along an axis of a body that is symmetric about the origin.
-fn largest(body: &ConvexPolyhedron, axis: usize) -> f64 {
+fn half_extent(body: &ConvexPolyhedron, axis: usize) -> f64 {
     body.vertices().iter().map(|v| v[axis]).fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -164,7 +164,7 @@ impl Placement {
     }
 
     /// Draws the rotation.
-    fn turn(self, random: &mut Random) -> DMat3 {
+    fn draw_rotation(self, random: &mut Random) -> DMat3 {
         match self {
             Self::Identity | Self::General => DMat3::IDENTITY,
             Self::QuarterTurns => {

@@ -52,7 +52,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn folders_are_new_and_are_removed_with_their_files() {
+    fn folders_are_new_and_removed_with_their_files() {
         let [one, two] = [TemporaryFolder::new(), TemporaryFolder::new()];
         assert_ne!(one.path(), two.path());
         fs::create_dir(one.path().join("inner")).unwrap();

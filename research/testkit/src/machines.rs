@@ -405,7 +405,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_bodies_are_closed_and_of_positive_volume() {
+    fn all_bodies_are_closed_with_positive_volume() {
         let engines = [radial_engine(5), radial_engine(9)];
         let threaded = [threaded_block(), screwed_table()];
         let machines = [flange(8, 32), flange(16, 24)].into_iter().chain(engines).chain(threaded);

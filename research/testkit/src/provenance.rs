@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commands_can_be_typed_again() {
+    fn commands_are_printed_for_reuse() {
         let typed = |arguments: &[&str]| command(arguments.iter().map(|a| (*a).to_owned()));
         assert_eq!(
             typed(&["/a b/colltrans-lab", "all", "-o", "my dir"]),
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_left_blank() {
+    fn provenance_has_no_empty_fields() {
         let here = Provenance::of_this_process("-");
         let facts = [&here.processor, &here.cores, &here.system, &here.versions, &here.build];
         assert!(facts.into_iter().chain([&here.date, &here.command]).all(|f| !f.is_empty()));

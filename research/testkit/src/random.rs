@@ -104,7 +104,7 @@ mod tests {
 
     /// Compares with the published numbers for the seed 1234567.
     #[test]
-    fn the_generator_is_splitmix64() {
+    fn generator_is_splitmix64() {
         let mut random = Random::new(1_234_567);
         let published = [
             6_457_827_717_110_365_317,
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_and_rotations_favour_nothing() {
+    fn directions_and_rotations_are_uniform() {
         let mut random = Random::new(3);
         let count = 20_000;
         let mut sums = [DVec3::ZERO; 4];

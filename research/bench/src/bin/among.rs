@@ -21,16 +21,16 @@ use serde_json::{Value, json};
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
 /// Number of different boxes.
-const SHAPES: usize = 16;
+const SHAPE_COUNT: usize = 16;
 
 /// Number of builds of a scene.
-const BUILDS: u32 = 9;
+const BUILD_REPETITIONS: u32 = 9;
 
 /// Share of space filled by boxes.
-const FILLED: f64 = 0.02;
+const FILLED_SHARE: f64 = 0.02;
 
 /// Threshold of the proximity query, a length: about that of a box.
-const CLOSE: f64 = 0.5;
+const PROXIMITY: f64 = 0.5;
 
 fn main() -> ExitCode {
     let about = "Compares one body among many boxes with parry3d-f64; prints a table";
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
             cast:>8.0=cast/0; parry:>8.0=cast/1; ratio:>8.2=cast/2;
             within:>8.0; move:>8.0; nearest:>8.0=nearest_after; wrong:>8";
         run.table("", columns);
-        run.sizes(&SIZES).into_iter().for_each(|n| run.add(row(n, run)));
+        run.sizes(&SIZES).into_iter().for_each(|n| run.add(measure_row(n, run)));
         Ok(())
     })
 }
@@ -56,11 +56,11 @@ struct Scene {
 impl Scene {
     fn draw(n: usize, random: &mut Random) -> Self {
         let halves: Vec<DVec3> =
-            (0..SHAPES).map(|_| random.vector().abs() * 0.4 + DVec3::splat(0.1)).collect();
+            (0..SHAPE_COUNT).map(|_| random.vector().abs() * 0.4 + DVec3::splat(0.1)).collect();
         let cuboid = |half: &DVec3| ConvexPolyhedron::cuboid(-*half, *half).expect("a box");
-        let volume = |k: usize| 8.0 * halves[k % SHAPES].element_product();
-        let side = ((0..n).map(volume).sum::<f64>() / FILLED).cbrt();
-        let poses = (0..n).map(|_| anywhere(side, random)).collect();
+        let volume = |k: usize| 8.0 * halves[k % SHAPE_COUNT].element_product();
+        let side = ((0..n).map(volume).sum::<f64>() / FILLED_SHARE).cbrt();
+        let poses = (0..n).map(|_| random_pose(side, random)).collect();
         let shapes = halves.iter().map(|half| Arc::new(cuboid(half))).collect();
         Self { side, shapes, halves, poses }
     }
@@ -68,7 +68,7 @@ impl Scene {
     /// Builds the scene in this library.
     fn ours(&self) -> (Obstacles, Vec<ObstacleId>) {
         let mut obstacles = Obstacles::new();
-        let body = |k: usize| self.shapes[k % SHAPES].clone();
+        let body = |k: usize| self.shapes[k % SHAPE_COUNT].clone();
         let ids =
             obstacles.insert_all(self.poses.iter().enumerate().map(|(k, pose)| (body(k), *pose)));
         (obstacles, ids)
@@ -76,18 +76,18 @@ impl Scene {
 
     /// Builds the scene in parry.
     fn theirs(&self) -> Compound {
-        parry::compound(&self.poses, |k| self.halves[k % SHAPES])
+        parry::compound(&self.poses, |k| self.halves[k % SHAPE_COUNT])
     }
 }
 
 /// Draws a pose in a cube.
-fn anywhere(side: f64, random: &mut Random) -> Pose {
+fn random_pose(side: f64, random: &mut Random) -> Pose {
     let at = (random.vector() * 0.5 + DVec3::splat(0.5)) * side;
     Pose::new(random.rotation(), at).expect("a pose")
 }
 
 /// Measures the row of a size.
-fn row(n: usize, run: &Run) -> Value {
+fn measure_row(n: usize, run: &Run) -> Value {
     let count = run.choose(200, 2_000);
     let random = &mut run.random(&[n as u64]);
     let clock = Clock::new(1);
@@ -95,13 +95,15 @@ fn row(n: usize, run: &Run) -> Value {
     let (mut obstacles, ids) = scene.ours();
     let compound = scene.theirs();
     let build = |build: &dyn Fn()| {
-        own_time(clock, || (0..BUILDS).for_each(|_| build())) / f64::from(BUILDS) / 1e6
+        own_time(clock, || (0..BUILD_REPETITIONS).for_each(|_| build()))
+            / f64::from(BUILD_REPETITIONS)
+            / 1e6
     };
     let ours = build(&|| drop(scene.ours()));
     let theirs = build(&|| drop(scene.theirs()));
-    let mut asked = Asked { scene: &scene, clock, random, wrong: 0 };
+    let mut asked = QueryRunner { scene: &scene, clock, random, wrong: 0 };
     let [nearest, cast] = asked.beside(&obstacles, &compound, count);
-    let within = asked.median(count, &obstacles, |asked| asked.within(CLOSE).is_ok());
+    let within = asked.median(count, &obstacles, |asked| asked.within(PROXIMITY).is_ok());
     let moves = asked.moves(&mut obstacles, &ids, count);
     let after = asked.median(count, &obstacles, |asked| asked.nearest().is_ok());
     json!({
@@ -124,7 +126,7 @@ fn on_processor() -> Option<f64> {
 }
 
 /// Queries on a scene.
-struct Asked<'a> {
+struct QueryRunner<'a> {
     scene: &'a Scene,
     clock: Clock,
     random: &'a mut Random,
@@ -132,14 +134,14 @@ struct Asked<'a> {
     wrong: u32,
 }
 
-impl Asked<'_> {
+impl QueryRunner<'_> {
     /// Measures nearest bodies and casts in both libraries.
     fn beside(&mut self, obstacles: &Obstacles, compound: &Compound, count: usize) -> [Beside; 2] {
         let [mut nearest, mut casts] = <[Beside; 2]>::default();
         let (shape, half) = (&self.scene.shapes[0], self.scene.halves[0]);
         let cuboid = Cuboid::new(parry::vector(half));
         for _ in 0..count {
-            let pose = anywhere(self.scene.side, self.random);
+            let pose = random_pose(self.scene.side, self.random);
             let direction = self.random.direction();
             let setting = ParrySetting::placed([&pose, &Pose::IDENTITY], direction);
             let (ours, other) = nearest.ask(
@@ -164,7 +166,7 @@ impl Asked<'_> {
     fn median(&mut self, count: usize, obstacles: &Obstacles, ask: impl Fn(&Among) -> bool) -> f64 {
         let mut times = Times::default();
         for _ in 0..count {
-            let pose = anywhere(self.scene.side, self.random);
+            let pose = random_pose(self.scene.side, self.random);
             let shape = &self.scene.shapes[0];
             let question = || Among::new(shape.at(pose), obstacles).is_ok_and(|a| ask(&a));
             let (answered, spent) = self.clock.time(question);
@@ -183,7 +185,7 @@ impl Asked<'_> {
                 let pose = obstacles.get(id).expect("it is there").1;
                 let by = self.random.vector() * 0.1;
                 let near = pose.translated(by).expect("a pose");
-                (id, if k % 2 == 0 { near } else { anywhere(self.scene.side, self.random) })
+                (id, if k % 2 == 0 { near } else { random_pose(self.scene.side, self.random) })
             })
             .collect();
         let set = || {

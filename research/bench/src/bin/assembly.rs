@@ -20,7 +20,7 @@ use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
-struct Own {
+struct OwnArguments {
     /// Folder of meshes
     folder: Option<PathBuf>,
     /// Tolerance for the folder
@@ -30,29 +30,29 @@ struct Own {
 
 fn main() -> ExitCode {
     let about = "Measures growing assemblies by parts, facets and directions; prints a table";
-    harness::run("assembly", about, |run, own: &Own| {
+    harness::run("assembly", about, |run, own: &OwnArguments| {
         let columns = "series:>10; parts:>5; facets:>7; directions:>10; ready, s:>9.3=ready_s; rooms, s:>9.3=rooms_s;
             contacts to plan, s:>19.3=plan_s; steps:>5";
         run.table("", columns);
         for side in [3, 5, 8] {
-            run.add(measured("parts", &spheres(side, 12, 5)?, 1e-6, 42)?);
+            run.add(measure_assembly("parts", &sphere_grid(side, 12, 5)?, 1e-6, 42)?);
         }
         for rings in [5, 11, 23, 47] {
-            run.add(measured("facets", &spheres(3, 2 * rings + 2, rings)?, 1e-6, 42)?);
+            run.add(measure_assembly("facets", &sphere_grid(3, 2 * rings + 2, rings)?, 1e-6, 42)?);
         }
         for directions in [12, 42, 162, 642] {
-            run.add(measured("directions", &spheres(3, 12, 5)?, 1e-6, directions)?);
+            run.add(measure_assembly("directions", &sphere_grid(3, 12, 5)?, 1e-6, directions)?);
         }
         if let Some(folder) = &own.folder {
             let assembly = read(folder, &ReadOptions::default())?;
-            run.add(measured("folder", &assembly, own.tolerance, 500)?);
+            run.add(measure_assembly("folder", &assembly, own.tolerance, 500)?);
         }
         Ok(())
     })
 }
 
 /// Builds unit spheres in a cubic grid, slightly apart.
-fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Failure> {
+fn sphere_grid(side: u32, around: u32, rings: u32) -> Result<Assembly, Failure> {
     let Mesh { vertices, faces, .. } = ring_sphere(around, rings);
     let mut parts = Vec::new();
     for k in 0..side * side * side {
@@ -68,7 +68,7 @@ fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Failure> {
 }
 
 /// Measures an assembly.
-fn measured(
+fn measure_assembly(
     series: &str,
     assembly: &Assembly,
     tolerance: f64,

@@ -25,7 +25,7 @@ const CASTS: usize = 4096;
 
 /// A distribution of places and directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Set {
+enum CastSet {
     /// Along one direction from many places; about every second cast hits.
     Places,
     /// From one place along many directions; about every second cast hits.
@@ -36,7 +36,7 @@ enum Set {
     Tied,
 }
 
-impl Set {
+impl CastSet {
     fn name(self) -> &'static str {
         match self {
             Self::Places => "places",
@@ -78,7 +78,7 @@ impl Set {
 }
 
 /// The contestants.
-const WHO: [&str; 4] = ["cast", "tracker", "any direction", "one direction"];
+const CONTESTANTS: [&str; 4] = ["cast", "tracker", "any direction", "one direction"];
 
 fn main() -> ExitCode {
     let about = "Compares bulk casts with fixed rotations with ordinary casts and a tracker; prints a table";
@@ -92,29 +92,29 @@ fn main() -> ExitCode {
              casts after which they have paid (any direction, one direction); % not answered by the faces";
         run.table(legend, columns);
         let mut sets = Vec::new();
-        for set in [Set::Places, Set::Rays] {
+        for set in [CastSet::Places, CastSet::Rays] {
             sets.push((set, Shape::Box, 8));
             for shape in [Shape::RandomHull, Shape::Ellipsoid] {
                 sets.extend(run.sizes(&SIZES).into_iter().map(|n| (set, shape, n)));
             }
         }
-        sets.extend([Set::EdgeOnFacet, Set::Tied].map(|set| (set, Shape::Box, 8)));
+        sets.extend([CastSet::EdgeOnFacet, CastSet::Tied].map(|set| (set, Shape::Box, 8)));
         for (set, shape, n) in sets {
             let failed = naming(format!("{} of {n} vertices", shape.name()));
-            run.add(measure(set, shape, n, run).map_err(failed)?);
+            run.add(measure_set(set, shape, n, run).map_err(failed)?);
         }
         Ok(())
     })
 }
 
 /// Draws the bodies of a set.
-fn bodies(
-    set: Set,
+fn draw_bodies(
+    set: CastSet,
     shape: Shape,
     n: usize,
     random: &mut Random,
 ) -> Result<[ConvexPolyhedron; 2], BuildError> {
-    if set == Set::Tied {
+    if set == CastSet::Tied {
         let cube = ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::ONE)?;
         return Ok([cube.clone(), cube]);
     }
@@ -122,9 +122,9 @@ fn bodies(
 }
 
 /// Measures a set.
-fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
+fn measure_set(set: CastSet, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
     let mut random = run.random(&[n as u64, set as u64]);
-    let [p, q] = bodies(set, shape, n, &mut random)?;
+    let [p, q] = draw_bodies(set, shape, n, &mut random)?;
     let (casts, world) = set.draw(&mut random);
     let cast = |(pose, along): &(Pose, DVec3)| Cast::new(p.at(*pose), q.at(world), *along);
     let turns = run.choose(5, 25);
@@ -133,15 +133,15 @@ fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildEr
     let rotations = made();
     let along = || rotations.along(casts[0].1).expect("a direction");
     let approach = along();
-    let mut least = [f64::INFINITY; WHO.len()];
-    let mut answers: [Vec<Result<Outcome, QueryError>>; WHO.len()] = Default::default();
+    let mut least = [f64::INFINITY; CONTESTANTS.len()];
+    let mut answers: [Vec<Result<Outcome, QueryError>>; CONTESTANTS.len()] = Default::default();
     for _ in 0..turns {
-        make = make.min(seconds(|| drop(black_box(made()))));
-        map = map.min(seconds(|| drop(black_box(along()))));
+        make = make.min(elapsed_seconds(|| drop(black_box(made()))));
+        map = map.min(elapsed_seconds(|| drop(black_box(along()))));
         for (who, answers) in answers.iter_mut().enumerate() {
             answers.clear();
             let mut tracker = Tracker::new();
-            let spent = seconds(|| {
+            let spent = elapsed_seconds(|| {
                 for of in &casts {
                     // Matched in place: casts and outcomes are large, and moving them takes as long as an
                     // answer.
@@ -159,7 +159,7 @@ fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildEr
             least[who] = least[who].min(spent * 1e9 / CASTS as f64);
         }
     }
-    if set == Set::Rays {
+    if set == CastSet::Rays {
         least[3] = f64::NAN;
     }
     let share = |who: usize, of: &dyn Fn(&Outcome) -> bool| {
@@ -169,7 +169,7 @@ fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildEr
     let looks: u32 = answers[2].iter().flatten().map(|outcome| outcome.steps().pivots).sum();
     let [make, map] = [make, map].map(|s| s * 1e9);
     let left = |who: usize| share(who, &|o| o.steps().started_from != StartedFrom::Difference);
-    let ns = WHO.iter().zip(least).map(|(who, ns)| ((*who).into(), json!(ns)));
+    let ns = CONTESTANTS.iter().zip(least).map(|(who, ns)| ((*who).into(), json!(ns)));
     Ok(json!({
         "set": set.name(), "shape": shape.name(), "vertices": n,
         "hits": share(0, &|outcome| matches!(outcome, Outcome::Contact(_))),
@@ -182,7 +182,7 @@ fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildEr
 }
 
 /// Returns the seconds of a run.
-fn seconds(run: impl FnOnce()) -> f64 {
+fn elapsed_seconds(run: impl FnOnce()) -> f64 {
     let started = Instant::now();
     run();
     started.elapsed().as_secs_f64()

@@ -30,7 +30,7 @@ const ALPHAS_DEG: [f64; 10] = [0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 90.0, 
 
 /// A solver that answers the queries of a sequence.
 #[derive(Debug, Clone, Copy)]
-struct Compared {
+struct ComparedSolver {
     name: &'static str,
     solver: Solver,
     /// Memory of the tracker; `None` stands for the tracker's default.
@@ -38,18 +38,28 @@ struct Compared {
     narrowing: cta::Options,
 }
 
-const COMPARED: [Compared; 6] = [
-    Compared { name: "scratch", solver: Solver::Auto, focus: Some(Focus::NONE), narrowing: PAPER },
-    Compared { name: "tracker", solver: Solver::Auto, focus: None, narrowing: PAPER },
-    Compared { name: "cta", solver: Solver::Cta, focus: Some(Focus::NONE), narrowing: PAPER },
-    Compared { name: "cta region", solver: Solver::Cta, focus: Some(REGION), narrowing: PAPER },
-    Compared {
+const COMPARED: [ComparedSolver; 6] = [
+    ComparedSolver {
+        name: "scratch",
+        solver: Solver::Auto,
+        focus: Some(Focus::NONE),
+        narrowing: PAPER,
+    },
+    ComparedSolver { name: "tracker", solver: Solver::Auto, focus: None, narrowing: PAPER },
+    ComparedSolver { name: "cta", solver: Solver::Cta, focus: Some(Focus::NONE), narrowing: PAPER },
+    ComparedSolver {
+        name: "cta region",
+        solver: Solver::Cta,
+        focus: Some(REGION),
+        narrowing: PAPER,
+    },
+    ComparedSolver {
         name: "rough",
         solver: Solver::Cta,
         focus: Some(Focus::NONE),
         narrowing: cta::Options::ROUGH,
     },
-    Compared {
+    ComparedSolver {
         name: "rough tracker",
         solver: Solver::Cta,
         focus: Some(BOTH),
@@ -75,7 +85,7 @@ fn main() -> ExitCode {
 
 /// Begins the table.
 fn begin_table(run: &mut Run) {
-    let solver = |compared: &Compared| {
+    let solver = |compared: &ComparedSolver| {
         let name = compared.name;
         format!(
             "|{name}:>11.0=solvers/{name}/median_ns; mean:>6.0=solvers/{name}/mean_ns; \
@@ -138,10 +148,12 @@ fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mu
     let (measured, parry) = in_rotation::<Vec<_>, { COMPARED.len() }>(
         sequences,
         scale,
-        |who, (bodies, sequence), measured| follow(measured, &COMPARED[who], bodies, sequence),
+        |who, (bodies, sequence), measured| {
+            follow_sequence(measured, &COMPARED[who], bodies, sequence)
+        },
         |[reference, others @ ..]| {
             let differs = |answers: &Vec<_>| {
-                answers.iter().zip(reference).filter(|(a, b)| !agree(a, b)).count()
+                answers.iter().zip(reference).filter(|(a, b)| !answers_agree(a, b)).count()
             };
             differences += others.iter().map(differs).sum::<usize>();
         },
@@ -154,14 +166,14 @@ fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mu
 }
 
 /// Measures a solver on a sequence.
-fn follow(
+fn follow_sequence(
     measured: &mut Measured,
-    compared: &Compared,
+    compared: &ComparedSolver,
     bodies: &Bodies,
     sequence: &[Setting],
 ) -> Vec<Result<Outcome, QueryError>> {
     let stopwatch = Stopwatch::new();
-    let Compared { solver, narrowing, focus, .. } = *compared;
+    let ComparedSolver { solver, narrowing, focus, .. } = *compared;
     let options = Options::default().with_solver(solver).with_narrowing(narrowing);
     let mut tracker = match focus {
         Some(focus) => Tracker::new().with_focus(focus).expect("a focus"),
@@ -184,7 +196,7 @@ fn follow(
 }
 
 /// Whether two answers agree within their certificates.
-fn agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bool {
+fn answers_agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bool {
     match (a, b) {
         (Ok(Outcome::Contact(a)), Ok(Outcome::Contact(b))) => {
             let tolerance = a.certificate.rounding.max(b.certificate.rounding);

@@ -20,7 +20,7 @@ use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
-struct Own {
+struct OwnArguments {
     /// Run each query N times in a row, and take the mean
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: u32,
@@ -32,21 +32,21 @@ const SIZES: [usize; 5] = [8, 32, 128, 2_000, 20_000];
 const GAPS: [f64; 4] = [0.5, 1e-6, 1e-9, -0.1];
 
 /// Parry's answer is wrong if its error exceeds this share of the gap.
-const SHARE: f64 = 1e-2;
+const WRONG_SHARE: f64 = 1e-2;
 
 /// Translation, and rotation in radians, between successive settings of a sequence.
 const STEP: f64 = 0.01;
 
 fn main() -> ExitCode {
     let about = "Compares distances and depths with parry3d-f64; prints a table";
-    harness::run("distance", about, |run, own: &Own| {
+    harness::run("distance", about, |run, own: &OwnArguments| {
         let columns =
             "vertices:>8; gap:>8.0e; ours ns:>9.0=ours/median_ns; parry ns:>9.0=parry/median_ns;
             ratio:>7.2; wrong:>7; noises:>9.2; coherent:>9.2";
         run.table("", columns);
         for n in run.sizes(&SIZES) {
             for gap in GAPS {
-                run.add(row(n, gap, run, Clock::new(own.repeat)));
+                run.add(measure_row(n, gap, run, Clock::new(own.repeat)));
             }
         }
         Ok(())
@@ -54,7 +54,7 @@ fn main() -> ExitCode {
 }
 
 /// Measures two bodies of a size at a gap, several times.
-fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
+fn measure_row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
     let mut random = run.random(&[n as u64]);
     let pairs: Vec<[ConvexPolyhedron; 2]> = (0..if n > 1_000 { 2 } else { 8 })
         .map(|_| Shape::Ellipsoid.pair(n, &mut random).expect("bodies"))
@@ -68,7 +68,7 @@ fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
     for index in 0..run.choose(200, 1_000) {
         let which = index % pairs.len();
         let ([p, q], [x, y]) = (&pairs[which], &theirs[which]);
-        let Some([a, b]) = at_gap(p, q, gap, &mut random) else { continue };
+        let Some([a, b]) = poses_at_gap(p, q, gap, &mut random) else { continue };
         let setting = ParrySetting::placed([&a, &b], DVec3::X);
         let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
         let parry = || if gap > 0.0 { setting.distance(x, y) } else { setting.depth(x, y) };
@@ -78,10 +78,11 @@ fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
         };
         let (mine, other) = times.ask(clock, us, parry);
         let [lower, upper] = mine.expect("an answer");
-        wrong += u32::from(other.is_none_or(|other| (other - lower).abs() > SHARE * gap.abs()));
-        widest = widest.max((upper - lower) / noise(&pair));
+        wrong +=
+            u32::from(other.is_none_or(|other| (other - lower).abs() > WRONG_SHARE * gap.abs()));
+        widest = widest.max((upper - lower) / rounding_error(&pair));
         if gap > 0.0 {
-            coherent.add(followed(&pair, clock, &mut random));
+            coherent.add(tracked_time_ratio(&pair, clock, &mut random));
         }
     }
     json!({
@@ -91,7 +92,7 @@ fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
     })
 }
 /// Returns the time of a tracked distance after a small change, relative to the same distance from scratch.
-fn followed(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
+fn tracked_time_ratio(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
     let mut tracker = Tracker::new();
     tracker.distance(pair).expect("an answer");
     let turn = DQuat::from_axis_angle(random.direction(), STEP) * pair.moving_pose().rotation();
@@ -107,7 +108,7 @@ fn followed(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
 }
 
 /// Draws poses with random orientations in which the bodies have a gap.
-fn at_gap(
+fn poses_at_gap(
     p: &ConvexPolyhedron,
     q: &ConvexPolyhedron,
     gap: f64,
@@ -122,7 +123,7 @@ fn at_gap(
 }
 
 /// Returns the rounding error that the library states, `32 u S`.
-fn noise(pair: &Pair) -> f64 {
+fn rounding_error(pair: &Pair) -> f64 {
     let vertices = [pair.moving().vertices(), pair.fixed().vertices()];
     16.0 * f64::EPSILON * size(vertices, [&pair.moving_pose(), &pair.fixed_pose()])
 }

@@ -26,7 +26,7 @@ fn main() -> ExitCode {
         for n in run.sizes(&SIZES) {
             for shape in [Shape::RandomHull, Shape::Ellipsoid] {
                 let failed = naming(format!("{} with {n} vertices", shape.name()));
-                run.add(measure(shape, n, run).map_err(failed)?);
+                run.add(measure_sections(shape, n, run).map_err(failed)?);
             }
         }
         Ok(())
@@ -34,7 +34,7 @@ fn main() -> ExitCode {
 }
 
 /// Measures the row of a shape and a size.
-fn measure(shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
+fn measure_sections(shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
     let corners = shape.draw(n, &mut run.random(&[n as u64]))?.vertices().to_vec();
     let body = ConvexPolyhedron::from_points(&corners)?;
     let per_vertex = || body.memory_bytes() as f64 / body.vertices().len() as f64;

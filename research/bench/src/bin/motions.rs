@@ -24,14 +24,14 @@ use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
-struct Own {
+struct OwnArguments {
     /// Measure a bolt with 1,200 triangles in a nut with 576 instead
     #[arg(long)]
     threads: bool,
 }
 
 /// Accepted error of parry's answer, as a share of the motion.
-const OFF: f64 = 1e-6;
+const ACCEPTED_ERROR: f64 = 1e-6;
 
 /// A body that spins about a uniformly moving point, and a body at rest.
 struct Turning {
@@ -45,39 +45,45 @@ struct Turning {
 
 fn main() -> ExitCode {
     let about = "Compares first contacts of rotating bodies with parry3d-f64; prints a table";
-    harness::run("motions", about, |run, own: &Own| {
+    harness::run("motions", about, |run, own: &OwnArguments| {
         if own.threads {
-            bolts(run);
+            measure_bolts(run);
         } else {
-            families(run);
+            measure_families(run);
         }
         Ok(())
     })
 }
 
 /// Measures all families.
-fn families(run: &mut Run) {
+fn measure_families(run: &mut Run) {
     let columns = "family:<28; ours ns:>9.0=ours/median_ns; parry ns:>9.0=parry/median_ns; ratio:>7.2; contact:>7=contacts;
         looks:>6; most:>6=most_looks; width:>9.1e; missed:>7; late:>6; false:>6";
     run.table("", columns);
     for n in run.sizes(&[8, 32, 128, 2_000]) {
-        run.add(row(&format!("random {n}"), run, |random| spinning(n, random)));
+        run.add(measure_row(&format!("random {n}"), run, |random| draw_spinning(n, random)));
     }
     for gap in [1e-3, 1e-6, -1e-3, -1e-6] {
-        run.add(row(&format!("blade and tip {gap:e}"), run, |random| blade(gap, random)));
+        run.add(measure_row(&format!("blade and tip {gap:e}"), run, |random| {
+            draw_blade(gap, random)
+        }));
     }
-    run.add(row("blade through a cube", run, |random| blade(-0.2, random)));
-    run.add(row("door on its frame", run, door));
+    run.add(measure_row("blade through a cube", run, |random| draw_blade(-0.2, random)));
+    run.add(measure_row("door on its frame", run, draw_door));
     for gap in [1e-3, 1e-9] {
-        run.add(row(&format!("box above a table {gap:e}"), run, |random| table(gap, random)));
+        run.add(measure_row(&format!("box above a table {gap:e}"), run, |random| {
+            draw_table(gap, random)
+        }));
     }
     for gap in [1e-2, 1e-4] {
-        run.add(row(&format!("pin beside a wall {gap:e}"), run, |random| pin(gap, random)));
+        run.add(measure_row(&format!("pin beside a wall {gap:e}"), run, |random| {
+            draw_pin(gap, random)
+        }));
     }
 }
 
 /// Measures a bolt in a nut; a quick run leaves parry out.
-fn bolts(run: &mut Run) {
+fn measure_bolts(run: &mut Run) {
     run.program = "threads".into();
     let solid = |mesh: &Mesh| Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
     let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [24, 24], None));
@@ -111,7 +117,7 @@ fn bolts(run: &mut Run) {
 }
 
 /// Measures a family.
-fn row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> Value {
+fn measure_row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> Value {
     let mut random = run.random(&[name.len() as u64]);
     let (clock, mut times) = (Clock::new(1), Beside::default());
     let (mut looks, mut widths) = (Vec::new(), Vec::new());
@@ -136,8 +142,8 @@ fn row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> 
             (Some([lower, upper]), other) => {
                 widths.push(upper - lower);
                 missed += u32::from(other.is_none());
-                late += u32::from(other.is_some_and(|t| t > upper + OFF));
-                wrongly += u32::from(other.is_some_and(|t| t < lower - OFF));
+                late += u32::from(other.is_some_and(|t| t > upper + ACCEPTED_ERROR));
+                wrongly += u32::from(other.is_some_and(|t| t < lower - ACCEPTED_ERROR));
             }
             (None, other) => wrongly += u32::from(other.is_some()),
         }
@@ -153,13 +159,13 @@ fn row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> 
 }
 
 /// Builds a box.
-fn cuboid(half: [f64; 3]) -> Option<ConvexPolyhedron> {
+fn box_body(half: [f64; 3]) -> Option<ConvexPolyhedron> {
     let half = DVec3::from_array(half);
     ConvexPolyhedron::cuboid(-half, half).ok()
 }
 
 /// Draws ellipsoids that pass each other, one of them rotating.
-fn spinning(n: usize, random: &mut Random) -> Option<Turning> {
+fn draw_spinning(n: usize, random: &mut Random) -> Option<Turning> {
     let bodies = [(); 2].map(|()| Shape::Ellipsoid.draw(n, random).expect("a body"));
     let from = random.direction() * random.range(3.0, 5.0);
     let start = Pose::new(random.rotation(), from).ok()?;
@@ -170,10 +176,10 @@ fn spinning(n: usize, random: &mut Random) -> Option<Turning> {
 }
 
 /// Draws a blade that turns past a tip or into it. For deep cuts, the other body is a cube.
-fn blade(gap: f64, random: &mut Random) -> Option<Turning> {
+fn draw_blade(gap: f64, random: &mut Random) -> Option<Turning> {
     let half = [1.0, random.range(0.02, 0.1), random.range(0.1, 0.3)];
     let reach = (half[0] * half[0] + half[1] * half[1]).sqrt();
-    let blade = cuboid(half)?;
+    let blade = box_body(half)?;
     let tip = if gap < -0.1 {
         ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.2, -0.2), DVec3::new(0.4, 0.2, 0.2)).ok()?
     } else {
@@ -188,9 +194,9 @@ fn blade(gap: f64, random: &mut Random) -> Option<Turning> {
 }
 
 /// Draws a door that closes on its frame, face to face.
-fn door(random: &mut Random) -> Option<Turning> {
-    let door = cuboid([1.0, random.range(0.02, 0.06), 2.0])?;
-    let frame = cuboid([0.05, 0.05, 2.2])?;
+fn draw_door(random: &mut Random) -> Option<Turning> {
+    let door = box_body([1.0, random.range(0.02, 0.06), 2.0])?;
+    let frame = box_body([0.05, 0.05, 2.2])?;
     let y = -(random.range(0.07, 0.1) + 0.05);
     let open = DQuat::from_rotation_z(random.range(0.5, 2.5));
     let start = Pose::new(open, open * DVec3::X).ok()?;
@@ -200,8 +206,8 @@ fn door(random: &mut Random) -> Option<Turning> {
 }
 
 /// Draws a box that spins above a table.
-fn table(gap: f64, random: &mut Random) -> Option<Turning> {
-    let bodies = [cuboid([0.5, 0.3, 0.25])?, cuboid([3.0, 3.0, 0.5])?];
+fn draw_table(gap: f64, random: &mut Random) -> Option<Turning> {
+    let bodies = [box_body([0.5, 0.3, 0.25])?, box_body([3.0, 3.0, 0.5])?];
     let start = Pose::new(DQuat::from_rotation_z(random.range(0.0, 1.0)), DVec3::ZERO).ok()?;
     let there = Pose::from_translation(DVec3::Z * -(0.75 + gap)).ok()?;
     let (center, velocity) = (random.vector() * DVec3::new(0.3, 0.3, 0.0), DVec3::ZERO);
@@ -209,11 +215,11 @@ fn table(gap: f64, random: &mut Random) -> Option<Turning> {
 }
 
 /// Draws a pin with 48 sides that turns near a wall.
-fn pin(gap: f64, random: &mut Random) -> Option<Turning> {
+fn draw_pin(gap: f64, random: &mut Random) -> Option<Turning> {
     let pin = Shape::Prism.draw(96, random).ok()?;
     let reach = |v: &DVec3| v.truncate().length();
     let radius = pin.vertices().iter().map(reach).fold(0.0, f64::max);
-    let wall = cuboid([1.0, 5.0, 5.0])?;
+    let wall = box_body([1.0, 5.0, 5.0])?;
     let there = Pose::from_translation(DVec3::X * (1.0 + radius + gap)).ok()?;
     let (start, center, velocity) = (Pose::IDENTITY, DVec3::ZERO, DVec3::ZERO);
     Some(Turning { bodies: [pin, wall], start, center, velocity, spin: DVec3::Z * 6.0, there })

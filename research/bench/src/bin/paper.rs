@@ -24,7 +24,7 @@ use glam::DVec3;
 use serde_json::{Map, Value, json};
 
 #[derive(Debug, Args)]
-struct Own {
+struct OwnArguments {
     /// Leave out the sequences for region focus
     #[arg(long)]
     no_focus: bool,
@@ -43,8 +43,8 @@ const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 const COMPARED: [(&str, Option<cta::Options>); 4] = [
     ("portal", None),
     ("rough", Some(cta::Options::ROUGH)),
-    ("centre 1%", Some(to(cta::Until::Gap(0.01)))),
-    ("centre end", Some(to(cta::Until::Exit))),
+    ("centre 1%", Some(search_until(cta::Until::Gap(0.01)))),
+    ("centre end", Some(search_until(cta::Until::Exit))),
 ];
 
 /// The solvers for sequences: the end of the search, and the memory of the tracker.
@@ -55,13 +55,13 @@ const FOLLOWED: [(&str, cta::Until, Focus); 3] = [
 ];
 
 /// Returns the options of a search from the centre to `until`, across cells that contain little of the region.
-const fn to(until: cta::Until) -> cta::Options {
+const fn search_until(until: cta::Until) -> cta::Options {
     cta::Options::new(cta::Start::Center, until).with_keeps_to_cell(false)
 }
 
 /// A kind of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum BodyKind {
     /// Ellipsoids with faces as long as wide.
     Balanced,
     /// Ellipsoids with faces whose length is [`STRETCH`] times their width.
@@ -69,12 +69,12 @@ enum Kind {
     Other(Shape),
 }
 
-const KINDS: [Kind; 5] = [
-    Kind::Balanced,
-    Kind::Thin,
-    Kind::Other(Shape::Superellipsoid),
-    Kind::Other(Shape::HalfEllipsoid),
-    Kind::Other(Shape::RandomHull),
+const KINDS: [BodyKind; 5] = [
+    BodyKind::Balanced,
+    BodyKind::Thin,
+    BodyKind::Other(Shape::Superellipsoid),
+    BodyKind::Other(Shape::HalfEllipsoid),
+    BodyKind::Other(Shape::RandomHull),
 ];
 
 const STRETCH: f64 = 100.0;
@@ -82,7 +82,7 @@ const STRETCH: f64 = 100.0;
 /// A memory of only the region of the last solution.
 const REGION: Focus = Focus::NONE.with_region(cta::Region::Automatic);
 
-impl Kind {
+impl BodyKind {
     fn name(self) -> String {
         match self {
             Self::Balanced => "balanced".into(),
@@ -111,7 +111,7 @@ impl Kind {
 fn main() -> ExitCode {
     let about =
         "Compares the collision translation algorithm with portal refinement; prints tables";
-    harness::run("paper", about, |run, own: &Own| {
+    harness::run("paper", about, |run, own: &OwnArguments| {
         for n in run.sizes(&SIZES) {
             measure_size(n, !own.no_focus, run)
                 .map_err(naming(format!("bodies with {n} vertices")))?;
@@ -121,7 +121,7 @@ fn main() -> ExitCode {
 }
 
 /// Declares the columns for these solvers.
-fn columns(names: &[&str]) -> String {
+fn declare_columns(names: &[&str]) -> String {
     let solver = |who: &&str| {
         format!(
             "|:>10=\"{who}\"; :>6.2=solvers/{who}/ratio; :>5.2=solvers/{who}/planar_problems; \
@@ -147,41 +147,49 @@ fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> 
     let legend = "\nmedian ns over portal's on the colliding settings; planar problems and exchanges on \
          average; parry's median ns at 8 vertices";
     let (names, followed) = (COMPARED.map(|c| c.0), FOLLOWED.map(|c| c.0));
-    run.table(legend, &columns(&names));
+    run.table(legend, &declare_columns(&names));
     for kind in KINDS {
         let bodies = [kind.bodies(n, &mut random)?, kind.bodies(n, &mut random)?];
         let mut unit = None;
-        run.table("", &columns(&names));
+        run.table("", &declare_columns(&names));
         for (name, meeting) in
             [("colliding", Meeting::Colliding), ("near miss", Meeting::PassingWithin(0.05))]
         {
             let mut draw = |bodies: &Bodies| Setting::draw(bodies, meeting, &mut random);
             let blocks =
                 blocks(&bodies, count / BLOCK, |bodies| (0..BLOCK).map(|_| draw(bodies)).collect());
-            let (measured, parry) = in_rotation(&blocks, &scale, one_off, |_: &[(); 4]| ());
+            let (measured, parry) = in_rotation(&blocks, &scale, answer_twice, |_: &[(); 4]| ());
             let unit = *unit.get_or_insert(measured[0].times.median());
             let name = format!("{}, {name}", kind.name());
-            run.add(row(&name, n, (&names, &measured), unit, &parry, &phases(&blocks, false)));
+            run.add(solver_row(
+                &name,
+                n,
+                (&names, &measured),
+                unit,
+                &parry,
+                &measure_phases(&blocks, false),
+            ));
         }
-        if !focus || !matches!(kind, Kind::Balanced | Kind::Thin) {
+        if !focus || !matches!(kind, BodyKind::Balanced | BodyKind::Thin) {
             continue;
         }
-        run.table("", &columns(&followed));
+        run.table("", &declare_columns(&followed));
         for change in CHANGES {
             let sequences = blocks(&bodies, (count / LENGTH).max(2), |bodies| {
                 Setting::sequence(bodies, Meeting::Colliding, change, LENGTH, &mut random)
             });
-            let (measured, parry) = in_rotation(&sequences, &scale, tracked, |_: &[(); 3]| ());
+            let (measured, parry) =
+                in_rotation(&sequences, &scale, follow_sequence, |_: &[(); 3]| ());
             let name = format!("{}, change {:.4} %", kind.name(), 100.0 * change);
-            let (unit, phases) = (unit.unwrap_or(f64::NAN), phases(&sequences, true));
-            run.add(row(&name, n, (&followed, &measured), unit, &parry, &phases));
+            let (unit, phases) = (unit.unwrap_or(f64::NAN), measure_phases(&sequences, true));
+            run.add(solver_row(&name, n, (&followed, &measured), unit, &parry, &phases));
         }
     }
     Ok(())
 }
 
 /// Returns the row of the solvers, with their medians over a unit.
-fn row(
+fn solver_row(
     name: &str,
     n: usize,
     (names, measured): (&[&str], &[Measured]),
@@ -200,7 +208,7 @@ fn row(
 }
 
 /// Returns the options of a query.
-fn options(narrowing: Option<cta::Options>) -> Options {
+fn query_options(narrowing: Option<cta::Options>) -> Options {
     match narrowing {
         None => Options::default().with_solver(Solver::Portal),
         Some(narrowing) => Options::default().with_solver(Solver::Cta).with_narrowing(narrowing),
@@ -208,9 +216,9 @@ fn options(narrowing: Option<cta::Options>) -> Options {
 }
 
 /// Answers a block twice without a memory, and measures the second pass.
-fn one_off(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
+fn answer_twice(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
     let stopwatch = Stopwatch::new();
-    let options = options(COMPARED[who].1);
+    let options = query_options(COMPARED[who].1);
     let cast = |s: &Setting| s.cast(bodies, &options)?.first_contact();
     for setting in settings {
         std::hint::black_box(cast(setting).is_ok());
@@ -222,10 +230,10 @@ fn one_off(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
 }
 
 /// Follows a sequence with a tracker.
-fn tracked(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
+fn follow_sequence(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
     let stopwatch = Stopwatch::new();
     let (_, until, focus) = FOLLOWED[who];
-    let options = options(Some(to(until)));
+    let options = query_options(Some(search_until(until)));
     let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
     for setting in sequence {
         let (outcome, spent) =
@@ -236,8 +244,8 @@ fn tracked(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
 
 /// Returns the median nanoseconds of each phase of a search from the centre to the end. The searches are second
 /// passes over blocks, or, with region focus, sequences.
-fn phases(blocks: &[Block], is_focused: bool) -> Value {
-    let options = options(Some(to(cta::Until::Exit)));
+fn measure_phases(blocks: &[Block], is_focused: bool) -> Value {
+    let options = query_options(Some(search_until(cta::Until::Exit)));
     let mut spent: Vec<(&str, Times)> = Vec::new();
     for (bodies, settings) in blocks {
         let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");

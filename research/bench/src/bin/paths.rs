@@ -33,23 +33,23 @@ fn main() -> ExitCode {
             "obstacles:<10; pairs:>8; looks:>8; planes:>8; ms:>10.1; check, ms:>10.1=check_ms",
         );
         for (name, solids) in [("convex", false), ("solids", true)] {
-            run.add(measured(name, solids, run.choose(3, TIMES)).map_err(naming(name))?);
+            run.add(measure_scene(name, solids, run.choose(3, TIMES)).map_err(naming(name))?);
         }
         Ok(())
     })
 }
 
 /// Measures a scene.
-fn measured(name: &str, solids: bool, times: usize) -> Result<Value, PathError> {
+fn measure_scene(name: &str, solids: bool, times: usize) -> Result<Value, PathError> {
     let mut random = Random::new(5);
-    let (arm, links) = (arm()?, links(&mut random));
-    let path = JointPath::evenly(rows())?;
+    let (arm, links) = (build_arm()?, build_links(&mut random));
+    let path = JointPath::evenly(path_rows())?;
     let mut obstacles: Vec<(AnyBody, Pose)> = Vec::new();
     loop {
         while obstacles.len() < OBSTACLES {
-            obstacles.push(obstacle(solids, &mut random));
+            obstacles.push(draw_obstacle(solids, &mut random));
         }
-        let cast = cast(&arm, &path, &links, &obstacles)?;
+        let cast = build_cast(&arm, &path, &links, &obstacles)?;
         let outcome = cast.first_contact()?;
         match &outcome {
             PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
@@ -76,7 +76,7 @@ fn measured(name: &str, solids: bool, times: usize) -> Result<Value, PathError> 
 }
 
 /// Builds an arm with three joints each for shoulder and wrist and the usual layout, in metres.
-fn arm() -> Result<Mechanism, PathError> {
+fn build_arm() -> Result<Mechanism, PathError> {
     let (turns, tips) = (Joint::Turning(DVec3::Z), Joint::Turning(DVec3::Y));
     let frames = [
         ([0.0, 0.0, 0.1], turns),
@@ -94,7 +94,7 @@ fn arm() -> Result<Mechanism, PathError> {
 }
 
 /// Builds the links.
-fn links(random: &mut Random) -> Vec<AnyBody> {
+fn build_links(random: &mut Random) -> Vec<AnyBody> {
     [0.1, 0.425, 0.39, 0.05, 0.08, 0.1]
         .map(|length| {
             let points = random_hull(100, random).vertices;
@@ -106,7 +106,7 @@ fn links(random: &mut Random) -> Vec<AnyBody> {
 }
 
 /// Returns the rows of the path.
-fn rows() -> Vec<Vec<f64>> {
+fn path_rows() -> Vec<Vec<f64>> {
     let row = |k: usize| {
         let t = std::f64::consts::TAU * k as f64 / ROWS as f64;
         let twice = (2.0 * t).sin();
@@ -116,7 +116,7 @@ fn rows() -> Vec<Vec<f64>> {
 }
 
 /// Draws an obstacle.
-fn obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
+fn draw_obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
     let size = random.range(0.03, 0.1);
     let body = if solids {
         let mesh = bumpy_ball(1_000).mapped(|v| v * size).triangulated();
@@ -132,7 +132,7 @@ fn obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
 }
 
 /// Checks all links against all obstacles, and against each other except for neighbours.
-fn cast<'a>(
+fn build_cast<'a>(
     arm: &'a Mechanism,
     path: &'a JointPath,
     links: &'a [AnyBody],

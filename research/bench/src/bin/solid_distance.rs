@@ -34,12 +34,12 @@ fn main() -> ExitCode {
             parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>6.2=ratio_of_medians; mean:>7.2=ratio; nodes:>9; leaves:>8;
             off:>9.1e";
         run.table("", columns);
-        for (name, [a, b]) in pairs(meshes) {
+        for (name, [a, b]) in mesh_pairs(meshes) {
             for gap in GAPS {
                 let count = run.choose(40, 200);
-                let placed = |p: &Solid, q: &Solid| placements([p, q], gap, count);
+                let placed = |p: &Solid, q: &Solid| draw_poses([p, q], gap, count);
                 let kind = if gap.is_infinite() { "apart".into() } else { format!("gap {gap:e}") };
-                if let Some(row) = measure(&format!("{name}, {kind}"), [&a, &b], placed) {
+                if let Some(row) = measure_pair(&format!("{name}, {kind}"), [&a, &b], placed) {
                     run.add(row);
                 }
             }
@@ -48,8 +48,9 @@ fn main() -> ExitCode {
             let name = format!("thread of {sides}, inside");
             let rod = thread([1.0, 0.1, 0.5], [0.0, 2.0], [sides, 2 * sides], None);
             let nut = thread([1.04, 0.1, 0.5], [0.6, 1.4], [sides, sides], Some(1.5));
-            let placed = |_: &Solid, _: &Solid| in_thread(run.choose(10, 60));
-            let row = meshes.wants(&name).then(|| measure(&name, [&rod, &nut], placed)).flatten();
+            let placed = |_: &Solid, _: &Solid| poses_in_thread(run.choose(10, 60));
+            let row =
+                meshes.wants(&name).then(|| measure_pair(&name, [&rod, &nut], placed)).flatten();
             if let Some(row) = row {
                 run.add(row);
             }
@@ -59,7 +60,7 @@ fn main() -> ExitCode {
 }
 
 /// Returns the pairs of meshes with their names.
-fn pairs(meshes: &MeshArguments) -> Vec<(String, [Mesh; 2])> {
+fn mesh_pairs(meshes: &MeshArguments) -> Vec<(String, [Mesh; 2])> {
     let ball = || bumpy_ball(16_000);
     let plate = || perforated_plate([6, 4], 0.4, 32);
     let made = vec![("bumpy balls", [ball(), ball()]), ("perforated plates", [plate(), plate()])];
@@ -74,7 +75,7 @@ fn pairs(meshes: &MeshArguments) -> Vec<(String, [Mesh; 2])> {
 }
 
 /// Draws `count` poses of both bodies, apart or at a gap.
-fn placements([p, q]: [&Solid; 2], gap: f64, count: usize) -> Vec<[Pose; 2]> {
+fn draw_poses([p, q]: [&Solid; 2], gap: f64, count: usize) -> Vec<[Pose; 2]> {
     let size = reach(p.vertices()) + reach(q.vertices());
     let mut random = Random::stream(27, &[p.triangles().len() as u64]);
     let mut draw = || -> Option<[Pose; 2]> {
@@ -94,7 +95,7 @@ fn placements([p, q]: [&Solid; 2], gap: f64, count: usize) -> Vec<[Pose; 2]> {
 }
 
 /// Returns poses of a rod that follows its thread.
-fn in_thread(count: usize) -> Vec<[Pose; 2]> {
+fn poses_in_thread(count: usize) -> Vec<[Pose; 2]> {
     let turn = |k: usize| {
         let angle = 0.3 + 0.7 * k as f64;
         let rise = angle / std::f64::consts::TAU * 0.5 % 0.25;
@@ -105,7 +106,7 @@ fn in_thread(count: usize) -> Vec<[Pose; 2]> {
 }
 
 /// Measures a pair.
-fn measure(
+fn measure_pair(
     name: &str,
     meshes: [&Mesh; 2],
     placed: impl Fn(&Solid, &Solid) -> Vec<[Pose; 2]>,

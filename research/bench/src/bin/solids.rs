@@ -9,7 +9,7 @@
 //! A pair has four kinds of starts. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
 //! one and up to 0.7 times to the side. *Near*: the meshes meet, and the start is [`NEAR`] times the sum before the
 //! contact. *Near miss*: a near start is shifted along a random axis until the meshes miss each other by at
-//! most [`MISS`] times the sum (bisection). *Touching*: the moving mesh starts [`SUNK`] times the sum beyond
+//! most [`MISS`] times the sum (bisection). *Touching*: the moving mesh starts [`TOUCHING_DEPTH`] times the sum beyond
 //! the contact.
 
 use std::process::ExitCode;
@@ -34,7 +34,7 @@ const AGREEMENT: f64 = 1e-4;
 const NEAR: f64 = 0.02;
 const MISS: f64 = 0.01;
 /// Depth of touching starts, as a share of the sum of the radii.
-const SUNK: f64 = 1e-6;
+const TOUCHING_DEPTH: f64 = 1e-6;
 /// Number of queries of one library in a row.
 const BLOCK: usize = 50;
 
@@ -46,16 +46,16 @@ fn main() -> ExitCode {
             p99:>9.0=p99_ns ÷ 1e3 us; parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>8.2=ratio_of_medians; hits:>5";
         run.table("", columns);
         let convex = meshes.wants("convex").then(convex_pairs).into_iter().flatten();
-        for pair in pairs(meshes).into_iter().chain(convex) {
+        for pair in mesh_pairs(meshes).into_iter().chain(convex) {
             for start in Start::ALL {
                 pair.measure(start, run);
             }
         }
         if meshes.wants("growth") {
-            growth(run);
+            measure_growth(run);
         }
         if meshes.wants("flat") {
-            flat(run);
+            measure_slabs(run);
         }
         Ok(())
     })
@@ -85,7 +85,7 @@ fn convex_pairs() -> Vec<Pair> {
 }
 
 /// Returns the pairs that are not convex.
-fn pairs(meshes: &MeshArguments) -> Vec<Pair> {
+fn mesh_pairs(meshes: &MeshArguments) -> Vec<Pair> {
     let ball = || bumpy_ball(16_000);
     let plate = || perforated_plate([6, 4], 0.4, 32);
     let made = vec![
@@ -203,7 +203,7 @@ impl Pair {
                 |by: f64| Some(placement.moved(placement.direction * (distance + by * size)));
             match start {
                 Start::Near => return forward(-NEAR),
-                Start::Touching => return forward(SUNK),
+                Start::Touching => return forward(TOUCHING_DEPTH),
                 Start::Far | Start::NearMiss => {}
             }
             let aside = random.direction().reject_from_normalized(placement.direction);
@@ -222,7 +222,7 @@ impl Pair {
             _ => format!("{}, {}", self.name, start.name()),
         };
         let placements = self.placements([&p, &q], start, count, run);
-        let row = compare(self.group, &name, [&p, &q], &placements);
+        let row = compare_libraries(self.group, &name, [&p, &q], &placements);
         let mut row = merged(row, json!({ "start": start.name() }));
         let convex = (self.group == "convex").then(|| as_convex([&p, &q], &placements)).flatten();
         let Some(times) = convex else { return run.add(row) };
@@ -238,7 +238,12 @@ impl Pair {
 }
 
 /// Measures both libraries on the same settings.
-fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement]) -> Value {
+fn compare_libraries(
+    group: &str,
+    name: &str,
+    [p, q]: [&Solid; 2],
+    placements: &[Placement],
+) -> Value {
     let meshes = [p, q].map(|body| triangle_mesh(body.vertices(), body.triangles()));
     let size: f64 = [p, q].map(|body| body.bounds().size().length()).into_iter().sum();
     let stopwatch = Stopwatch::new();
@@ -299,7 +304,7 @@ fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Beside> {
 }
 
 /// Measures the same body with more and more facets.
-fn growth(run: &mut Run) {
+fn measure_growth(run: &mut Run) {
     let sizes = [16_000, 64_000, 256_000, 1_000_000];
     for size in run.choose(vec![sizes[0], sizes[3]], sizes.into()) {
         let mesh = bumpy_ball(size);
@@ -308,7 +313,7 @@ fn growth(run: &mut Run) {
         let mut random = run.random(&[7]);
         let placements: Vec<Placement> =
             (0..run.choose(20, 100)).map(|_| Placement::draw([1.2, 1.2], &mut random)).collect();
-        let row = compare("growth", "bumpy ball", [&body, &body], &placements);
+        let row = compare_libraries("growth", "bumpy ball", [&body, &body], &placements);
         let bytes = body.memory_bytes() as f64 / body.triangles().len() as f64;
         run.add(merged(row, json!({ "build_ns": build, "bytes_per_facet": bytes })));
         println!("    built in {:.1} ms, {bytes:.0} bytes a facet", build / 1e6);
@@ -316,7 +321,7 @@ fn growth(run: &mut Run) {
 }
 
 /// Measures a slab on another one, at random places.
-fn flat(run: &mut Run) {
+fn measure_slabs(run: &mut Run) {
     let oblique = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
     let cases = [
         ("resting", 0.25, DVec3::NEG_Z),
@@ -341,7 +346,12 @@ fn flat(run: &mut Run) {
                         direction: rotation * direction,
                     })
                     .collect();
-                run.add(compare("flat", &format!("{name}{turned}"), [&body; 2], &placements));
+                run.add(compare_libraries(
+                    "flat",
+                    &format!("{name}{turned}"),
+                    [&body; 2],
+                    &placements,
+                ));
             }
         }
     }

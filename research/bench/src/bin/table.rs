@@ -23,7 +23,7 @@ use colltrans_testkit::timing::Stopwatch;
 use serde_json::{Value, json};
 
 #[derive(Debug, Args)]
-struct Own {
+struct OwnArguments {
     /// Measure only these rows
     #[arg(long, value_enum)]
     group: Option<Group>,
@@ -59,16 +59,16 @@ const AGREEMENT: f64 = 1e-4;
 
 fn main() -> ExitCode {
     let about = "Compares all solvers and parry3d-f64 on the same settings; prints a table";
-    harness::run("table", about, |run, own: &Own| {
+    harness::run("table", about, |run, own: &OwnArguments| {
         let legend = "ns: median and 99th percentile; x: parry's median over ours, mx: parry's mean over ours \
              (means without the slowest hundredth); planar problems and supports on average";
         run.table(legend, COLUMNS);
         let wants = |group| own.group.is_none_or(|only| only == group);
         if wants(Group::General) {
-            for (shape, n) in plan(&run.sizes(&SIZES)) {
+            for (shape, n) in measured_sizes(&run.sizes(&SIZES)) {
                 if own.shape.as_ref().is_none_or(|part| shape.name().contains(part)) {
                     let failed = naming(format!("{} with {n} vertices", shape.name()));
-                    general(shape, n, run).map_err(failed)?;
+                    measure_general(shape, n, run).map_err(failed)?;
                 }
             }
         }
@@ -76,13 +76,13 @@ fn main() -> ExitCode {
             for (tie, placement) in
                 Tie::ALL.into_iter().flat_map(|tie| Placement::ALL.map(|placed| (tie, placed)))
             {
-                run.add(tied(tie, placement, placement.name(), None, run));
+                run.add(measure_tied(tie, placement, placement.name(), None, run));
             }
         }
         if wants(Group::Cold) {
             for tie in Tie::ALL {
                 let other = Some(RefCell::new(vec![0; OTHER / size_of::<u64>()]));
-                run.add(tied(tie, Placement::Rotated, "rotated, cold", other, run));
+                run.add(measure_tied(tie, Placement::Rotated, "rotated, cold", other, run));
             }
         }
         Ok(())
@@ -98,7 +98,7 @@ const COLUMNS: &str = "shape:<18; n:>6=vertices; :<16=meeting; build ms:>8.2=bui
     diff:>4.0=parry_disagreements + parry/failures";
 
 /// Returns the shapes and sizes: all sizes of ellipsoids, and some sizes of the others.
-fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
+fn measured_sizes(sizes: &[usize]) -> Vec<(Shape, usize)> {
     use Shape::{
         Bicone, Box, Chamfered, Cone, Cylinder, Ellipsoid, Frustum, HalfEllipsoid, Needle, Plate,
         Prism, RandomHull, Superellipsoid,
@@ -153,7 +153,7 @@ impl Cases {
 }
 
 /// Adds both rows of a shape and a size.
-fn general(shape: Shape, n: usize, run: &mut Run) -> Result<(), BuildError> {
+fn measure_general(shape: Shape, n: usize, run: &mut Run) -> Result<(), BuildError> {
     let mut random = run.random(&[n as u64]);
     let count = if n >= 50_000 { 2 } else { 4 };
     let started = Instant::now();
@@ -173,13 +173,13 @@ fn general(shape: Shape, n: usize, run: &mut Run) -> Result<(), BuildError> {
             (k % cases.pairs.len(), Setting::draw(bodies, meeting, &mut random))
         };
         cases.settings = (0..settings).map(draw).collect();
-        run.add(row((shape.name(), n), meeting, &cases, run));
+        run.add(measure_row((shape.name(), n), meeting, &cases, run));
     }
     Ok(())
 }
 
 /// Returns a row of tied settings.
-fn tied(
+fn measure_tied(
     tie: Tie,
     placement: Placement,
     name: &str,
@@ -194,20 +194,25 @@ fn tied(
         .map(|k| (k % pairs.len(), tie.draw(&pairs[k % pairs.len()], placement, &mut random)))
         .collect();
     let cases = Cases { pairs, settings, build, other };
-    row((tie.name().into(), 0), name, &cases, run)
+    measure_row((tie.name().into(), 0), name, &cases, run)
 }
 
 /// Answers a setting with `colltrans`.
-fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, QueryError> {
+fn cast_with(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, QueryError> {
     setting.cast(bodies, &Options::default().with_solver(solver))?.first_contact()
 }
 
 /// Measures a solver on all settings of a block.
-fn measure(measured: &mut Measured, cases: &Cases, solver: Solver, block: &[(usize, Setting)]) {
+fn measure_block(
+    measured: &mut Measured,
+    cases: &Cases,
+    solver: Solver,
+    block: &[(usize, Setting)],
+) {
     let stopwatch = Stopwatch::new();
     for (pair, setting) in block {
         cases.other_work();
-        let (outcome, spent) = stopwatch.time(|| ask(&cases.pairs[*pair], setting, solver));
+        let (outcome, spent) = stopwatch.time(|| cast_with(&cases.pairs[*pair], setting, solver));
         if measured.count(&outcome) {
             measured.times.add(spent);
         }
@@ -215,7 +220,7 @@ fn measure(measured: &mut Measured, cases: &Cases, solver: Solver, block: &[(usi
 }
 
 /// Measures all solvers and parry on cases.
-fn row((shape, asked): (String, usize), meeting: &str, cases: &Cases, run: &Run) -> Value {
+fn measure_row((shape, asked): (String, usize), meeting: &str, cases: &Cases, run: &Run) -> Value {
     let all = || cases.pairs.iter().flat_map(|bodies| &bodies.pair);
     let vertices = all().map(|b| b.vertices().len()).sum::<usize>();
     let bytes = all().map(ConvexPolyhedron::memory_bytes).sum::<usize>();
@@ -249,7 +254,7 @@ fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMP
             };
             let [ours @ .., parry] = &mut measured;
             for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
-                measure(&mut ours[index], cases, solver, block(index));
+                measure_block(&mut ours[index], cases, solver, block(index));
             }
             // Parry's linear support search at these sizes needs no second measurement.
             if pass == 0 || vertices < 9_000 {
@@ -280,14 +285,14 @@ fn measure_parry(
         cases.other_work();
         let (answer, spent) = stopwatch.time(|| converted.cast(moving, fixed));
         measured.times.add(spent);
-        disagreements += u32::from(compare && !agrees(setting, &cases.pairs[*pair], answer));
+        disagreements += u32::from(compare && !parry_agrees(setting, &cases.pairs[*pair], answer));
     }
     disagreements
 }
 
 /// Whether parry's answer agrees with ours within parry's accuracy.
-fn agrees(setting: &Setting, bodies: &Bodies, theirs: Option<f64>) -> bool {
-    match (ask(bodies, setting, Solver::Portal), theirs) {
+fn parry_agrees(setting: &Setting, bodies: &Bodies, theirs: Option<f64>) -> bool {
+    match (cast_with(bodies, setting, Solver::Portal), theirs) {
         (Ok(Outcome::Contact(contact)), Some(time)) => {
             // Parry does not report contacts behind the start.
             (contact.translation - time).abs() <= AGREEMENT || contact.translation < AGREEMENT

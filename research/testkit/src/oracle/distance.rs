@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn touching_is_meeting_and_the_next_number_is_not() {
+    fn touching_counts_as_meeting_but_one_ulp_apart_does_not() {
         for touching in [at(1.0, 0.25, 0.0), at(1.0, 1.0, 0.5), at(1.0, -1.0, 1.0)] {
             assert!(cubes(&touching).intersects());
             assert_eq!(cubes(&touching).to_f64(), 0.0);
@@ -341,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_that_no_f64_square_holds() {
+    fn distances_with_squares_outside_f64_are_exact() {
         let tiny = Pose::from_translation(DVec3::X * 2.0_f64.powi(-190)).unwrap();
         let point = body(&[DVec3::ZERO]);
         let is = distance_of_bodies((&point, &Pose::IDENTITY), (&point, &tiny)).to_f64();

@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn a_third_is_not_an_f64() {
+    fn one_third_differs_from_its_f64() {
         let third = Ratio::new(Dyadic::new(1.0), Dyadic::new(3.0));
         assert_ne!(third, Ratio::from_f64(1.0 / 3.0));
         assert_eq!(third.to_f64(), 1.0 / 3.0);
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn square_roots_of_numbers_that_no_f64_holds() {
+    fn square_roots_of_numbers_outside_f64_are_exact() {
         for x in [3e-200, 1e-300, 7.0, 1e200, 5e-320, 0.0] {
             let x = Ratio::from_f64(x);
             let root = x.times(&x).sqrt_to_f64();

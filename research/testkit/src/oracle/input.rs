@@ -157,7 +157,7 @@ mod tests {
     use crate::shapes::cuboid;
 
     #[test]
-    fn a_point_that_is_left_out_is_found() {
+    fn missing_point_is_detected() {
         let points = cuboid(DVec3::ONE).vertices;
         let body = ConvexPolyhedron::from_points(&points).expect("a cube");
         assert_eq!(judge(&points, &body), Ok(Kept::default()));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_is_no_point_is_found() {
+    fn vertex_that_is_not_a_point_is_detected() {
         let mut points = cuboid(DVec3::ONE).vertices;
         let body = ConvexPolyhedron::from_points(&points).expect("a cube");
         points[3].x = points[3].x.next_down();

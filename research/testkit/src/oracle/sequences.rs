@@ -308,7 +308,7 @@ mod tests {
     use crate::oracle::shadow::sideways_overlap;
 
     #[test]
-    fn a_walk_is_a_function_of_its_name() {
+    fn walk_is_determined_by_its_name() {
         for (family, _) in FAMILIES {
             let mut walks = [0; 2].map(|_| Walk::new(family, 7));
             for _ in 0..50 {
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_to_the_rim_ends_there() {
+    fn step_to_the_rim_ends_there() {
         for seed in 0..200 {
             let mut setting = setting(["random", "boxes", "prisms"][seed as usize % 3], seed);
             let mut rng = Random::new(seed);

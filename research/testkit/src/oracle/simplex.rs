@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_meet_where_they_should() {
+    fn boxes_meet_at_the_expected_translation() {
         let along = |x: f64, d| cubes(DVec3::new(x, 0.25, 0.5), d).map(|t| t.to_f64());
         assert_eq!(along(5.0, DVec3::X), Some(3.5));
         assert_eq!(along(5.0, DVec3::NEG_X), Some(-6.5));
@@ -153,14 +153,14 @@ mod tests {
     }
 
     #[test]
-    fn rim_counts_as_meeting_and_the_next_number_does_not() {
+    fn touching_at_the_rim_is_contact_but_one_ulp_beyond_is_not() {
         let at = |y: f64| cubes(DVec3::new(5.0, y, 0.0), DVec3::X);
         assert_eq!(at(1.5).unwrap().to_f64(), 3.5);
         assert!(at(1.5_f64.next_up()).is_none());
     }
 
     #[test]
-    fn a_third_is_exact() {
+    fn one_third_is_exact() {
         let (p, q) = ([DVec3::ZERO], [DVec3::new(1.0, 0.0, 1.0), DVec3::new(-2.0, 0.0, 0.0)]);
         let scene = Scene::new((&p, &Pose::IDENTITY), (&q, &Pose::IDENTITY), DVec3::Z);
         let two_thirds = Ratio::new(Dyadic::new(2.0), Dyadic::new(3.0));

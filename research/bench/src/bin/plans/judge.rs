@@ -20,7 +20,7 @@ const BELOW: f64 = 1e-6;
 
 /// The result of the judgement.
 #[derive(Default)]
-pub(crate) struct Judged {
+pub(crate) struct PlanJudgement {
     /// Sum of the travels of all steps in one straight move.
     pub(crate) travel: f64,
     /// Sum of the least possible travels, over all checked directions.
@@ -33,13 +33,13 @@ pub(crate) struct Judged {
     pub(crate) crossing: Vec<(usize, usize)>,
 }
 
-impl Judged {
+impl PlanJudgement {
     pub(crate) fn of(found: &Findings) -> Self {
         let plan = &found.plan;
         let mut directions = found.matrix.directions().to_vec();
         directions.extend(plan.steps.iter().flat_map(|step| [step.direction, -step.direction]));
         directions.extend(Sphere::with_directions(SAMPLES).directions);
-        let mut frames = Frames { bodies: found.bodies, known: HashMap::new() };
+        let mut frames = DirectionFrames { bodies: found.bodies, known: HashMap::new() };
         let mut judged = Self::default();
         let mut workspace = Workspace::default();
         let size = found.bodies.assembly().size();
@@ -70,7 +70,7 @@ impl Judged {
             if own > 1e-3 * size {
                 judged.worst = judged.worst.max(own / least.max(1e-3 * size));
             }
-            let crossing = crossing(found.bodies, &step.parts, &left, step.direction, k);
+            let crossing = count_crossing_rays(found.bodies, &step.parts, &left, step.direction, k);
             judged.rays += RAYS * step.parts.len();
             if crossing > 0 {
                 judged.crossing.push((k, crossing));
@@ -94,12 +94,12 @@ fn is_free(
 }
 
 /// The boxes of all parts in frames whose third axis is a direction.
-struct Frames<'a> {
+struct DirectionFrames<'a> {
     bodies: &'a Bodies<'a>,
     known: HashMap<[u64; 3], Vec<Aabb>>,
 }
 
-impl Frames<'_> {
+impl DirectionFrames<'_> {
     /// Returns the travel of a group until its boxes are beyond those of the remaining parts that lie in its
     /// way.
     fn travel(&mut self, group: &[usize], left: &[usize], d: DVec3) -> f64 {
@@ -126,17 +126,25 @@ impl Frames<'_> {
 
 /// Counts the rays from points below the surface of the moving parts that meet remaining parts. Pairs with an
 /// accepted overlap at the start are left out.
-fn crossing(bodies: &Bodies, group: &[usize], left: &[usize], d: DVec3, seed: usize) -> usize {
+fn count_crossing_rays(
+    bodies: &Bodies,
+    group: &[usize],
+    left: &[usize],
+    d: DVec3,
+    seed: usize,
+) -> usize {
     let assembly = bodies.assembly();
     let (u, v) = d.any_orthonormal_pair();
     let flat = |p: DVec3| DVec2::new(p.dot(u), p.dot(v));
     let mut random = Random::new(seed as u64);
-    let mut rays: Vec<Vec<Ray>> = Vec::new();
+    let mut rays: Vec<Vec<ProjectedRay>> = Vec::new();
     for &part in group {
         let solid = assembly.parts()[part].solid();
         let below = BELOW * assembly.size() + bodies.fit().tolerance();
-        let points = points(solid.vertices(), solid.triangles(), below, &mut random);
-        rays.push(points.into_iter().map(|p| Ray { at: flat(p), from: p.dot(d) }).collect());
+        let points = draw_points(solid.vertices(), solid.triangles(), below, &mut random);
+        rays.push(
+            points.into_iter().map(|p| ProjectedRay { at: flat(p), from: p.dot(d) }).collect(),
+        );
     }
     let mut crossing = 0;
     for (&part, rays) in group.iter().zip(&rays) {
@@ -169,12 +177,12 @@ fn crossing(bodies: &Bodies, group: &[usize], left: &[usize], d: DVec3, seed: us
 }
 
 /// A point in the projection along a direction, with a ray to infinity.
-struct Ray {
+struct ProjectedRay {
     at: DVec2,
     from: f64,
 }
 
-impl Ray {
+impl ProjectedRay {
     /// Whether the ray meets a triangle.
     fn meets(&self, heights: [f64; 3], [a, b, c]: [DVec2; 3]) -> bool {
         let whole = (b - a).perp_dot(c - a);
@@ -190,7 +198,7 @@ impl Ray {
 }
 
 /// Draws points below facets, each facet with its area as weight.
-fn points(
+fn draw_points(
     vertices: &[DVec3],
     triangles: &[[u32; 3]],
     below: f64,

@@ -24,10 +24,10 @@ use colltrans_testkit::random::Random;
 use glam::DAffine3;
 use serde_json::{Value, json};
 
-use judge::Judged;
+use judge::PlanJudgement;
 
 #[derive(Debug, Args)]
-struct Own {
+struct OwnArguments {
     /// Folder of real assemblies
     #[arg(long, default_value = "../shared/data")]
     data: PathBuf,
@@ -47,32 +47,32 @@ struct Own {
 
 fn main() -> ExitCode {
     let about = "Plans the disassembly of machines, and judges the plans";
-    harness::run("plans", about, |run, own: &Own| {
-        let made = if own.fine && !own.turned { fine() } else { machines() };
+    harness::run("plans", about, |run, own: &OwnArguments| {
+        let made = if own.fine && !own.turned { fine_machines() } else { generated_machines() };
         for (name, parts) in made.into_iter().filter(|(name, _)| name.starts_with(&own.only)) {
             if own.turned {
-                run.add(turned(&name, &parts)?);
+                run.add(compare_with_rotated(&name, &parts)?);
                 continue;
             }
             if let Some(folder) = &own.parts {
-                written(&folder.join(&name), &parts)?;
+                write_parts(&folder.join(&name), &parts)?;
             }
-            run.add(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, !own.fine)?);
+            run.add(plan_row(&name, &build_assembly(&parts, DAffine3::IDENTITY)?, !own.fine)?);
         }
-        let real = if own.turned || own.fine { Vec::new() } else { real(&own.data) };
+        let real = if own.turned || own.fine { Vec::new() } else { real_assemblies(&own.data) };
         for (name, path) in real.into_iter().filter(|(name, _)| name.starts_with(&own.only)) {
             if !path.exists() {
                 println!("{name:>16}: not there");
                 continue;
             }
-            run.add(row(&name, &read(path, &ReadOptions::default())?, true)?);
+            run.add(plan_row(&name, &read(path, &ReadOptions::default())?, true)?);
         }
         Ok(())
     })
 }
 
 /// Returns the generated machines.
-fn machines() -> Vec<(String, Vec<NamedPart>)> {
+fn generated_machines() -> Vec<(String, Vec<NamedPart>)> {
     let mut all: Vec<_> =
         [8, 16, 32, 64, 256].map(|bolts| (format!("flange_{bolts}"), flange(bolts, 32))).into();
     all.extend(
@@ -85,7 +85,7 @@ fn machines() -> Vec<(String, Vec<NamedPart>)> {
 
 /// Returns machines with about three million facets: long thin ones, as CAD programs make them for large
 /// cylinders, and many small ones.
-fn fine() -> Vec<(String, Vec<NamedPart>)> {
+fn fine_machines() -> Vec<(String, Vec<NamedPart>)> {
     let quartered = |sides: usize, times: usize| {
         let mut parts = flange(8, sides);
         for mesh in parts.iter_mut().flat_map(|part| &mut part.1) {
@@ -99,7 +99,7 @@ fn fine() -> Vec<(String, Vec<NamedPart>)> {
 }
 
 /// Returns the names and folders of the real assemblies.
-fn real(data: &Path) -> Vec<(String, PathBuf)> {
+fn real_assemblies(data: &Path) -> Vec<(String, PathBuf)> {
     let mut all = vec![("gearbox".to_owned(), data.join("gearbox"))];
     let folder = data.join("assemblies");
     for name in ["flange8", "pillow_block", "valve_oring"] {
@@ -114,7 +114,7 @@ fn real(data: &Path) -> Vec<(String, PathBuf)> {
 }
 
 /// Builds an assembly at a pose.
-fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Failure> {
+fn build_assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Failure> {
     let part = |(name, bodies): &NamedPart| -> Result<Part, Failure> {
         let piece = |mesh: &colltrans_testkit::shapes::Mesh| Piece {
             mesh: Mesh::new(mesh.vertices.clone(), mesh.faces.clone()),
@@ -127,7 +127,7 @@ fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Failure> 
 }
 
 /// Writes each body as a file, and a manifest of all parts.
-fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
+fn write_parts(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder)?;
     let mut entries = Vec::new();
     for (name, bodies) in parts {
@@ -145,26 +145,26 @@ fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
 }
 
 /// Plans without options; if that plan is incomplete, plans again with the suggested options.
-fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Failure> {
+fn plan_row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Failure> {
     let question = Question::default();
     let fit = Fit::default_for(assembly);
     let clock = Clock::start();
     let bodies = Bodies::new(assembly, fit)?;
-    let (found, stages) = asked(&question, &bodies, &clock)?;
-    let mut told = vec![said(name, "", &found, clock.seconds(), judged)];
+    let (found, stages) = find_plan(&question, &bodies, &clock)?;
+    let mut told = vec![judgement_row(name, "", &found, clock.seconds(), judged)];
     println!("{:>20}{stages}", "");
     if !found.plan.stuck.is_empty() && !found.suggestions.is_empty() {
         let clock = Clock::start();
         let suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
         let bodies = Bodies::new(&suggested, fit)?;
         let found = question.ask(&bodies, Watch::default())?;
-        told.push(said(name, "--auto", &found, clock.seconds(), judged));
+        told.push(judgement_row(name, "--auto", &found, clock.seconds(), judged));
     }
     Ok(json!({ "name": name, "plans": told }))
 }
 
 /// Plans, and measures the time of the phases.
-fn asked<'a>(
+fn find_plan<'a>(
     question: &Question,
     bodies: &'a Bodies<'a>,
     clock: &Clock,
@@ -188,7 +188,7 @@ fn asked<'a>(
 }
 
 /// Returns the row of a plan.
-fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {
+fn judgement_row(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {
     let (plan, assembly) = (&found.plan, found.bodies.assembly());
     let facets: usize = assembly.parts().iter().map(Part::facets).sum();
     let stages = plan.stages().len();
@@ -202,8 +202,8 @@ fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool)
     for reason in &reasons {
         println!("{:>20}{reason}", "");
     }
-    let Judged { travel, least, worst, rays, crossing } =
-        if judged { Judged::of(found) } else { Judged::default() };
+    let PlanJudgement { travel, least, worst, rays, crossing } =
+        if judged { PlanJudgement::of(found) } else { PlanJudgement::default() };
     let ratio = if least > 0.0 { travel / least } else { 1.0 };
     if judged {
         let crossings: Vec<String> =
@@ -223,7 +223,7 @@ fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool)
 }
 
 /// Measures the same machine in its original pose and rotated, in turns.
-fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Failure> {
+fn compare_with_rotated(name: &str, parts: &[NamedPart]) -> Result<Value, Failure> {
     let mut random = Random::new(31);
     let mut ratios = Vec::new();
     let mut seconds = [0.0; 2];
@@ -231,12 +231,12 @@ fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Failure> {
         let places = [DAffine3::IDENTITY, DAffine3::from_quat(random.rotation())];
         let mut steps = [0; 2];
         for (k, place) in places.into_iter().enumerate() {
-            let assembly = assembly(parts, place)?;
+            let assembly = build_assembly(parts, place)?;
             let up = place.transform_vector3(glam::DVec3::Z);
             let question = Question::default().with_gravity(-up);
             let clock = Clock::start();
             let bodies = Bodies::new(&assembly, Fit::default_for(&assembly))?;
-            let (found, stages) = asked(&question, &bodies, &clock)?;
+            let (found, stages) = find_plan(&question, &bodies, &clock)?;
             seconds[k] = clock.seconds();
             println!("{:>20}{stages}", "");
             steps[k] = found.plan.steps.len();
@@ -262,11 +262,11 @@ struct Clock {
 
 impl Clock {
     fn start() -> Self {
-        Self { wall: Instant::now(), spent: spent() }
+        Self { wall: Instant::now(), spent: processor_time() }
     }
 
     fn seconds(&self) -> f64 {
-        match (self.spent, spent()) {
+        match (self.spent, processor_time()) {
             (Some(before), Some(now)) => now - before,
             _ => self.wall.elapsed().as_secs_f64(),
         }
@@ -274,7 +274,7 @@ impl Clock {
 }
 
 /// Returns the processor time. Linux reports it in hundredths of a second.
-fn spent() -> Option<f64> {
+fn processor_time() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |k: usize| fields.get(k)?.parse::<f64>().ok();

@@ -17,14 +17,14 @@ pub(super) fn section(run: &Value) -> String {
         "{BODIES}; portal, ns:,=solvers/portal/median_ns ÷ solvers/portal/ratio; `portal`:~=solvers/portal/ratio;
         `cta`, rough:~=solvers/rough/ratio; {}; {};
         of parry:~=solvers/centre end/median_ns ÷ parry_8/median_ns",
-        trio("centre, 1 %", "centre 1%"),
-        trio("centre, end", "centre end"),
+        solver_columns("centre, 1 %", "centre 1%"),
+        solver_columns("centre, end", "centre end"),
     );
     let sequences = format!(
         "{BODIES}; {}; {}; no focus, end:~=solvers/centre end/ratio;
         planar:>.2=solvers/centre end/planar_problems",
-        trio("focus, 1 %", "focus 1%"),
-        trio("focus, end", "focus end"),
+        solver_columns("focus, 1 %", "focus 1%"),
+        solver_columns("focus, end", "focus end"),
     );
     let mut phased: Vec<Value> =
         rows(run).iter().filter(|row| row["phases"].is_object()).cloned().collect();
@@ -62,7 +62,7 @@ pub(super) fn section(run: &Value) -> String {
 const BODIES: &str = "bodies:<=settings; vertices:,";
 
 /// Declares the columns for the ratio, planar problems and exchanges of one solver.
-fn trio(head: &str, who: &str) -> String {
+fn solver_columns(head: &str, who: &str) -> String {
     format!(
         "{head}:~=solvers/{who}/ratio; planar:>.2=solvers/{who}/planar_problems; left:>.2=solvers/{who}/pivots"
     )

@@ -16,9 +16,9 @@ const VERDICTS: [Verdict; 4] =
 /// runs without results for all claims.
 pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, Failure> {
     let mut page = String::new();
-    origin(&mut page, run, again, all)?;
+    write_provenance(&mut page, run, again, all)?;
     page.push_str("\n| claim | the paper | here | verdict |\n|---|---|---|---|\n");
-    for claim in list(run) {
+    for claim in claim_list(run) {
         writeln!(
             page,
             "| {} (`{}`) | {}; {} | {} | {} |",
@@ -26,16 +26,16 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
             string(claim, "id"),
             string(claim, "paper"),
             string(claim, "place"),
-            measured(claim),
-            verdict(claim, again),
+            format_measured(claim),
+            format_verdict(claim, again),
         )?;
     }
-    readings(&mut page, run)?;
+    write_readings(&mut page, run)?;
     page.push_str(
         "\nWhy, where a claim does not hold or is undecided, as far as the data tell: what the reason lies in, and the \
          counts that show it.\n\n",
     );
-    for claim in list(run) {
+    for claim in claim_list(run) {
         if let Some(why) = claim["why"].as_str() {
             writeln!(page, "- `{}`, {}: {why}", string(claim, "id"), string(claim, "reason"))?;
         }
@@ -44,10 +44,10 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
 }
 
 /// Formats the claims about thin faces, with their results under both readings of "thin".
-fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
+fn write_readings(page: &mut String, run: &Value) -> Result<(), Failure> {
     let [(first, _), (second, _)] = READINGS;
-    let of = |id: &str| list(run).iter().find(|claim| string(claim, "id") == id);
-    let pairs: Vec<_> = list(run)
+    let of = |id: &str| claim_list(run).iter().find(|claim| string(claim, "id") == id);
+    let pairs: Vec<_> = claim_list(run)
         .iter()
         .filter_map(|claim| {
             let name = string(claim, "id").strip_suffix(first)?;
@@ -66,7 +66,11 @@ fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
     for (name, claims) in &pairs {
         let [a, b] = claims.map(|claim| {
             let first = claim["measured"].as_array().and_then(|all| all.first());
-            format!("{}, {}", first.map_or(String::new(), estimate), string(claim, "verdict"))
+            format!(
+                "{}, {}",
+                first.map_or(String::new(), format_estimate),
+                string(claim, "verdict")
+            )
         });
         writeln!(page, "| `{name}` | {a} | {b} |")?;
     }
@@ -82,30 +86,38 @@ fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
 }
 
 /// Returns the claims of a run.
-fn list(run: &Value) -> &[Value] {
+fn claim_list(run: &Value) -> &[Value] {
     run["claims"].as_array().map_or(&[], Vec::as_slice)
 }
 
 /// Returns the verdict of the other run.
-fn of_again<'v>(claim: &Value, again: &'v Value) -> Option<&'v str> {
-    let same = list(again).iter().find(|other| string(other, "id") == string(claim, "id"))?;
+fn other_verdict<'v>(claim: &Value, again: &'v Value) -> Option<&'v str> {
+    let same = claim_list(again).iter().find(|other| string(other, "id") == string(claim, "id"))?;
     Some(string(same, "verdict"))
 }
 
 /// Formats the provenance.
-fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(), Failure> {
+fn write_provenance(
+    page: &mut String,
+    run: &Value,
+    again: &Value,
+    all: usize,
+) -> Result<(), Failure> {
     for run in [run, again] {
-        if list(run).len() < all {
-            return Err(
-                format!("laboratory: {} of {all} claims were tested", list(run).len()).into()
-            );
+        if claim_list(run).len() < all {
+            return Err(format!(
+                "laboratory: {} of {all} claims were tested",
+                claim_list(run).len()
+            )
+            .into());
         }
     }
     let counts = VERDICTS.map(|verdict| verdict.to_string()).map(|verdict| {
-        let count = list(run).iter().filter(|claim| string(claim, "verdict") == verdict).count();
+        let count =
+            claim_list(run).iter().filter(|claim| string(claim, "verdict") == verdict).count();
         format!("{count} {verdict}")
     });
-    let is_same = |claim: &&Value| of_again(claim, again) == Some(string(claim, "verdict"));
+    let is_same = |claim: &&Value| other_verdict(claim, again) == Some(string(claim, "verdict"));
     let machine = &run["machine"];
     writeln!(
         page,
@@ -118,48 +130,49 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
         string(machine, "cores"),
         string(machine, "cpu"),
         string(run, "versions"),
-        list(run).len(),
+        claim_list(run).len(),
         counts.join(", "),
         string(again, "scale"),
         again["seed"],
-        list(run).iter().filter(is_same).count(),
-        list(run).iter().filter(|claim| overlap(claim, again)).count(),
+        claim_list(run).iter().filter(is_same).count(),
+        claim_list(run).iter().filter(|claim| intervals_overlap(claim, again)).count(),
     )?;
     Ok(())
 }
 
 /// Whether the intervals of a claim's numbers overlap with those of the other run.
-fn overlap(claim: &Value, again: &Value) -> bool {
-    let same = list(again).iter().find(|other| string(other, "id") == string(claim, "id"));
+fn intervals_overlap(claim: &Value, again: &Value) -> bool {
+    let same = claim_list(again).iter().find(|other| string(other, "id") == string(claim, "id"));
     let Some(same) = same else { return false };
-    numbers(claim).iter().zip(numbers(same)).all(|(one, other)| {
+    measured_numbers(claim).iter().zip(measured_numbers(same)).all(|(one, other)| {
         let [[a, b], [c, d]] = [one, other].map(|e| ["low", "high"].map(|key| number(e, key)));
         a <= d && c <= b
     })
 }
 
 /// Returns the measured numbers of a claim.
-fn numbers(claim: &Value) -> &[Value] {
+fn measured_numbers(claim: &Value) -> &[Value] {
     claim["measured"].as_array().map_or(&[], Vec::as_slice)
 }
 
 /// Formats an estimate with its interval.
-fn estimate(one: &Value) -> String {
+fn format_estimate(one: &Value) -> String {
     let [value, low, high] = ["value", "low", "high"].map(|key| number(one, key));
     Estimate { value, low, high }.to_string()
 }
 
 /// Formats the measured numbers of a claim.
-fn measured(claim: &Value) -> String {
-    let each =
-        numbers(claim).iter().map(|one| format!("{} {}", estimate(one), string(one, "what")));
+fn format_measured(claim: &Value) -> String {
+    let each = measured_numbers(claim)
+        .iter()
+        .map(|one| format!("{} {}", format_estimate(one), string(one, "what")));
     each.collect::<Vec<_>>().join("; ")
 }
 
 /// Formats the verdict, with a deviating one of the other run.
-fn verdict(claim: &Value, again: &Value) -> String {
+fn format_verdict(claim: &Value, again: &Value) -> String {
     let first = string(claim, "verdict");
-    match of_again(claim, again) {
+    match other_verdict(claim, again) {
         Some(second) if second != first => format!("{first} (again: {second})"),
         _ => first.into(),
     }

@@ -63,7 +63,7 @@ type Failure = Box<dyn Error>;
 type Section = fn(&Value) -> String;
 
 /// Returns the newest run of each kind. The kind is the file's name without date and extension.
-fn newest(folder: &Path) -> Result<BTreeMap<String, (String, String)>, Failure> {
+fn newest_runs(folder: &Path) -> Result<BTreeMap<String, (String, String)>, Failure> {
     let mut runs = BTreeMap::new();
     let mut names: Vec<String> = fs::read_dir(folder)
         .map_err(|error| format!("{}: {error}", folder.display()))?
@@ -84,7 +84,7 @@ fn newest(folder: &Path) -> Result<BTreeMap<String, (String, String)>, Failure> 
 /// Writes the changed files, or only lists them.
 fn run(command: &Command) -> Result<Vec<String>, Failure> {
     let docs = command.root.join("docs");
-    let runs = newest(&docs.join("measurements"))?;
+    let runs = newest_runs(&docs.join("measurements"))?;
     let parsed = |kind: &str| -> Result<Option<Value>, Failure> {
         let run = runs.get(kind);
         Ok(run
@@ -114,7 +114,7 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
             write!(
                 page,
                 "\n## {}\n\n[{name}](measurements/{name})\n\n```text\n{}\n```\n",
-                title(kind),
+                section_title(kind),
                 text.trim_end()
             )?;
         }
@@ -124,14 +124,18 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
     };
     let mut files = vec![
         ("docs/measurements.md", page),
-        ("docs/speed.svg", draw(&speed(&table)).map_err(|e| format!("speed.svg: {e}"))?.svg),
-        ("README.md", between("speed", &old("README.md")?, &small_table(&table)?)?),
+        ("docs/speed.svg", draw(&speed_figure(&table)).map_err(|e| format!("speed.svg: {e}"))?.svg),
+        ("README.md", replace_between("speed", &old("README.md")?, &small_table(&table)?)?),
     ];
     if let [Some(run), Some(again)] = [parsed("laboratory")?, parsed("laboratory-again")?] {
         let name = "docs/laboratory.md";
         files.push((
             name,
-            between("claims", &old(name)?, &laboratory::claims(&run, &again, CLAIMS.len())?)?,
+            replace_between(
+                "claims",
+                &old(name)?,
+                &laboratory::claims(&run, &again, CLAIMS.len())?,
+            )?,
         ));
     }
     let mut changed = Vec::new();
@@ -148,7 +152,7 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
 }
 
 /// Returns the title of a kind.
-fn title(kind: &str) -> String {
+fn section_title(kind: &str) -> String {
     let mut letters = kind.replace('-', " ").chars().collect::<Vec<_>>();
     if let Some(first) = letters.first_mut() {
         first.make_ascii_uppercase();
@@ -327,7 +331,7 @@ fn building(run: &Value) -> String {
 }
 
 /// Draws the median times of colliding ellipsoids against the number of vertices.
-fn speed(run: &Value) -> Figure {
+fn speed_figure(run: &Value) -> Figure {
     let of = |who: &str, name: &str| Series {
         name: name.into(),
         points: rows(run)
@@ -389,7 +393,7 @@ fn small_table(run: &Value) -> Result<String, Failure> {
 }
 
 /// Replaces the text between the markers `NAME: begin` and `NAME: end` of a page.
-fn between(name: &str, page: &str, text: &str) -> Result<String, Failure> {
+fn replace_between(name: &str, page: &str, text: &str) -> Result<String, Failure> {
     let [begin, end] = ["begin", "end"].map(|edge| format!("<!-- {name}: {edge} -->"));
     let missing = |marker: &str| format!("missing marker {marker}; add it to the page");
     let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;
@@ -404,8 +408,8 @@ mod tests {
     #[test]
     fn text_between_markers_is_replaced() {
         let page = |text: &str| format!("a\n<!-- x: begin -->\n{text}<!-- x: end -->\nb\n");
-        assert_eq!(between("x", &page("old\n"), "new\n").unwrap(), page("new\n"));
-        assert!(between("y", &page("old\n"), "new").is_err());
+        assert_eq!(replace_between("x", &page("old\n"), "new\n").unwrap(), page("new\n"));
+        assert!(replace_between("y", &page("old\n"), "new").is_err());
     }
 
     #[test]

@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn changed_contacts_are_refused() {
+    fn changed_contacts_are_rejected() {
         type Change = fn(&mut Contact);
         let changes: [(&str, Change); 8] = [
             ("later", |c| c.translation += 4.0 * c.certificate.rounding),
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn changed_separations_are_refused() {
+    fn changed_separations_are_rejected() {
         let separations = answers(|o| matches!(o, Outcome::Separated(_)));
         assert_eq!(separations.len(), 20);
         for (setting, outcome) in separations {

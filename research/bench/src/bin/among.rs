@@ -113,7 +113,8 @@ fn measure_row(n: usize, run: &Run) -> Value {
     })
 }
 
-/// Returns the processor time of this thread for some work, in nanoseconds. Other programs do not count.
+/// Returns the processor time of this thread for some work, in nanoseconds. Other programs do not
+/// count, except on systems that only report wall-clock time.
 fn own_time(clock: Clock, work: impl FnMut()) -> f64 {
     let (before, ((), wall)) = (on_processor(), clock.time(work));
     before.zip(on_processor()).map_or(wall, |(before, after)| after - before)

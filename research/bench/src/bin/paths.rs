@@ -1,7 +1,7 @@
 //! `paths`: measures a six-axis arm on a path with 1,000 rows among 50 obstacles, with the proof and its check.
 //!
 //! Links are ellipsoids with 100 vertices. Obstacles are ellipsoids with 50 vertices, or non-convex bumpy balls
-//! with 1,000 triangles, around the path of the arm. An obstacle that the path meets is replaced by another
+//! with 1,000 triangles, 0.5 to 1.3 m from the base of the arm. An obstacle that the path meets is replaced by another
 //! one, until the path is free of 50 obstacles. That path is measured. There is no comparison, because no other
 //! library answers between samples.
 
@@ -75,7 +75,7 @@ fn measure_scene(name: &str, solids: bool, times: usize) -> Result<Value, PathEr
     }
 }
 
-/// Builds an arm with three joints each for shoulder and wrist and the usual layout, in metres.
+/// Builds an arm whose joints turn about z, y, y, y, z and y. Offsets are in metres.
 fn build_arm() -> Result<Mechanism, PathError> {
     let (turns, tips) = (Joint::Turning(DVec3::Z), Joint::Turning(DVec3::Y));
     let frames = [
@@ -131,7 +131,8 @@ fn draw_obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
     (body, Pose::new(random.rotation(), at).expect("a pose"))
 }
 
-/// Checks all links against all obstacles, and against each other except for neighbours.
+/// Builds the cast of all links against all obstacles, and against each other except for neighbours and links of
+/// the wrist.
 fn build_cast<'a>(
     arm: &'a Mechanism,
     path: &'a JointPath,

@@ -25,7 +25,7 @@ pub(crate) struct PlanJudgement {
     pub(crate) travel: f64,
     /// Sum of the least possible travels, over all checked directions.
     pub(crate) least: f64,
-    /// The largest ratio of travel to least travel.
+    /// The largest ratio of travel to least travel, over steps with a considerable travel.
     pub(crate) worst: f64,
     /// Number of rays from points of moving parts, along their way.
     pub(crate) rays: usize,
@@ -66,7 +66,7 @@ impl PlanJudgement {
             }
             judged.travel += own;
             judged.least += least;
-            // Travels that are short relative to the assembly count as 0.
+            // Travels below 1e-3 of the assembly's size do not count.
             if own > 1e-3 * size {
                 judged.worst = judged.worst.max(own / least.max(1e-3 * size));
             }

@@ -1,7 +1,7 @@
-//! `plans`: compares plans with known disassembly orders, on generated machines and on real assemblies.
+//! `plans`: judges plans for generated machines with a known order, and for real assemblies if they are present.
 //!
-//! The figures are the number of separated parts, with the reason for the others; the travel relative to the
-//! shortest free travel; the result of rays ([`judge`]); and the time.
+//! The figures are the number of steps, the reasons of an incomplete plan, the travel relative to the
+//! shortest free travel, the result of rays ([`judge`]) and the time.
 
 mod judge;
 
@@ -193,7 +193,7 @@ fn judgement_row(name: &str, options: &str, found: &Findings, seconds: f64, judg
     let facets: usize = assembly.parts().iter().map(Part::facets).sum();
     let stages = plan.stages().len();
     println!(
-        "{name:>16} {options}: {} parts, {facets} facets, {seconds:.2} s: {} steps, told as {stages}",
+        "{name:>16} {options}: {} parts, {facets} facets, {seconds:.2} s: {} steps in {stages} stages",
         assembly.parts().len(),
         plan.steps.len(),
     );

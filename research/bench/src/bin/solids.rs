@@ -7,10 +7,10 @@
 //! at a time in turns. Otherwise the caches would contain the data of the other library.
 //!
 //! A pair has four kinds of starts. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
-//! one and up to 0.7 times to the side. *Near*: the meshes meet, and the start is [`NEAR`] times the sum before the
-//! contact. *Near miss*: a far start of a meeting pair is shifted along a random axis until the meshes miss each other by at
-//! most [`MISS`] times the sum (bisection). *Touching*: the moving mesh starts [`TOUCHING_DEPTH`] times the sum beyond
-//! the contact.
+//! one and up to 0.7 times to the side. *Near*: the meshes meet, and the start is [`NEAR`] times the sum before
+//! the contact. *Near miss*: a far start of a meeting pair is shifted along a random axis until the meshes miss
+//! each other by at most [`MISS`] times the sum (bisection). *Touching*: the moving mesh starts
+//! [`TOUCHING_DEPTH`] times the sum beyond the contact.
 
 use std::process::ExitCode;
 

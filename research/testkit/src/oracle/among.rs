@@ -1,11 +1,11 @@
 //! Judges scene queries (one body among many obstacles) by queries of each obstacle.
 //!
 //! - *Selection.* The answer is about the obstacle whose own answer, from a pair or cast, has the smallest
-//!   upper bound. If bounds are equal, the answer names the obstacle inserted first. Both are compared bit
-//!   by bit.
-//! - *Bounds.* For convex bodies the exact distance of each obstacle is at least the lower bound, and at
-//!   least one of these distances is at most the upper bound. By the linear programme, no obstacle is met before the bound of a
-//!   clearance, unless the bodies slide.
+//!   upper bound. If bounds are equal, the answer names the obstacle inserted first. Both are compared bit by
+//!   bit.
+//! - *Bounds.* For convex bodies the exact distance of each obstacle is at least the lower bound, and at least
+//!   one of these distances is at most the upper bound. By the linear programme, no obstacle is met before the
+//!   bound of a clearance, unless the bodies slide.
 //! - *The tree has no effect.* Obstacles that were inserted, moved and removed yield the same answers as
 //!   obstacles inserted in their final poses.
 //! - *Proofs.* They are valid, and modified proofs are rejected.

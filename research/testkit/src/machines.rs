@@ -26,18 +26,24 @@ pub fn flange(bolts: usize, sides: usize) -> Vec<NamedPart> {
     let at = |k: usize| DVec2::from_angle(TAU * k as f64 / bolts as f64) * circle;
     let around = (4 * bolts).max(2 * sides);
     let plate = |[inner, outer]: [f64; 2], [low, high]: [f64; 2]| {
-        let mut holes = vec![round(inner, around)];
-        holes.extend((0..bolts).map(|k| moved(&round(3.0, sides), at(k))));
-        stacked(low, &[(round(outer, around), high)], &holes)
+        let mut holes = vec![regular_polygon(inner, around)];
+        holes.extend((0..bolts).map(|k| translated_outline(&regular_polygon(3.0, sides), at(k))));
+        stack_prisms(low, &[(regular_polygon(outer, around), high)], &holes)
     };
     let mut parts: Vec<NamedPart> = vec![
         ("lower".into(), vec![plate([circle - 20.0, circle + 12.0], [-12.0, 0.0])]),
         ("gasket".into(), vec![plate([circle - 16.0, circle + 8.0], [0.0, 2.0])]),
         ("upper".into(), vec![plate([circle - 20.0, circle + 12.0], [2.0, 14.0])]),
     ];
-    let bolt = stacked(-20.0, &[(round(3.0, sides), 15.0), (round(5.5, 6), 19.0)], &[]);
-    let washer = stacked(14.0, &[(round(6.0, sides), 15.0)], &[round(3.0, sides)]);
-    let nut = stacked(-17.0, &[(round(5.5, 6), -12.0)], &[round(3.0, sides)]);
+    let bolt = stack_prisms(
+        -20.0,
+        &[(regular_polygon(3.0, sides), 15.0), (regular_polygon(5.5, 6), 19.0)],
+        &[],
+    );
+    let washer =
+        stack_prisms(14.0, &[(regular_polygon(6.0, sides), 15.0)], &[regular_polygon(3.0, sides)]);
+    let nut =
+        stack_prisms(-17.0, &[(regular_polygon(5.5, 6), -12.0)], &[regular_polygon(3.0, sides)]);
     for k in 0..bolts {
         let place = |mesh: &Mesh| vec![mesh.clone().translated(at(k).extend(0.0))];
         parts.push((format!("bolt_{k}"), place(&bolt)));
@@ -61,8 +67,9 @@ pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
         DVec2::from_angle(TAU * (k as f64 + 0.5) / cylinders as f64)
             * (f64::midpoint(inner, outer) * (1.0 + slope * slope).sqrt())
     };
-    let screws: Vec<Vec<DVec2>> =
-        (0..cylinders).map(|k| moved(&round(CORNER, SIDES), corner(k))).collect();
+    let screws: Vec<Vec<DVec2>> = (0..cylinders)
+        .map(|k| translated_outline(&regular_polygon(CORNER, SIDES), corner(k)))
+        .collect();
     let case = Drum {
         sides: cylinders,
         apothems: [inner, outer],
@@ -72,24 +79,30 @@ pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
         bored: vec![true; cylinders],
         screws: screws.clone(),
     };
-    let (rim, neck) = (polygon(outer, cylinders), round(4.0, SIDES));
+    let (rim, neck) = (polygon_with_apothem(outer, cylinders), regular_polygon(4.0, SIDES));
     let cover_holes: Vec<Vec<DVec2>> = std::iter::once(neck.clone()).chain(screws).collect();
-    let cover = stacked(DEPTH, &[(rim, DEPTH + 4.0)], &cover_holes);
+    let cover = stack_prisms(DEPTH, &[(rim, DEPTH + 4.0)], &cover_holes);
     let hub = 6.0 * cylinders as f64 / TAU + 2.0;
-    let shaft = stacked(-DEPTH, &[(polygon(hub, cylinders), 6.0), (neck, DEPTH + 20.0)], &[]);
+    let shaft = stack_prisms(
+        -DEPTH,
+        &[(polygon_with_apothem(hub, cylinders), 6.0), (neck, DEPTH + 20.0)],
+        &[],
+    );
     let mut parts: Vec<NamedPart> = vec![
         ("case".into(), vec![case.mesh()]),
         ("cover".into(), vec![cover]),
         ("shaft".into(), vec![shaft]),
     ];
-    let screw = [(round(CORNER, SIDES), DEPTH + 4.0), (round(2.2, 6), DEPTH + 6.0)];
-    let screw = stacked(-DEPTH, &screw, &[]);
+    let screw =
+        [(regular_polygon(CORNER, SIDES), DEPTH + 4.0), (regular_polygon(2.2, 6), DEPTH + 6.0)];
+    let screw = stack_prisms(-DEPTH, &screw, &[]);
     // The following parts are built along their own axis `z`, with the pin along `x`.
     let seat = outer + 24.0;
-    let bore = polygon(10.0, 8);
-    let barrel = [(round(12.0, SIDES), outer), (polygon(13.0, 8), seat)];
-    let barrel = stacked(inner + 1.0, &barrel, std::slice::from_ref(&bore));
-    let head = stacked(seat - 2.0, &[(bore, seat), (polygon(13.5, 8), seat + 4.0)], &[]);
+    let bore = polygon_with_apothem(10.0, 8);
+    let barrel = [(regular_polygon(12.0, SIDES), outer), (polygon_with_apothem(13.0, 8), seat)];
+    let barrel = stack_prisms(inner + 1.0, &barrel, std::slice::from_ref(&bore));
+    let head =
+        stack_prisms(seat - 2.0, &[(bore, seat), (polygon_with_apothem(13.5, 8), seat + 4.0)], &[]);
     let pin_at = outer + 7.0;
     let piston = Drum {
         sides: 8,
@@ -103,10 +116,13 @@ pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
     // A drum has its floor below, a piston above.
     let piston = piston.mesh().mapped(|p| DVec3::new(p.x, -p.y, -p.z));
     let upright = |p: DVec3| DVec3::new(p.z, p.x, p.y);
-    let pin = stacked(-9.0, &[(round(PIN, SIDES), 9.0)], &[]).mapped(upright);
+    let pin = stack_prisms(-9.0, &[(regular_polygon(PIN, SIDES), 9.0)], &[]).mapped(upright);
     let pin = pin.translated(DVec3::Z * pin_at);
-    let rod =
-        stacked(-3.0, &[(rod(hub, pin_at), 3.0)], &[moved(&round(PIN, SIDES), DVec2::Y * pin_at)]);
+    let rod = stack_prisms(
+        -3.0,
+        &[(rod_outline(hub, pin_at), 3.0)],
+        &[translated_outline(&regular_polygon(PIN, SIDES), DVec2::Y * pin_at)],
+    );
     let rod = rod.mapped(upright);
     for k in 0..cylinders {
         let angle = TAU * k as f64 / cylinders as f64;
@@ -132,19 +148,23 @@ pub fn threaded_block() -> Vec<NamedPart> {
     let wave = |phase: f64| 1.0 - (2.0 * phase - 1.0).abs();
     let at = |k: usize| DVec2::X * [14.0, -14.0][k];
     let holes = |radius: f64, sides: usize| -> Vec<Vec<DVec2>> {
-        (0..2).map(|k| moved(&round(radius, sides), at(k))).collect()
+        (0..2).map(|k| translated_outline(&regular_polygon(radius, sides), at(k))).collect()
     };
     let square = |x: f64, y: f64| -> Vec<DVec2> {
         [[-x, -y], [x, -y], [x, y], [-x, y]].map(DVec2::from_array).to_vec()
     };
     let insert = helical(Some(4.0), |phase| 2.5 + 0.05 + 0.3 * wave(phase), 2.0, 2);
-    let mut base = vec![stacked(0.0, &[(square(30.0, 22.0), 4.0)], &holes(4.0, 24))];
+    let mut base = vec![stack_prisms(0.0, &[(square(30.0, 22.0), 4.0)], &holes(4.0, 24))];
     let mut screws = Vec::new();
     for k in 0..2 {
         let place = at(k).extend(0.0);
         base.push(insert.clone().translated(place));
         let thread = helical(None, |phase| 2.5 + 0.3 * wave(phase), 2.0, 2);
-        let shank = stacked(4.0, &[(round(2.4, SIDES), 10.0), (round(4.5, 6), 13.0)], &[]);
+        let shank = stack_prisms(
+            4.0,
+            &[(regular_polygon(2.4, SIDES), 10.0), (regular_polygon(4.5, 6), 13.0)],
+            &[],
+        );
         screws
             .push((format!("screw_{k}"), vec![thread.translated(place), shank.translated(place)]));
     }
@@ -160,15 +180,16 @@ pub fn threaded_block() -> Vec<NamedPart> {
         [4.0, 4.0],
     ];
     let arch: Vec<DVec2> = arch.map(DVec2::from_array).to_vec();
-    let middle = stacked(-16.0, &[(arch, 16.0)], &[]).mapped(along_y);
+    let middle = stack_prisms(-16.0, &[(arch, 16.0)], &[]).mapped(along_y);
     let ear = |side: f64| {
-        let shifted = |hole: Vec<DVec2>| moved(&hole, DVec2::new(-15.0 * side, 0.0));
+        let shifted = |hole: Vec<DVec2>| translated_outline(&hole, DVec2::new(-15.0 * side, 0.0));
         let own = |k: usize| at(k).x * side > 0.0;
         let holes = holes(3.0, SIDES).into_iter().enumerate().filter(|(k, _)| own(*k));
         let holes: Vec<_> = holes.map(|(_, hole)| shifted(hole)).collect();
-        stacked(4.0, &[(square(7.0, 16.0), 10.0)], &holes).translated(DVec3::X * 15.0 * side)
+        stack_prisms(4.0, &[(square(7.0, 16.0), 10.0)], &holes).translated(DVec3::X * 15.0 * side)
     };
-    let bar = stacked(-30.0, &[(moved(&square(4.0, 2.0), DVec2::Y * 6.0), 30.0)], &[]);
+    let bar =
+        stack_prisms(-30.0, &[(translated_outline(&square(4.0, 2.0), DVec2::Y * 6.0), 30.0)], &[]);
     let mut parts = vec![
         ("base".into(), base),
         ("cap".into(), vec![middle, ear(1.0), ear(-1.0)]),
@@ -189,11 +210,15 @@ pub fn screwed_table() -> Vec<NamedPart> {
     let wave = |phase: f64| 1.0 - (2.0 * phase - 1.0).abs();
     let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     let corners = corners.map(|corner| DVec2::from_array(corner) * 22.0);
-    let holes = corners.map(|corner| moved(&round(4.0, 24), corner));
+    let holes = corners.map(|corner| translated_outline(&regular_polygon(4.0, 24), corner));
     let insert = helical(Some(4.0), |phase| 2.6 + 0.3 * wave(phase), 2.0, 3);
     let thread = helical(None, |phase| 2.5 + 0.3 * wave(phase), 2.0, 2);
-    let leg = stacked(-35.0, &[(polygon(4.5, 4), 0.0), (round(2.4, SIDES), 5.5)], &[]);
-    let mut top = vec![stacked(0.0, &[(polygon(30.0, 4), 6.0)], &holes)];
+    let leg = stack_prisms(
+        -35.0,
+        &[(polygon_with_apothem(4.5, 4), 0.0), (regular_polygon(2.4, SIDES), 5.5)],
+        &[],
+    );
+    let mut top = vec![stack_prisms(0.0, &[(polygon_with_apothem(30.0, 4), 6.0)], &holes)];
     let mut legs = Vec::new();
     for (k, (by, aside)) in TABLE_LEGS.into_iter().enumerate() {
         let at = corners[k].extend(0.0);
@@ -211,7 +236,7 @@ pub fn screwed_table() -> Vec<NamedPart> {
 }
 
 /// Returns the outline of a rod, from its foot at the height `foot` to a round eye at the height `eye`.
-fn rod(foot: f64, eye: f64) -> Vec<DVec2> {
+fn rod_outline(foot: f64, eye: f64) -> Vec<DVec2> {
     const EYE: f64 = 5.0;
     let steps = 24;
     let arc = (0..=steps).map(|k| {
@@ -222,61 +247,69 @@ fn rod(foot: f64, eye: f64) -> Vec<DVec2> {
 }
 
 /// Returns the corners of a regular polygon with this circumradius. The first one is on the `x` axis.
-fn round(radius: f64, sides: usize) -> Vec<DVec2> {
+fn regular_polygon(radius: f64, sides: usize) -> Vec<DVec2> {
     (0..sides).map(|k| DVec2::from_angle(TAU * k as f64 / sides as f64) * radius).collect()
 }
 
 /// Returns a regular polygon whose sides have this distance from the centre. The first side crosses the `x`
 /// axis.
-fn polygon(apothem: f64, sides: usize) -> Vec<DVec2> {
+fn polygon_with_apothem(apothem: f64, sides: usize) -> Vec<DVec2> {
     let radius = apothem / (PI / sides as f64).cos();
     let angle = |k: usize| TAU * (k as f64 - 0.5) / sides as f64;
     (0..sides).map(|k| DVec2::from_angle(angle(k)) * radius).collect()
 }
 
 /// Returns an outline translated by a vector.
-fn moved(outline: &[DVec2], by: DVec2) -> Vec<DVec2> {
+fn translated_outline(outline: &[DVec2], by: DVec2) -> Vec<DVec2> {
     outline.iter().map(|p| *p + by).collect()
 }
 
 /// Returns an outline as a loop at the height `z`.
-fn lifted(outline: &[DVec2], z: f64) -> Vec<DVec3> {
+fn loop_at_height(outline: &[DVec2], z: f64) -> Vec<DVec3> {
     outline.iter().map(|p| p.extend(z)).collect()
 }
 
 /// Returns a loop in the opposite direction.
-fn turned(mut loops: Vec<DVec3>) -> Vec<DVec3> {
+fn reversed_loop(mut loops: Vec<DVec3>) -> Vec<DVec3> {
     loops.reverse();
     loops
 }
 
 /// Builds a stack of prisms from a height upwards, each with an outline and an upper end, with holes through
 /// all of them. Of two consecutive outlines, one contains the other.
-fn stacked(mut low: f64, prisms: &[(Vec<DVec2>, f64)], holes: &[Vec<DVec2>]) -> Mesh {
+fn stack_prisms(mut low: f64, prisms: &[(Vec<DVec2>, f64)], holes: &[Vec<DVec2>]) -> Mesh {
     let mut made = Surface::default();
     let through =
-        |z: f64| -> Vec<Vec<DVec3>> { holes.iter().map(|hole| lifted(hole, z)).collect() };
+        |z: f64| -> Vec<Vec<DVec3>> { holes.iter().map(|hole| loop_at_height(hole, z)).collect() };
     let bottom = low;
-    made.face(&turned(lifted(&prisms[0].0, low)), &through(low));
+    made.face(&reversed_loop(loop_at_height(&prisms[0].0, low)), &through(low));
     for (k, (outline, high)) in prisms.iter().enumerate() {
-        made.wall(&lifted(outline, low), &lifted(outline, *high));
+        made.wall(&loop_at_height(outline, low), &loop_at_height(outline, *high));
         low = *high;
         match prisms.get(k + 1) {
-            None => made.face(&lifted(outline, low), &through(low)),
-            Some((next, _)) if area(next) > area(outline) => {
-                made.face(&turned(lifted(next, low)), &[lifted(outline, low)]);
+            None => made.face(&loop_at_height(outline, low), &through(low)),
+            Some((next, _)) if signed_area(next) > signed_area(outline) => {
+                made.face(
+                    &reversed_loop(loop_at_height(next, low)),
+                    &[loop_at_height(outline, low)],
+                );
             }
-            Some((next, _)) => made.face(&lifted(outline, low), &[lifted(next, low)]),
+            Some((next, _)) => {
+                made.face(&loop_at_height(outline, low), &[loop_at_height(next, low)])
+            }
         }
     }
     for hole in holes {
-        made.wall(&turned(lifted(hole, bottom)), &turned(lifted(hole, low)));
+        made.wall(
+            &reversed_loop(loop_at_height(hole, bottom)),
+            &reversed_loop(loop_at_height(hole, low)),
+        );
     }
     made.mesh
 }
 
 /// Returns the signed area.
-fn area(outline: &[DVec2]) -> f64 {
+fn signed_area(outline: &[DVec2]) -> f64 {
     let next = outline.iter().cycle().skip(1);
     outline.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0
 }
@@ -302,19 +335,22 @@ impl Drum {
     /// Builds the mesh.
     fn mesh(&self) -> Mesh {
         let mut made = Surface::default();
-        let [inner, outer] = self.apothems.map(|apothem| polygon(apothem, self.sides));
+        let [inner, outer] = self.apothems.map(|apothem| polygon_with_apothem(apothem, self.sides));
         let [low, high] = self.heights;
         let below = low - self.floor;
         let screws = |z: f64| -> Vec<Vec<DVec3>> {
-            self.screws.iter().map(|hole| lifted(hole, z)).collect()
+            self.screws.iter().map(|hole| loop_at_height(hole, z)).collect()
         };
-        let mut top = vec![lifted(&inner, high)];
+        let mut top = vec![loop_at_height(&inner, high)];
         top.extend(screws(high));
-        made.face(&lifted(&outer, high), &top);
-        made.face(&turned(lifted(&outer, below)), &screws(below));
-        made.face(&lifted(&inner, low), &[]);
+        made.face(&loop_at_height(&outer, high), &top);
+        made.face(&reversed_loop(loop_at_height(&outer, below)), &screws(below));
+        made.face(&loop_at_height(&inner, low), &[]);
         for hole in &self.screws {
-            made.wall(&turned(lifted(hole, below)), &turned(lifted(hole, high)));
+            made.wall(
+                &reversed_loop(loop_at_height(hole, below)),
+                &reversed_loop(loop_at_height(hole, high)),
+            );
         }
         for k in 0..self.sides {
             let next = (k + 1) % self.sides;
@@ -328,7 +364,7 @@ impl Drum {
                 let across = out.perp().extend(0.0);
                 let middle = (out * apothem).extend(z);
                 let point = |p: DVec2| middle + across * p.x + DVec3::Z * p.y;
-                round(radius, SIDES).into_iter().map(point).collect()
+                regular_polygon(radius, SIDES).into_iter().map(point).collect()
             };
             let [near, far] = self.apothems.map(ring);
             let holes =
@@ -338,7 +374,7 @@ impl Drum {
             inside.reverse();
             made.face(&inside, &holes(&near));
             if self.bored[k] {
-                made.wall(&turned(near), &turned(far));
+                made.wall(&reversed_loop(near), &reversed_loop(far));
             }
         }
         made.mesh

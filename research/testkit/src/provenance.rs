@@ -34,19 +34,20 @@ impl Provenance {
         let version = env!("CARGO_PKG_VERSION");
         let compiler = env!("COLLTRANS_TESTKIT_COMPILER");
         Self {
-            processor: processor().unwrap_or_else(unknown),
-            cores: available_parallelism().map_or_else(|_| unknown(), |count| count.to_string()),
-            system: system(),
+            processor: processor_model().unwrap_or_else(unknown_text),
+            cores: available_parallelism()
+                .map_or_else(|_| unknown_text(), |count| count.to_string()),
+            system: operating_system(),
             versions: format!("colltrans {version}; {compiler}; {other}"),
             build: env!("COLLTRANS_TESTKIT_BUILD").into(),
             date: DateTime::<Utc>::from(SystemTime::now()).format("%Y-%m-%d %H:%M UTC").to_string(),
-            command: command(std::env::args()),
+            command: command_line(std::env::args()),
             is_optimised: !cfg!(debug_assertions),
         }
     }
 
-    /// Returns the object with which the report of a run begins: `date`, `command`, `machine` (`cpu`, `cores`,
-    /// `system`), `versions`, `build`.
+    /// Returns the object with which the report of a run begins: `date`, `command_line`, `machine` (`cpu`, `cores`,
+    /// `operating_system`), `versions`, `build`.
     pub fn to_json(&self) -> Value {
         json!({
             "date": self.date,
@@ -59,12 +60,12 @@ impl Provenance {
 }
 
 /// Returns the text for an unknown value.
-fn unknown() -> String {
+fn unknown_text() -> String {
     "unknown".into()
 }
 
 /// Returns the model of the processor; `None` if it is unknown.
-fn processor() -> Option<String> {
+fn processor_model() -> Option<String> {
     let from_file = || {
         let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
         let line = text.lines().find(|line| line.starts_with("model name"))?;
@@ -85,7 +86,7 @@ fn processor() -> Option<String> {
 }
 
 /// Returns the operating system with its release, and the architecture.
-fn system() -> String {
+fn operating_system() -> String {
     use std::env::consts::{ARCH, OS};
     let release = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
     match release.trim() {
@@ -96,7 +97,7 @@ fn system() -> String {
 
 /// Returns the command line with shell quoting. Absolute paths are reduced to their last component, because
 /// folders are specific to the machine.
-fn command(mut arguments: impl Iterator<Item = String>) -> String {
+fn command_line(mut arguments: impl Iterator<Item = String>) -> String {
     let named = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     let name = named(&arguments.next().unwrap_or_default());
     let quoted = arguments.map(|argument| {
@@ -133,7 +134,7 @@ mod tests {
 
     #[test]
     fn commands_are_printed_for_reuse() {
-        let typed = |arguments: &[&str]| command(arguments.iter().map(|a| (*a).to_owned()));
+        let typed = |arguments: &[&str]| command_line(arguments.iter().map(|a| (*a).to_owned()));
         assert_eq!(
             typed(&["/a b/colltrans-lab", "all", "-o", "my dir"]),
             "colltrans-lab all -o 'my dir'"

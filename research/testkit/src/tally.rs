@@ -79,7 +79,7 @@ impl Tally {
         let without = self.numbers.keys().find(|name| !columns.contains(name));
         assert!(without.is_none(), "{without:?} has no column");
         let cells = columns.iter().map(|name| {
-            let width = width(name);
+            let width = column_width(name);
             format!("{:>width$} ", self.numbers.get(name).map_or_else(|| "0".into(), Number::text))
         });
         format!("{}{:>6}", cells.collect::<String>(), self.disagreements.len())
@@ -116,11 +116,11 @@ impl Number {
 
 /// Returns the names of the columns as a line.
 pub fn header(columns: &[&str]) -> String {
-    let names = columns.iter().map(|name| format!("{name:>width$} ", width = width(name)));
+    let names = columns.iter().map(|name| format!("{name:>width$} ", width = column_width(name)));
     format!("{}{:>6}", names.collect::<String>(), "wrong")
 }
 
 /// Returns the width of a column.
-fn width(name: &str) -> usize {
+fn column_width(name: &str) -> usize {
     name.len().max(9)
 }

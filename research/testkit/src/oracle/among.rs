@@ -64,7 +64,7 @@ pub struct Setting {
 type Answer = (f64, ObstacleId);
 
 /// Returns the message of an error.
-fn text(error: &dyn std::fmt::Display) -> String {
+fn error_message(error: &dyn std::fmt::Display) -> String {
     error.to_string()
 }
 
@@ -85,7 +85,7 @@ impl Setting {
     pub fn draw(family: &str, seed: u64) -> Result<Self, String> {
         let which = FAMILIES.iter().position(|name| *name == family).ok_or("no such family")?;
         let random = &mut Random::stream(seed, &[which as u64, 0xa303]);
-        let bodies = bodies(family, random)?;
+        let bodies = draw_bodies(family, random)?;
         let count = random.pick(&[0, 1, 2, 5, 9, 14]);
         let mut obstacles = Obstacles::new();
         let mut all = Vec::new();
@@ -98,7 +98,7 @@ impl Setting {
             all.into_iter().map(|(body, pose)| obstacles.insert(body, pose)).collect()
         };
         for _ in 0..random.index(12) {
-            change(family, &bodies, &mut obstacles, &mut ids, random)?;
+            change_scene(family, &bodies, &mut obstacles, &mut ids, random)?;
         }
         let pose = place_for(family, random)?;
         let direction = if random.one_in(2) {
@@ -141,7 +141,7 @@ impl Setting {
     /// # Errors
     /// A description of the first wrong answer.
     pub fn examine(&self, tally: &mut Tally) -> Result<(), String> {
-        let asked = self.asked().map_err(|e| text(&e))?;
+        let asked = self.asked().map_err(|e| error_message(&e))?;
         tally.add("obstacles", self.obstacles.len() as u64);
         self.judge(&asked, &|_| false, tally)?;
         let ignored = |id: ObstacleId| (id.0 ^ self.seed).is_multiple_of(3);
@@ -170,7 +170,8 @@ impl Setting {
     ) -> Result<(), String> {
         let all = self.all(ignored);
         let own = self.moving.at(self.pose);
-        let squares: Vec<Option<Ratio>> = all.iter().map(|(_, one)| square(&own, one)).collect();
+        let squares: Vec<Option<Ratio>> =
+            all.iter().map(|(_, one)| squared_distance(&own, one)).collect();
         self.judge_nearest(asked, &all, &squares, tally).map_err(|e| format!("nearest: {e}"))?;
         self.judge_within(asked, &all, &squares).map_err(|e| format!("within: {e}"))?;
         self.judge_clearance(asked, &all, tally).map_err(|e| format!("clearance: {e}"))
@@ -187,7 +188,8 @@ impl Setting {
         let mut best: Option<(Answer, AnyDistance)> = None;
         let mut tied = false;
         for (id, one) in all {
-            let distance = distance_of(self.moving.at(self.pose), *one).map_err(|e| text(&e))?;
+            let distance =
+                distance_of(self.moving.at(self.pose), *one).map_err(|e| error_message(&e))?;
             let key = (distance.upper(), *id);
             tied |= best.is_some_and(|(first, _)| first.0 == key.0);
             if best.is_none_or(|(first, _)| key < first) {
@@ -195,7 +197,7 @@ impl Setting {
             }
         }
         tally.count_if("tied", tied);
-        let found = asked.certified_nearest().map_err(|e| text(&e))?;
+        let found = asked.certified_nearest().map_err(|e| error_message(&e))?;
         let (Some((answer, proof)), Some(((upper, id), distance))) = (&found, &best) else {
             require!(found.is_none() && best.is_none(), "an answer without obstacles");
             return Ok(());
@@ -222,8 +224,8 @@ impl Setting {
         }
         tally.add("asked", answer.steps.bodies.into());
         tally.count_if("overlapped", distance.lower() == 0.0);
-        asked.verify(proof).map_err(|e| text(&e))?;
-        tally.add("refused", refused(asked, proof)?);
+        asked.verify(proof).map_err(|e| error_message(&e))?;
+        tally.add("refused", count_rejected_proofs(asked, proof)?);
         Ok(())
     }
 
@@ -234,12 +236,13 @@ impl Setting {
         all: &[(ObstacleId, AnyPlaced)],
         squares: &[Option<Ratio>],
     ) -> Result<(), String> {
-        let (answer, proof) = asked.certified_within(self.length).map_err(|e| text(&e))?;
+        let (answer, proof) = asked.certified_within(self.length).map_err(|e| error_message(&e))?;
         let closer: BTreeSet<ObstacleId> = answer.closer.iter().map(|(id, _)| *id).collect();
         let undecided: BTreeSet<ObstacleId> = answer.undecided.iter().map(|(id, _)| *id).collect();
         for ((id, one), square) in all.iter().zip(squares) {
             let said = (closer.contains(id), undecided.contains(id));
-            let own = within(self.moving.at(self.pose), *one, self.length).map_err(|e| text(&e))?;
+            let own = is_within(self.moving.at(self.pose), *one, self.length)
+                .map_err(|e| error_message(&e))?;
             // The box of an obstacle may decide what rounding leaves open for the pair.
             require!(
                 said == own || (own.1 && said == (false, false)),
@@ -252,7 +255,7 @@ impl Setting {
             require!(said != (false, false) || is_farther, "{id} is closer");
         }
         require!(closer.len() + undecided.len() <= all.len(), "more than there are");
-        asked.verify(&proof).map_err(|e| text(&e))?;
+        asked.verify(&proof).map_err(|e| error_message(&e))?;
         if !proof.closer.is_empty() {
             let mut changed = proof.clone();
             changed.closer.pop();
@@ -277,7 +280,7 @@ impl Setting {
         for (id, one) in all {
             let own = match clearance_of(self.moving.at(self.pose), *one, direction) {
                 Err(QueryError::NothingLeft { .. }) => return self.judge_refusal(asked, *id),
-                own => own.map_err(|e| text(&e))?,
+                own => own.map_err(|e| error_message(&e))?,
             };
             least = least.min(own.distance().unwrap_or(0.0));
             let key = (upper_of(&own), *id);
@@ -285,7 +288,8 @@ impl Setting {
                 best = Some((key, own));
             }
         }
-        let (answer, proof) = asked.certified_clearance(direction).map_err(|e| text(&e))?;
+        let (answer, proof) =
+            asked.certified_clearance(direction).map_err(|e| error_message(&e))?;
         let expected = best.map(|((_, id), own)| (id, own));
         require!(
             answer.stop.map(|(id, _)| id) == expected.map(|(id, _)| id),
@@ -301,7 +305,7 @@ impl Setting {
         require!(answer.lower >= least, "{} and not {least}", answer.lower);
         require!(proof.lower <= answer.lower, "the proof has a larger lower bound");
         tally.count_if("stopped", answer.stop.is_some());
-        asked.verify(&proof).map_err(|e| text(&e))?;
+        asked.verify(&proof).map_err(|e| error_message(&e))?;
         if proof.lower < f64::INFINITY {
             let [mut higher, mut without] = [proof.clone(), proof.clone()];
             higher.lower = proof.lower * 1.001 + 0.001;
@@ -347,7 +351,8 @@ impl Setting {
     /// Checks that a limit on the translation does not change the results before it.
     fn judge_end(&self, asked: &Among, answer: &colltrans::ClearanceAmong) -> Result<(), String> {
         for end in [0.0, 0.5, 1.0, 4.0] {
-            let ended = asked.clearance_before(self.direction, end).map_err(|e| text(&e))?;
+            let ended =
+                asked.clearance_before(self.direction, end).map_err(|e| error_message(&e))?;
             let upper = answer.stop.map_or(f64::INFINITY, |(_, stop)| upper_of(&stop));
             let is_before = ended.stop.map(|(id, _)| id) == answer.stop.map(|(id, _)| id);
             require!(if upper < end { is_before } else { ended.stop.is_none() }, "end {end}");
@@ -363,7 +368,7 @@ impl Setting {
         q: colltrans::Placed,
         lower: f64,
     ) -> Result<(), String> {
-        let cast = Cast::new(p, q, self.direction).map_err(|e| text(&e))?;
+        let cast = Cast::new(p, q, self.direction).map_err(|e| error_message(&e))?;
         let Some(first) = collision_translation(&Scene::of(&cast)) else { return Ok(()) };
         let slides = matches!(cast.clearance(), Ok(Clearance::Free(WhyFree::Slides(_))));
         let is_before = !first.is_negative() && first < Ratio::from_f64(lower.min(1e300));
@@ -378,7 +383,7 @@ impl Setting {
         let mut anew = Obstacles::new();
         anew.insert_all(all.iter().map(|(_, body, pose)| ((*body).clone(), *pose)));
         let old = |id: ObstacleId| all[id.0 as usize].0;
-        let other = Among::new(self.moving.at(self.pose), &anew).map_err(|e| text(&e))?;
+        let other = Among::new(self.moving.at(self.pose), &anew).map_err(|e| error_message(&e))?;
         let [a, b] = [asked, &other].map(|asked| asked.nearest().ok().flatten());
         let of = |nearest: colltrans::Nearest| (nearest.distance, nearest.lower);
         require!(
@@ -389,7 +394,8 @@ impl Setting {
             a.map(|a| a.obstacle) == b.map(|b| old(b.obstacle)),
             "with new obstacles, the nearest one differs"
         );
-        let [a, b] = [asked, &other].map(|asked| asked.within(self.length).map_err(|e| text(&e)));
+        let [a, b] =
+            [asked, &other].map(|asked| asked.within(self.length).map_err(|e| error_message(&e)));
         let (a, b) = (a?, b?);
         let closer: Vec<_> = b.closer.iter().map(|(id, near)| (old(*id), *near)).collect();
         require!(a.closer == closer, "with new obstacles, the closer ones differ");
@@ -402,7 +408,7 @@ impl Setting {
 
 /// Modifies a proof in several ways, and returns the number of rejected proofs. All invalid ones must be
 /// rejected.
-fn refused(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
+fn count_rejected_proofs(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
     let changes: [&dyn Fn(&mut NearestProof); 4] = [
         &|proof| proof.lower = proof.lower * 1.001 + 0.001,
         &|proof| proof.lower = f64::NAN,
@@ -434,12 +440,12 @@ fn boxes_tell(asked: &Among, proof: &NearestProof) -> bool {
 }
 
 /// Returns the bodies from which obstacles of a scene are drawn.
-fn bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String> {
+fn draw_bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String> {
     let cuboid = |low: DVec3, high: DVec3| {
-        ConvexPolyhedron::cuboid(low, high).map(AnyBody::from).map_err(|e| text(&e))
+        ConvexPolyhedron::cuboid(low, high).map(AnyBody::from).map_err(|e| error_message(&e))
     };
     let points = |points: &[DVec3]| {
-        ConvexPolyhedron::from_points(points).map(AnyBody::from).map_err(|e| text(&e))
+        ConvexPolyhedron::from_points(points).map(AnyBody::from).map_err(|e| error_message(&e))
     };
     let cube = cuboid(DVec3::ZERO, DVec3::ONE)?;
     let mut hull = |count| points(&random_hull(count, random).vertices);
@@ -456,8 +462,9 @@ fn bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String> {
         _ => {
             let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 2.0));
             let bar = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0));
-            let (post, bar) = (post.map_err(|e| text(&e))?, bar.map_err(|e| text(&e))?);
-            let step = Solid::from_pieces([&post, &bar]).map_err(|e| text(&e))?;
+            let (post, bar) =
+                (post.map_err(|e| error_message(&e))?, bar.map_err(|e| error_message(&e))?);
+            let step = Solid::from_pieces([&post, &bar]).map_err(|e| error_message(&e))?;
             vec![cube, AnyBody::from(Arc::new(step)), hull(8)?]
         }
     })
@@ -475,11 +482,11 @@ fn place_for(family: &str, random: &mut Random) -> Result<Pose, String> {
         "mixed" if random.one_in(2) => (quarter, random.grid(-3, 3)),
         _ => (random.rotation(), random.vector() * 4.0),
     };
-    Pose::new(rotation, at).map_err(|e| text(&e))
+    Pose::new(rotation, at).map_err(|e| error_message(&e))
 }
 
 /// Inserts, moves or removes an obstacle.
-fn change(
+fn change_scene(
     family: &str,
     bodies: &[AnyBody],
     obstacles: &mut Obstacles,
@@ -503,11 +510,11 @@ fn change(
     } else {
         obstacles.set_poses(&ids.iter().take(which + 1).map(|id| (*id, pose)).collect::<Vec<_>>())
     };
-    moved.map_err(|e| text(&e))
+    moved.map_err(|e| error_message(&e))
 }
 
 /// Builds the pair of two bodies of either kind.
-fn pair<'a>(
+fn build_pair<'a>(
     p: AnyPlaced<'a>,
     q: AnyPlaced<'a>,
 ) -> Result<ByKind<Pair<'a>, Pair<'a, Solid>>, QueryError> {
@@ -521,15 +528,15 @@ fn pair<'a>(
 
 /// Returns the distance of two bodies.
 fn distance_of(p: AnyPlaced, q: AnyPlaced) -> Result<AnyDistance, QueryError> {
-    Ok(match pair(p, q)? {
+    Ok(match build_pair(p, q)? {
         ByKind::Convex(pair) => ByKind::Convex(pair.distance()?),
         ByKind::Solid(pair) => ByKind::Solid(pair.distance()?),
     })
 }
 
 /// Returns whether the bodies are closer than a length, and whether that is undecided.
-fn within(p: AnyPlaced, q: AnyPlaced, length: f64) -> Result<(bool, bool), QueryError> {
-    Ok(match pair(p, q)? {
+fn is_within(p: AnyPlaced, q: AnyPlaced, length: f64) -> Result<(bool, bool), QueryError> {
+    Ok(match build_pair(p, q)? {
         ByKind::Convex(pair) => match pair.within(length)? {
             Within::Closer(_) => (true, false),
             Within::Farther(_) => (false, false),
@@ -569,7 +576,7 @@ fn upper_of(clearance: &AnyClearance) -> f64 {
 }
 
 /// Returns the exact squared distance of two convex bodies; `None` for solids.
-fn square(p: &AnyPlaced, q: &AnyPlaced) -> Option<Ratio> {
+fn squared_distance(p: &AnyPlaced, q: &AnyPlaced) -> Option<Ratio> {
     let (ByKind::Convex(p), ByKind::Convex(q)) = (p, q) else { return None };
     let [p, q] =
         [p, q].map(|one| place(one.pose.matrix(), one.pose.translation(), one.body.vertices()));

@@ -190,7 +190,7 @@ impl Cubes {
 mod tests {
     use super::*;
 
-    fn bar(from: Cell, to: Cell) -> Vec<Cell> {
+    fn cells_in_bar(from: Cell, to: Cell) -> Vec<Cell> {
         let mut cells = Vec::new();
         for x in from[0]..to[0] {
             for y in from[1]..to[1] {
@@ -202,20 +202,22 @@ mod tests {
 
     #[test]
     fn closed_forms() {
-        let beside = Cubes { pieces: vec![bar([0, 0, 0], [1, 1, 1]), bar([1, 0, 0], [2, 1, 1])] };
+        let beside = Cubes {
+            pieces: vec![cells_in_bar([0, 0, 0], [1, 1, 1]), cells_in_bar([1, 0, 0], [2, 1, 1])],
+        };
         assert_eq!(beside.level(), Some(Leaves { moves: 1, group: 1 }));
         // A key in a slot moves along it, then up.
-        let mut slot = bar([0, 0, 0], [7, 3, 3]);
+        let mut slot = cells_in_bar([0, 0, 0], [7, 3, 3]);
         let hollow = |c: &Cell| {
             let inside = (1..6).contains(&c[0]) && c[1] == 1;
             inside && (c[2] == 1 || (c[2] == 2 && c[0] >= 4))
         };
         slot.retain(|c| !hollow(c));
-        let key = Cubes { pieces: vec![bar([1, 1, 1], [3, 2, 2]), slot.clone()] };
+        let key = Cubes { pieces: vec![cells_in_bar([1, 1, 1], [3, 2, 2]), slot.clone()] };
         assert_eq!(key.level(), Some(Leaves { moves: 2, group: 1 }));
         assert!(key.comes_apart());
         // The key is longer than the opening.
-        let stuck = Cubes { pieces: vec![bar([1, 1, 1], [4, 2, 2]), slot] };
+        let stuck = Cubes { pieces: vec![cells_in_bar([1, 1, 1], [4, 2, 2]), slot] };
         assert_eq!(stuck.level(), None);
         assert!(!stuck.comes_apart());
     }

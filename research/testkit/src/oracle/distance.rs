@@ -294,28 +294,31 @@ mod tests {
     use crate::shapes::cuboid;
     use glam::DQuat;
 
-    fn cubes(pose: &Pose) -> Distance {
+    fn distance_of_cubes(pose: &Pose) -> Distance {
         let cube = body(&cuboid(DVec3::splat(0.5)).vertices);
         distance_of_bodies((&cube, &Pose::IDENTITY), (&cube, pose))
     }
 
     #[test]
     fn cubes_face_edge_and_corner() {
-        assert_eq!(cubes(&at(3.0, 0.25, 0.5)).to_f64(), 2.0);
-        assert_eq!(cubes(&at(3.0, 0.25, 0.5)).shortest, DVec3::X * 2.0);
-        assert_eq!(cubes(&at(4.0, 5.0, 0.25)).to_f64(), 5.0);
-        assert_eq!(cubes(&at(-2.0, 3.0, 3.0)).to_f64(), 3.0);
-        assert_eq!(cubes(&at(2.0, 2.0, -2.0)).square, Ratio::from_f64(3.0));
+        assert_eq!(distance_of_cubes(&at(3.0, 0.25, 0.5)).to_f64(), 2.0);
+        assert_eq!(distance_of_cubes(&at(3.0, 0.25, 0.5)).shortest, DVec3::X * 2.0);
+        assert_eq!(distance_of_cubes(&at(4.0, 5.0, 0.25)).to_f64(), 5.0);
+        assert_eq!(distance_of_cubes(&at(-2.0, 3.0, 3.0)).to_f64(), 3.0);
+        assert_eq!(distance_of_cubes(&at(2.0, 2.0, -2.0)).square, Ratio::from_f64(3.0));
     }
 
     #[test]
     fn touching_counts_as_meeting_but_one_ulp_apart_does_not() {
         for touching in [at(1.0, 0.25, 0.0), at(1.0, 1.0, 0.5), at(1.0, -1.0, 1.0)] {
-            assert!(cubes(&touching).intersects());
-            assert_eq!(cubes(&touching).to_f64(), 0.0);
+            assert!(distance_of_cubes(&touching).intersects());
+            assert_eq!(distance_of_cubes(&touching).to_f64(), 0.0);
         }
-        assert!(cubes(&at(0.0, 0.0, 0.0)).intersects() && cubes(&at(0.1, 0.2, 0.3)).intersects());
-        let apart = cubes(&at(1.0_f64.next_up(), 0.25, 0.0));
+        assert!(
+            distance_of_cubes(&at(0.0, 0.0, 0.0)).intersects()
+                && distance_of_cubes(&at(0.1, 0.2, 0.3)).intersects()
+        );
+        let apart = distance_of_cubes(&at(1.0_f64.next_up(), 0.25, 0.0));
         assert!(!apart.intersects());
         assert_eq!(apart.to_f64(), f64::EPSILON);
     }

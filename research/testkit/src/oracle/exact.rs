@@ -92,18 +92,18 @@ impl Dyadic {
     /// Returns the nearest `f64`, up to one rounding error.
     pub fn to_f64(&self) -> f64 {
         let (m, e) = self.leading();
-        scale(m, e)
+        scale_by_power(m, e)
     }
 }
 
 /// Returns `m 2^e`. Two factors are used, so that neither overflows alone.
-fn scale(m: f64, e: i32) -> f64 {
+fn scale_by_power(m: f64, e: i32) -> f64 {
     let half = e / 2;
     m * 2.0_f64.powi(half) * 2.0_f64.powi(e - half)
 }
 
 /// Converts two numbers to multiples of the smaller of their powers of two. Returns both and the exponent.
-fn aligned(a: &Dyadic, b: &Dyadic) -> (IBig, IBig, i32) {
+fn to_common_exponent(a: &Dyadic, b: &Dyadic) -> (IBig, IBig, i32) {
     let exponent = a.exponent.min(b.exponent);
     (a.in_units_of(exponent), b.in_units_of(exponent), exponent)
 }
@@ -117,7 +117,7 @@ impl Add for &Dyadic {
         if other.is_zero() {
             return self.clone();
         }
-        let (a, b, exponent) = aligned(self, other);
+        let (a, b, exponent) = to_common_exponent(self, other);
         Dyadic { mantissa: a + b, exponent }
     }
 }
@@ -198,7 +198,7 @@ impl Ratio {
     /// Returns the nearest `f64`, up to a few rounding errors.
     pub fn to_f64(&self) -> f64 {
         let ((n, i), (d, j)) = (self.numerator.leading(), self.denominator.leading());
-        scale(n / d, i - j)
+        scale_by_power(n / d, i - j)
     }
 
     /// Returns the square root as the nearest `f64`, up to a few rounding errors. The number itself may be
@@ -210,7 +210,7 @@ impl Ratio {
         assert!(!self.is_negative(), "no square root");
         let ((n, i), (d, j)) = (self.numerator.leading(), self.denominator.leading());
         let odd = (i - j).rem_euclid(2);
-        scale((n / d * f64::from(1 + odd)).sqrt(), (i - j - odd) / 2)
+        scale_by_power((n / d * f64::from(1 + odd)).sqrt(), (i - j - odd) / 2)
     }
 
     /// Returns `self - other`, exactly.

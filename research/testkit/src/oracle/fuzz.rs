@@ -182,7 +182,7 @@ pub fn track(bytes: &[u8]) {
         if reader.is_empty() {
             break;
         }
-        change(&mut setting, &mut reader);
+        change_setting(&mut setting, &mut reader);
     }
 }
 
@@ -210,7 +210,7 @@ pub fn bulk(bytes: &[u8]) {
         if reader.is_empty() {
             break;
         }
-        change(&mut setting, &mut reader);
+        change_setting(&mut setting, &mut reader);
     }
 }
 
@@ -302,33 +302,33 @@ fn read_setting(reader: &mut Reader) -> Option<(Setting, Bodies)> {
 }
 
 /// Changes a setting. A pose that is out of range remains unchanged.
-fn change(setting: &mut Setting, reader: &mut Reader) {
+fn change_setting(setting: &mut Setting, reader: &mut Reader) {
     match reader.byte() % 8 {
         0 => setting.direction = reader.vector(),
         1 => setting.direction = -setting.direction,
         2 => setting.direction += reader.vector() * 2.0_f64.powi(-20),
         3 => {
             let rotation = reader.rotation();
-            replace(&mut setting.moving_pose, Pose::new(rotation, reader.vector()));
+            replace_valid_pose(&mut setting.moving_pose, Pose::new(rotation, reader.vector()));
         }
         4 => {
             let rotation = reader.rotation();
-            replace(&mut setting.fixed_pose, Pose::new(rotation, reader.vector()));
+            replace_valid_pose(&mut setting.fixed_pose, Pose::new(rotation, reader.vector()));
         }
         5 => {
             let moved = setting.moving_pose.translated(reader.vector());
-            replace(&mut setting.moving_pose, moved);
+            replace_valid_pose(&mut setting.moving_pose, moved);
         }
         6 => {
             let moved = setting.moving_pose.translated(reader.vector() * 2.0_f64.powi(-10));
-            replace(&mut setting.moving_pose, moved);
+            replace_valid_pose(&mut setting.moving_pose, moved);
         }
         _ => setting.graze_tolerance = f64::from(reader.byte()) / 16.0,
     }
 }
 
 /// Replaces a pose if the result is valid.
-fn replace(pose: &mut Pose, by: Result<Pose, PoseError>) {
+fn replace_valid_pose(pose: &mut Pose, by: Result<Pose, PoseError>) {
     *pose = by.unwrap_or(*pose);
 }
 

@@ -52,11 +52,11 @@ pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objectio
     if !(0.0..=ROUNDING * largest).contains(&claimed) {
         return Err(Objection(format!("hull error {claimed:e}, coordinates up to {largest:e}")));
     }
-    let dropped = dropped(points, body)?;
+    let dropped = dropped_points(points, body)?;
     let allowed = Ratio::from_f64(claimed);
     let allowed = allowed.times(&allowed);
     let mut kept = Kept { dropped: dropped.len(), farthest: 0.0 };
-    let triangles = triangles(body);
+    let triangles = face_triangles(body);
     for index in dropped {
         let point = points[index];
         if is_in_some_tetrahedron(point, body.vertices(), &triangles) {
@@ -77,7 +77,7 @@ pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objectio
 }
 
 /// Returns the indices of the points that are not vertices.
-fn dropped(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Vec<usize>, Objection> {
+fn dropped_points(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Vec<usize>, Objection> {
     let bits = |v: &DVec3| v.to_array().map(f64::to_bits);
     let mut is_vertex = vec![false; points.len()];
     for (vertex, input) in body.vertices().iter().zip(body.input_indices()) {
@@ -97,7 +97,7 @@ fn square_from(point: DVec3, others: &[DVec3]) -> Ratio {
 
 /// Returns the faces as triangles. They serve only to guess vertices near a point. The resulting proofs are
 /// valid even if the triangles do not form a surface.
-fn triangles(body: &ConvexPolyhedron) -> Vec<[DVec3; 3]> {
+fn face_triangles(body: &ConvexPolyhedron) -> Vec<[DVec3; 3]> {
     let fan = |face: u32| {
         let corners: Vec<DVec3> =
             body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();

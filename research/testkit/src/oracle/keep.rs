@@ -59,7 +59,7 @@ impl<'a> Judge<'a> {
         let keep = cast.options().keep;
         let size = size([cast.moving().vertices(), cast.fixed().vertices()], [&p, &q]) + keep;
         let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
-        let shadows = shadows(&moving, &fixed, cast.direction());
+        let shadows = distance_of_shadows(&moving, &fixed, cast.direction());
         Self { cast, keep, moving, fixed, shadows, noise }
     }
 
@@ -98,7 +98,7 @@ impl<'a> Judge<'a> {
     pub fn check_clearance(&self, clearance: &Clearance) -> Result<(), Objection> {
         let back = self.cast.reversed();
         let now = self.distance_at(&self.cast, 0.0);
-        let gap = square(self.keep);
+        let gap = exact_square_ratio(self.keep);
         match clearance {
             Clearance::Blocked { distance, contact } => {
                 self.check_contact(&self.cast, contact)?;
@@ -128,7 +128,7 @@ impl<'a> Judge<'a> {
         let [lower, upper] = [proof.lower, proof.upper];
         let t = contact.translation;
         require!(lower <= t && t <= upper, "{lower:e} <= {t:e} <= {upper:e} does not hold");
-        let gap = square(self.keep);
+        let gap = exact_square_ratio(self.keep);
         require!(self.distance_at(cast, lower) >= gap, "nearer than the gap at {lower:e}");
         self.check_plane(cast, proof.normal, lower)?;
         let verified = cast.verify(&proof).map_err(|e| Objection(e.to_string()))?;
@@ -163,7 +163,7 @@ impl<'a> Judge<'a> {
         let along = n.dot(&Vector::new(cast.direction()));
         require!(along.is_positive(), "the normal {normal} is not along the direction");
         let left = &self.along(&n) - &(&along * &Dyadic::new(lower));
-        let proven = !left.is_negative() && &left * &left >= &squared(self.keep) * &n.dot(&n);
+        let proven = !left.is_negative() && &left * &left >= &exact_square(self.keep) * &n.dot(&n);
         require!(proven, "the plane does not prove {lower:e}");
         Ok(())
     }
@@ -173,7 +173,7 @@ impl<'a> Judge<'a> {
         let n = Vector::new(of.normal);
         let along = self.along(&n);
         require!(Dyadic::new(of.margin) <= along, "a margin of {:e}", of.margin);
-        let beyond = along.is_positive() && &along * &along > &squared(self.keep) * &n.dot(&n);
+        let beyond = along.is_positive() && &along * &along > &exact_square(self.keep) * &n.dot(&n);
         require!(beyond, "a plane no farther off than the gap");
         self.cast.verify(of).map_err(|e| Objection(e.to_string()))?;
         Ok(())
@@ -188,7 +188,7 @@ impl<'a> Judge<'a> {
 }
 
 /// Returns the distance of the shadows along a direction, rounded once.
-fn shadows(moving: &[Vector], fixed: &[Vector], direction: DVec3) -> f64 {
+fn distance_of_shadows(moving: &[Vector], fixed: &[Vector], direction: DVec3) -> f64 {
     // Scaled to a length near 1, so that squares are in range.
     let scale = 2.0_f64.powi(-(direction.abs().max_element().log2().floor() as i32));
     let d = Vector::new(direction * scale);
@@ -200,11 +200,11 @@ fn shadows(moving: &[Vector], fixed: &[Vector], direction: DVec3) -> f64 {
 }
 
 /// Returns the exact square.
-fn squared(x: f64) -> Dyadic {
+fn exact_square(x: f64) -> Dyadic {
     &Dyadic::new(x) * &Dyadic::new(x)
 }
 
 /// Returns the exact square as a ratio.
-fn square(x: f64) -> Ratio {
+fn exact_square_ratio(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }

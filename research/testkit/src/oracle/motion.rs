@@ -205,12 +205,12 @@ fn turn_about(axis: DVec3, angle: &Fixed) -> impl Fn(&Vector) -> Vector + use<> 
 }
 
 /// Returns the vertices of a body at a time of the real motion.
-fn placed(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
-    moved(body.vertices(), spin, &Fixed::new(time))
+fn vertices_at(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
+    points_at_time(body.vertices(), spin, &Fixed::new(time))
 }
 
 /// Returns points of a body at the time `t` after the start of the real motion.
-fn moved(points: &[DVec3], spin: &Spin, t: &Fixed) -> Vec<Vector> {
+fn points_at_time(points: &[DVec3], spin: &Spin, t: &Fixed) -> Vec<Vector> {
     let turned = turned_by(spin, t);
     let arm = vector(spin.arm);
     let base = minus(&plus(&vector(spin.start.translation()), &times(&vector(spin.way), t)), &arm);
@@ -227,14 +227,14 @@ fn moved(points: &[DVec3], spin: &Spin, t: &Fixed) -> Vec<Vector> {
 const CUT: usize = 200;
 
 /// Rounds numbers to fewer bits, which shortens later exact arithmetic.
-fn cut(points: Vec<Vector>) -> Vec<exact::Vector> {
+fn cut_bits(points: Vec<Vector>) -> Vec<exact::Vector> {
     let short = |x: Fixed| Dyadic::from_units(x.0 >> (BITS - CUT), -(CUT as i32));
     points.into_iter().map(|p| exact::Vector(p.map(short))).collect()
 }
 
 /// Returns points of a body at a time of the real motion, which starts at `since`, to `2^-200`.
 pub fn points_at(points: &[DVec3], spin: &Spin, since: f64, time: f64) -> Vec<exact::Vector> {
-    cut(moved(points, spin, &(Fixed::new(time) - Fixed::new(since))))
+    cut_bits(points_at_time(points, spin, &(Fixed::new(time) - Fixed::new(since))))
 }
 
 /// A joint in the chain that moves a body.
@@ -280,7 +280,7 @@ pub fn points_carried(
         }
         all = put(origin, all);
     }
-    cut(all)
+    cut_bits(all)
 }
 
 /// Two bodies and their motions.
@@ -297,7 +297,7 @@ pub struct Judge<'a> {
 impl Judge<'_> {
     /// Returns the vertices of both bodies at a time.
     fn places(&self, time: f64) -> [Vec<Vector>; 2] {
-        [0, 1].map(|k| placed(self.bodies[k], &self.spins[k], time))
+        [0, 1].map(|k| vertices_at(self.bodies[k], &self.spins[k], time))
     }
 
     /// Checks whether a plane with this normal leaves at least the minimum gap plus `more`.

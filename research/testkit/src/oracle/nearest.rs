@@ -60,8 +60,8 @@ impl<'a> Judge<'a> {
         let [lower, upper] = answer.bounds();
         require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e}");
         let truth = self.truth.to_f64();
-        require!(square(lower) <= self.truth.square, "lower bound {lower:e} of {truth:e}");
-        require!(square(upper) >= self.truth.square, "upper bound {upper:e} of {truth:e}");
+        require!(exact_square(lower) <= self.truth.square, "lower bound {lower:e} of {truth:e}");
+        require!(exact_square(upper) >= self.truth.square, "upper bound {upper:e} of {truth:e}");
         require!(answer.near.distance == upper, "the points are of another bound");
         self.check_points(&answer.near)?;
         if let Some(plane) = answer.gap {
@@ -91,12 +91,18 @@ impl<'a> Judge<'a> {
         match answer {
             Within::Closer(near) => {
                 require!(near.distance <= length, "points {:e} apart", near.distance);
-                require!(square(length) >= self.truth.square, "{truth:e} is not within {length:e}");
+                require!(
+                    exact_square(length) >= self.truth.square,
+                    "{truth:e} is not within {length:e}"
+                );
                 self.check_points(near)
             }
             Within::Farther(plane) => {
                 require!(plane.gap > length, "a gap of {:e}", plane.gap);
-                require!(square(length) < self.truth.square, "{truth:e} is within {length:e}");
+                require!(
+                    exact_square(length) < self.truth.square,
+                    "{truth:e} is within {length:e}"
+                );
                 self.check_plane(plane)
             }
             Within::Undecided(distance) => {
@@ -117,7 +123,7 @@ impl<'a> Judge<'a> {
         let verified = self.pair.verify(answer).map_err(|e| Objection(format!("depth: {e}")))?;
         require!(verified >= lower, "verified a depth of {verified:e} of {lower:e}");
         let n = Vector::new(answer.direction);
-        let reach = -self.along(&Vector::new(-answer.direction));
+        let reach = -self.gap_along(&Vector::new(-answer.direction));
         let (claimed, square) = (Dyadic::new(upper), n.dot(&n));
         require!(
             !reach.is_positive() || &reach * &reach <= &(&claimed * &claimed) * &square,
@@ -139,8 +145,8 @@ impl<'a> Judge<'a> {
         };
         let [lower, upper] = answer.bounds();
         let rounded = truth.sqrt_to_f64();
-        require!(square(lower) <= truth, "lower bound {lower:e} of a depth of {rounded:e}");
-        require!(square(upper) >= truth, "upper bound {upper:e} of a depth of {rounded:e}");
+        require!(exact_square(lower) <= truth, "lower bound {lower:e} of a depth of {rounded:e}");
+        require!(exact_square(upper) >= truth, "upper bound {upper:e} of a depth of {rounded:e}");
         Ok(())
     }
 
@@ -149,7 +155,7 @@ impl<'a> Judge<'a> {
         let PlaneGap { normal, gap } = *plane;
         require!((normal.length() - 1.0).abs() < 1e-14, "the normal {normal} is not a unit vector");
         let n = Vector::new(normal);
-        let along = self.along(&n);
+        let along = self.gap_along(&n);
         let claimed = &Dyadic::new(gap) * &Dyadic::new(gap);
         require!(
             !along.is_negative() && &along * &along >= &claimed * &n.dot(&n),
@@ -162,8 +168,8 @@ impl<'a> Judge<'a> {
     }
 
     /// Returns `min_Q n.q - max_P n.p`.
-    fn along(&self, n: &Vector) -> Dyadic {
-        along([&self.moving, &self.fixed], n)
+    fn gap_along(&self, n: &Vector) -> Dyadic {
+        gap_along([&self.moving, &self.fixed], n)
     }
 
     /// Checks the points of an upper bound.
@@ -171,7 +177,7 @@ impl<'a> Judge<'a> {
         let NearPoints { pairs, weights, distance } = near;
         let differences = pairs.map(|pair| self.difference(pair));
         if *distance == 0.0 {
-            require!(enclose(&differences), "four points that do not enclose the origin");
+            require!(encloses_origin(&differences), "four points that do not enclose the origin");
         } else {
             require!(weights.iter().all(|w| *w >= 0.0), "negative weights");
             let sum = weights.iter().fold(Dyadic::ZERO, |sum, w| &sum + &Dyadic::new(*w));
@@ -246,21 +252,21 @@ fn least_along(bodies: [&[Vector]; 2], depth: Option<Ratio>, n: &Vector) -> Opti
     if square.is_zero() {
         return depth;
     }
-    let reach = -along(bodies, &n.times(&Dyadic::new(-1.0)));
+    let reach = -gap_along(bodies, &n.times(&Dyadic::new(-1.0)));
     let here = if reach.is_positive() { &reach * &reach } else { Dyadic::ZERO };
     let here = Ratio::new(here, square);
     Some(depth.map_or(here.clone(), |depth| depth.min(here)))
 }
 
 /// Returns `min_Q n.q - max_P n.p`.
-fn along([moving, fixed]: [&[Vector]; 2], n: &Vector) -> Dyadic {
+fn gap_along([moving, fixed]: [&[Vector]; 2], n: &Vector) -> Dyadic {
     let nearest = fixed.iter().map(|q| n.dot(q)).min();
     let farthest = moving.iter().map(|p| n.dot(p)).max();
     &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
 }
 
 /// Checks whether a tetrahedron with a volume contains the origin.
-fn enclose([a, b, c, d]: &[Vector; 4]) -> bool {
+fn encloses_origin([a, b, c, d]: &[Vector; 4]) -> bool {
     let volumes = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]].map(|[x, y, z]| x.dot(&y.cross(z)));
     let some = volumes.iter().any(|v| !v.is_zero());
     let none_less = volumes.iter().all(|v| !v.is_negative());
@@ -268,6 +274,6 @@ fn enclose([a, b, c, d]: &[Vector; 4]) -> bool {
 }
 
 /// Returns the exact square.
-fn square(x: f64) -> Ratio {
+fn exact_square(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }

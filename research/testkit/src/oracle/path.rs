@@ -88,7 +88,7 @@ impl Arm {
             if frame == 0 || !random.one_in(4) {
                 let size = random.pick(&[0.05, 0.2, 0.4]);
                 let pose = Pose::from_translation(random.vector() * 0.3).expect("a pose");
-                bodies.push((Some(frame), body(&mut random, size, solids), pose));
+                bodies.push((Some(frame), draw_body(&mut random, size, solids), pose));
             }
         }
         let carried = bodies.len();
@@ -101,7 +101,7 @@ impl Arm {
             let by = arm.places(place)[frame].translation;
             let pose =
                 Pose::new(random.rotation(), by + random.direction() * random.range(0.2, 1.0));
-            arm.bodies.push((None, body(&mut random, size, solids), pose.expect("a pose")));
+            arm.bodies.push((None, draw_body(&mut random, size, solids), pose.expect("a pose")));
         }
         let count = arm.bodies.len();
         arm.pairs = (0..carried)
@@ -236,7 +236,7 @@ impl Body {
 }
 
 /// Draws a body of about this size.
-fn body(random: &mut Random, size: f64, solids: bool) -> Body {
+fn draw_body(random: &mut Random, size: f64, solids: bool) -> Body {
     let mesh: Mesh = match random.index(if solids { 4 } else { 2 }) {
         0 | 1 => {
             let hull = random_hull(random.pick(&[4, 8, 12, 32]), random);

@@ -51,7 +51,7 @@ pub struct Screw {
 }
 
 /// Draws a pin of radius 0.5 along z.
-fn pin(random: &mut Random) -> ConvexPolyhedron {
+fn draw_pin(random: &mut Random) -> ConvexPolyhedron {
     let sides = random.pick(&[12, 30, 48, 64]);
     let mesh = prism(sides, 1.0).mapped(|v| v * DVec3::new(0.5, 0.5, 1.0));
     ConvexPolyhedron::from_points(&mesh.vertices).expect("a pin")
@@ -95,20 +95,20 @@ impl Screw {
             }
             "a pin beside a wall" => {
                 let turned = screw(pose(DVec3::ZERO, none), DVec3::ZERO, DVec3::Z, angle, rise);
-                ([pin(&mut random), cube()], [turned, Motion::still(pose(beside, none))])
+                ([draw_pin(&mut random), cube()], [turned, Motion::still(pose(beside, none))])
             }
             "pins on parallel axes" | "pins of one spin on parallel axes" => {
                 let other = if kind == 4 { angle } else { angle * ratio };
                 let first = screw(pose(DVec3::ZERO, none), DVec3::ZERO, DVec3::Z, angle, rise);
                 let second = screw(pose(beside, none), beside, DVec3::Z, other, -rise);
-                ([pin(&mut random), pin(&mut random)], [first, second])
+                ([draw_pin(&mut random), draw_pin(&mut random)], [first, second])
             }
             "pins on crossing axes" => {
                 let turn = DQuat::from_rotation_x(random.range(0.2, 2.9));
                 let axis = turn * DVec3::Z;
                 let first = screw(pose(DVec3::ZERO, none), DVec3::ZERO, DVec3::Z, angle, 0.0);
                 let second = screw(pose(beside, turn), beside, axis, angle * ratio, 0.0);
-                ([pin(&mut random), pin(&mut random)], [first, second])
+                ([draw_pin(&mut random), draw_pin(&mut random)], [first, second])
             }
             "hulls of one spin on parallel axes" => {
                 let hulls = [(); 2].map(|()| {
@@ -127,7 +127,7 @@ impl Screw {
                 let above = DVec3::Z * (1.5 + play);
                 let first = screw(pose(DVec3::ZERO, none), DVec3::ZERO, DVec3::Z, angle, rise);
                 let second = screw(pose(above, none), DVec3::ZERO, DVec3::Z, angle * ratio, rise);
-                ([pin(&mut random), cube()], [first, second])
+                ([draw_pin(&mut random), cube()], [first, second])
             }
         };
         Self { bodies, motions, play, turns }
@@ -192,7 +192,7 @@ pub fn slider(seed: u64) -> Arm {
     let points = random_hull(16, &mut random).vertices;
     let lowest = points.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
     let hull = ConvexPolyhedron::from_points(&points).expect("a body");
-    let pin = pin(&mut random);
+    let pin = draw_pin(&mut random);
     let (link, low) = if random.one_in(2) { (hull, lowest) } else { (pin, -1.0) };
     let top = low - play;
     let table =
@@ -248,7 +248,7 @@ pub fn chain(seed: u64) -> Arm {
     if carried {
         second[..last].iter_mut().for_each(|value| *value += random.range(-1.0, 1.0));
     }
-    let pin = Body::Convex(pin(&mut random));
+    let pin = Body::Convex(draw_pin(&mut random));
     let mut arm = Arm {
         frames,
         rows: vec![first, second],

@@ -106,14 +106,14 @@ impl Walk {
         match rng.int(0, 15) {
             0 => Change::Repeat,
             1 => Change::Alternate,
-            2 => Change::Turn(turn(rng, [-15.0, -9.0])),
-            3 => Change::Turn(turn(rng, [-3.0, -0.5])),
+            2 => Change::Turn(draw_rotation(rng, [-15.0, -9.0])),
+            3 => Change::Turn(draw_rotation(rng, [-3.0, -0.5])),
             4 => Change::Direction(any_direction(rng) * rng.range(-7.0, 7.0).exp()),
             5 => Change::Reverse,
             6 => Change::Other(rng.bits() % OTHER_SEEDS + OTHER_SEEDS),
             7 => Change::Jump { rotation: rng.rotation(), to: rng.vector() * size * 2.0 },
             8 | 9 => {
-                let overlap = size * overlap(rng);
+                let overlap = size * draw_overlap(rng);
                 let along = rng.pick(&[0.0, 0.5, rng.clone().unit()]);
                 Change::Rim { toward: rng.direction(), along, overlap }
             }
@@ -129,7 +129,7 @@ impl Walk {
         let rng = &mut self.rng;
         let exponents = rng.pick(&[[-15.0, -9.0], [-3.0, -1.3]]);
         let step = size * ten_to(rng, exponents);
-        let (axis, turn) = (rng.direction(), turn(rng, exponents));
+        let (axis, turn) = (rng.direction(), draw_rotation(rng, exponents));
         let (turn, displacement) = match rng.int(0, 5) {
             0 => (DQuat::IDENTITY, axis * step),
             1 => (turn, DVec3::ZERO),
@@ -166,9 +166,11 @@ impl Walk {
                 } else {
                     (&setting.fixed, &mut setting.fixed_pose)
                 };
-                *pose = moved(points, pose, turn, displacement);
+                *pose = moved_pose(points, pose, turn, displacement);
             }
-            Change::Turn(turn) => setting.direction = significant(turn * setting.direction),
+            Change::Turn(turn) => {
+                setting.direction = without_tiny_components(turn * setting.direction)
+            }
             Change::Direction(direction) => setting.direction = direction,
             Change::Reverse => setting.direction = -setting.direction,
             Change::Other(seed) => {
@@ -180,15 +182,17 @@ impl Walk {
             }
             Change::Jump { rotation, to } => {
                 self.other = Configuration::of(setting);
-                let target = setting.fixed_pose.transform_point(middle(&setting.fixed)) + to;
-                let at = target - rotation * middle(&setting.moving);
-                setting.moving_pose = Pose::new(rotation, significant(at)).expect("in range");
+                let target = setting.fixed_pose.transform_point(mean_point(&setting.fixed)) + to;
+                let at = target - rotation * mean_point(&setting.moving);
+                setting.moving_pose =
+                    Pose::new(rotation, without_tiny_components(at)).expect("in range");
                 self.left = 0;
             }
             Change::Rim { toward, along, overlap } => {
                 let displacement = rim_displacement(setting, toward, along, overlap);
                 let pose = &setting.moving_pose;
-                setting.moving_pose = moved(&setting.moving, pose, DQuat::IDENTITY, displacement);
+                setting.moving_pose =
+                    moved_pose(&setting.moving, pose, DQuat::IDENTITY, displacement);
             }
             Change::Tolerance(tolerance) => setting.graze_tolerance = tolerance,
         }
@@ -229,7 +233,7 @@ fn ten_to(rng: &mut Random, [low, high]: [f64; 2]) -> f64 {
 }
 
 /// Draws a rotation about a random axis, by an angle whose exponent is in a range.
-fn turn(rng: &mut Random, exponents: [f64; 2]) -> DQuat {
+fn draw_rotation(rng: &mut Random, exponents: [f64; 2]) -> DQuat {
     DQuat::from_axis_angle(rng.direction(), ten_to(rng, exponents))
 }
 
@@ -242,7 +246,7 @@ fn any_direction(rng: &mut Random) -> DVec3 {
 }
 
 /// Draws an overlap of shadows as a fraction of the body's size: zero, a rounding error, or more.
-fn overlap(rng: &mut Random) -> f64 {
+fn draw_overlap(rng: &mut Random) -> f64 {
     let sign = rng.pick(&[1.0, -1.0]);
     let digits = ten_to(rng, [-16.0, -12.0]);
     let little = ten_to(rng, [-12.0, -1.0]);
@@ -250,36 +254,36 @@ fn overlap(rng: &mut Random) -> f64 {
 }
 
 /// Replaces components below the exact range, which result from rounding, by zero.
-fn significant(v: DVec3) -> DVec3 {
+fn without_tiny_components(v: DVec3) -> DVec3 {
     DVec3::from_array(v.to_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }))
 }
 
 /// Returns the mean of points.
-fn middle(points: &[DVec3]) -> DVec3 {
+fn mean_point(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len() as f64
 }
 
 /// Returns twice the largest distance from the mean.
 fn diameter(points: &[DVec3]) -> f64 {
-    let middle = middle(points);
+    let middle = mean_point(points);
     2.0 * points.iter().map(|v| v.distance(middle)).fold(0.0, f64::max)
 }
 
 /// Returns the pose of a body after a rotation about its centre and a translation.
-fn moved(points: &[DVec3], pose: &Pose, turn: DQuat, displacement: DVec3) -> Pose {
+fn moved_pose(points: &[DVec3], pose: &Pose, turn: DQuat, displacement: DVec3) -> Pose {
     if turn == DQuat::IDENTITY {
         // Without a rotation, a body on a grid remains on it.
-        let at = significant(pose.translation() + displacement);
+        let at = without_tiny_components(pose.translation() + displacement);
         return Pose::new(pose.rotation(), at).expect("in range");
     }
-    let middle = middle(points);
+    let middle = mean_point(points);
     let rotation = (turn * pose.rotation()).normalize();
     let at = pose.transform_point(middle) + displacement - rotation * middle;
-    Pose::new(rotation, significant(at)).expect("in range")
+    Pose::new(rotation, without_tiny_components(at)).expect("in range")
 }
 
 /// Returns the translation that moves a boundary point of the shadow of `M = {q - p}` onto the line, or
-/// `overlap` beyond it. The point is at the fraction `along` of the side from the corner farthest in the
+/// `draw_overlap` beyond it. The point is at the fraction `along` of the side from the corner farthest in the
 /// direction `toward` to the next corner.
 fn rim_displacement(setting: &Setting, toward: DVec3, along: f64, overlap: f64) -> DVec3 {
     let unit = setting.direction.normalize();

@@ -61,8 +61,9 @@ pub fn sideways_overlap(scene: &Scene) -> SignedDistance {
         .min()
         .expect("a body has a point");
     let origin = [&IBig::ZERO, &IBig::ZERO];
-    let inside = hull.len() > 2 && { sides }
-        .all(|(i, j)| turn(shadows[hull[i]], shadows[hull[j]], origin) == Ordering::Greater);
+    let inside = hull.len() > 2 && { sides }.all(|(i, j)| {
+        side_of_line(shadows[hull[i]], shadows[hull[j]], origin) == Ordering::Greater
+    });
     let unit = Ratio::new(Dyadic::new(1.0), &square * &square);
     let sign = match (inside, distance.is_zero()) {
         (_, true) => Ordering::Equal,
@@ -88,7 +89,7 @@ fn squared_distance_to_segment(a: &Vector, b: &Vector) -> Ratio {
 }
 
 /// Returns the side of `a -> b` on which `c` is: `Greater` is left.
-fn turn(a: [&IBig; 2], b: [&IBig; 2], c: [&IBig; 2]) -> Ordering {
+fn side_of_line(a: [&IBig; 2], b: [&IBig; 2], c: [&IBig; 2]) -> Ordering {
     ((b[0] - a[0]) * (c[1] - a[1])).cmp(&((b[1] - a[1]) * (c[0] - a[0])))
 }
 
@@ -105,7 +106,7 @@ fn convex_hull(points: &[[&IBig; 2]]) -> Vec<usize> {
         let mut chain: Vec<usize> = Vec::new();
         for i in order {
             while let [.., a, b] = chain[..]
-                && turn(points[a], points[b], points[i]) != Ordering::Greater
+                && side_of_line(points[a], points[b], points[i]) != Ordering::Greater
             {
                 chain.pop();
             }

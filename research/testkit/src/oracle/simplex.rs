@@ -137,7 +137,7 @@ mod tests {
     use colltrans::Pose;
     use glam::DVec3;
 
-    fn cubes(at: DVec3, direction: DVec3) -> Option<Ratio> {
+    fn translation_of_cubes(at: DVec3, direction: DVec3) -> Option<Ratio> {
         let pose = Pose::from_translation(at).unwrap();
         let [p, q] = [0.5, 1.0].map(|half| cuboid(DVec3::splat(half)).vertices);
         collision_translation(&Scene::new((&p, &Pose::IDENTITY), (&q, &pose), direction))
@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn boxes_meet_at_the_expected_translation() {
-        let along = |x: f64, d| cubes(DVec3::new(x, 0.25, 0.5), d).map(|t| t.to_f64());
+        let along =
+            |x: f64, d| translation_of_cubes(DVec3::new(x, 0.25, 0.5), d).map(|t| t.to_f64());
         assert_eq!(along(5.0, DVec3::X), Some(3.5));
         assert_eq!(along(5.0, DVec3::NEG_X), Some(-6.5));
         assert_eq!(along(5.0, DVec3::new(0.25, 0.0, 0.0)), Some(14.0));
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn touching_at_the_rim_is_contact_but_one_ulp_beyond_is_not() {
-        let at = |y: f64| cubes(DVec3::new(5.0, y, 0.0), DVec3::X);
+        let at = |y: f64| translation_of_cubes(DVec3::new(5.0, y, 0.0), DVec3::X);
         assert_eq!(at(1.5).unwrap().to_f64(), 3.5);
         assert!(at(1.5_f64.next_up()).is_none());
     }

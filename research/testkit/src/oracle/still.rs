@@ -42,7 +42,8 @@ pub fn ask<'a>(
         match (answer, &ordinary) {
             (Ok(answer), Ok(ordinary)) => {
                 let judged = judge_answer(&judge, &answer, ordinary, with_oracle);
-                let judged = judged.and_then(|agreement| overlapping(&answer, ordinary, agreement));
+                let judged = judged
+                    .and_then(|agreement| check_overlapping_bounds(&answer, ordinary, agreement));
                 findings.push((who, answer, judged));
             }
             (Err(QueryError::NotConverged { .. }), Err(QueryError::NotConverged { .. })) => {}
@@ -55,7 +56,7 @@ pub fn ask<'a>(
 }
 
 /// Checks that the bounds of both answers overlap, because both contain the exact translation.
-fn overlapping(
+fn check_overlapping_bounds(
     answer: &Outcome,
     ordinary: &Outcome,
     agreement: Agreement,

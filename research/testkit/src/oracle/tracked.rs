@@ -144,7 +144,7 @@ fn judge_tracked(
 /// Judges an answer by itself.
 fn judge_alone(judge: &Judge, answer: &Outcome, with_oracle: bool) -> Result<Proof, Objection> {
     let proof = judge.check(answer)?;
-    verify(judge, answer)?;
+    verify_certificate(judge, answer)?;
     if with_oracle || !proof.exact {
         judge.compare_with_oracle(answer)?;
     }
@@ -170,7 +170,7 @@ pub(crate) fn judge_answer(
 }
 
 /// Checks the certificate with the library, and the gap that it states.
-fn verify(judge: &Judge, answer: &Outcome) -> Result<(), Objection> {
+fn verify_certificate(judge: &Judge, answer: &Outcome) -> Result<(), Objection> {
     let refused = |e| Objection(format!("rejected by verify: {e}"));
     match answer {
         Outcome::Contact(Contact { certificate, .. })

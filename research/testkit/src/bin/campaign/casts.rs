@@ -16,7 +16,7 @@ const WHO: [(&str, Solver, Option<cta::Options>); 4] = [
 ];
 
 /// Computes the first contact with a solver.
-fn ask(
+fn first_contact_with(
     setting: &Setting,
     bodies: &Bodies,
     solver: Solver,
@@ -72,7 +72,7 @@ pub(crate) fn examine_setting(
     let judge = setting.judge(&bodies);
     let mut oracle_asked = false;
     for (index, (name, solver, narrowing)) in WHO.into_iter().enumerate() {
-        let outcome = match ask(setting, &bodies, solver, narrowing) {
+        let outcome = match first_contact_with(setting, &bodies, solver, narrowing) {
             Ok(outcome) => outcome,
             Err(error) => {
                 tally.disagree(format!("{setting} {name}: {error}"));
@@ -118,7 +118,7 @@ pub(crate) fn replay(family: &str, seed: u64) -> bool {
 /// Prints the answers of single queries and of the oracle.
 pub(crate) fn print_answers(setting: &Setting, bodies: &Bodies) {
     for (name, solver, narrowing) in WHO {
-        println!("{name}: {:#?}", ask(setting, bodies, solver, narrowing));
+        println!("{name}: {:#?}", first_contact_with(setting, bodies, solver, narrowing));
     }
     let scene = setting.judge(bodies).scene;
     println!("noise {:e}", scene.noise);

@@ -37,11 +37,11 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     let Ok(bodies) = setting.bodies() else { return Ok(()) };
     let mut random = Random::new(seed ^ 0x5eed);
     let moving = near_contact(&setting, &bodies, &mut random).unwrap_or(setting.moving_pose);
-    Ok(judge(&setting, &bodies, moving, &mut random, tally)?)
+    Ok(judge_distances(&setting, &bodies, moving, &mut random, tally)?)
 }
 
 /// Judges distance, depth and `within` of two bodies.
-fn judge(
+fn judge_distances(
     setting: &Setting,
     bodies: &Bodies,
     moving: Pose,

@@ -39,19 +39,19 @@ pub(crate) const COLUMNS: &[&str] = &[
 pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     if family == GLIDING {
-        return glide(seed, tally);
+        return examine_gliding(seed, tally);
     }
     let setting = setting(family, seed);
     tally.count("settings");
     let Ok(bodies) = setting.bodies() else { return Ok(()) };
     let mut random = Random::new(seed ^ 0x6a9);
     let Ok(cast) = setting.query(&bodies) else { return Ok(()) };
-    let gap = gap(&cast, &mut random);
-    judge(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
+    let gap = draw_gap(&cast, &mut random);
+    judge_with_gap(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
 }
 
 /// Examines one setting of [`GLIDING`].
-fn glide(seed: u64, tally: &mut Tally) -> Result<(), String> {
+fn examine_gliding(seed: u64, tally: &mut Tally) -> Result<(), String> {
     let mut random = Random::new(seed ^ 0x61de);
     tally.count("settings");
     let size = 10.0_f64.powf(random.range(-3.0, 3.0));
@@ -86,12 +86,12 @@ fn glide(seed: u64, tally: &mut Tally) -> Result<(), String> {
     let Ok(pose) = Pose::new(tilt, start + DVec3::Z * height) else { return Ok(()) };
     let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::X);
     let Ok(cast) = cast else { return Ok(()) };
-    judge(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
+    judge_with_gap(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
 }
 
 /// Draws a gap: 0, some rounding errors, a fraction or a multiple of the size, or a gap at which a case is
 /// tied.
-fn gap(cast: &Cast, random: &mut Random) -> f64 {
+fn draw_gap(cast: &Cast, random: &mut Random) -> f64 {
     let size = (reach(cast.moving().vertices()) + reach(cast.fixed().vertices())).max(1e-50);
     let gap = match random.index(10) {
         0 => 0.0,
@@ -119,7 +119,7 @@ fn gap(cast: &Cast, random: &mut Random) -> f64 {
 }
 
 /// Judges the first contact and the clearance with a gap.
-fn judge(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
+fn judge_with_gap(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
     let error = |e: &dyn std::fmt::Display| Objection(e.to_string());
     let kept = cast.keeping(gap).map_err(|e| error(&e))?;
     if gap == 0.0 && kept.first_contact() != cast.first_contact() {

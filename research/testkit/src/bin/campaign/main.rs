@@ -124,24 +124,24 @@ const CAMPAIGNS: [Campaign; 17] = [
         each: DIRECTIONS,
         ..campaign(
             "--free",
-            || names(&free::FAMILIES),
+            || to_strings(&free::FAMILIES),
             free::COLUMNS,
             |asked, tally| free::examine(asked.family, asked.seed, DIRECTIONS, tally),
         )
     },
-    campaign("--bodies", || names(NEARLY_FLAT), bodies::COLUMNS, bodies::examine),
+    campaign("--bodies", || to_strings(NEARLY_FLAT), bodies::COLUMNS, bodies::examine),
     campaign("--distances", settings, distances::COLUMNS, distances::examine),
     campaign(
         "--scenes",
-        || names(&among::FAMILIES),
+        || to_strings(&among::FAMILIES),
         among::COLUMNS,
         |asked, tally| among::examine(asked.family, asked.seed, tally),
     ),
     campaign("--keeping", keeping_families, keeping::COLUMNS, keeping::examine),
     campaign("--motions", settings, motions::COLUMNS, motions::examine),
-    campaign("--paths", || names(&paths::FAMILIES), paths::COLUMNS, paths::examine),
-    campaign("--play", || names(&play::families()), play::COLUMNS, play::examine),
-    campaign("--ways", || names(&ways::FAMILIES), ways::COLUMNS, ways::examine),
+    campaign("--paths", || to_strings(&paths::FAMILIES), paths::COLUMNS, paths::examine),
+    campaign("--play", || to_strings(&play::families()), play::COLUMNS, play::examine),
+    campaign("--ways", || to_strings(&ways::FAMILIES), ways::COLUMNS, ways::examine),
     Campaign {
         counts: "MUTANTS",
         each: proofs::MUTANTS,
@@ -158,7 +158,7 @@ const CAMPAIGNS: [Campaign; 17] = [
 ];
 
 /// Returns the names as strings.
-fn names(families: &[&str]) -> Vec<String> {
+fn to_strings(families: &[&str]) -> Vec<String> {
     families.iter().map(|&name| name.to_owned()).collect()
 }
 
@@ -178,7 +178,7 @@ fn proof_kinds() -> Vec<String> {
 }
 
 /// Returns the text of `--help`.
-fn usage() -> String {
+fn usage_text() -> String {
     let lines = CAMPAIGNS.iter().map(|campaign| {
         let Campaign { option, counts, .. } = campaign;
         format!("campaign {option} {counts} [--seed S] [--only FAMILY | --case FAMILY:SEED]\n")
@@ -213,20 +213,20 @@ impl FromStr for Case {
         let parts: Vec<&str> = text.split(':').collect();
         let (family, seed, step) = match parts[..] {
             [family, seed] => (family, seed, None),
-            [family, seed, step] => (family, seed, Some(number(step)?)),
+            [family, seed, step] => (family, seed, Some(parse_number(step)?)),
             _ => {
                 return Err(format!(
                     "invalid case {text}; accepted: FAMILY:SEED or FAMILY:SEED:STEP"
                 ));
             }
         };
-        Ok(Self { family: family.to_owned(), seed: number(seed)?, step })
+        Ok(Self { family: family.to_owned(), seed: parse_number(seed)?, step })
     }
 }
 
 fn main() -> ExitCode {
     if std::env::args().any(|word| word == "--help" || word == "-h") {
-        print!("{}", usage());
+        print!("{}", usage_text());
         return ExitCode::SUCCESS;
     }
     match parse(std::env::args().skip(1)).and_then(|arguments| carry_out(&arguments)) {
@@ -245,15 +245,15 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     while let Some(word) = words.next() {
         let value = words.next().ok_or_else(|| format!("missing value of {word}"))?;
         match word.as_str() {
-            "--lp" => arguments.lp = number(&value)?,
-            "--seed" => arguments.seed = number(&value)?,
+            "--lp" => arguments.lp = parse_number(&value)?,
+            "--seed" => arguments.seed = parse_number(&value)?,
             "--only" => arguments.only = Some(value),
             "--case" => arguments.case = Some(value.parse()?),
             _ => {
                 let campaign = CAMPAIGNS.iter().find(|campaign| campaign.option == word);
                 let campaign =
-                    campaign.ok_or_else(|| format!("unknown option {word}\n{}", usage()))?;
-                arguments.campaign = Some((campaign, number(&value)?));
+                    campaign.ok_or_else(|| format!("unknown option {word}\n{}", usage_text()))?;
+                arguments.campaign = Some((campaign, parse_number(&value)?));
             }
         }
     }
@@ -261,7 +261,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
 }
 
 /// Parses a number.
-fn number<T: FromStr>(text: &str) -> Result<T, String> {
+fn parse_number<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| format!("{text} is not a number of the accepted range"))
 }
 
@@ -276,24 +276,29 @@ fn carry_out(arguments: &Arguments) -> Result<bool, String> {
     println!("{:<20} {}", "family", header(campaign.columns));
     if let Some(Case { family, seed, .. }) = &arguments.case {
         if !families.contains(family) {
-            return Err(unknown(family, &families));
+            return Err(unknown_family(family, &families));
         }
         let mut tally = Tally::default();
         campaign.examine(&Asked { family, seed: *seed, every: 1 }, &mut tally);
-        return Ok(print(family, &tally, campaign.columns));
+        return Ok(print_tally(family, &tally, campaign.columns));
     }
     let chosen: Vec<&String> = families
         .iter()
         .filter(|name| arguments.only.as_ref().is_none_or(|only| only == *name))
         .collect();
     match &arguments.only {
-        Some(only) if chosen.is_empty() => Err(unknown(only, &families)),
-        _ => Ok(run(campaign, &chosen, count, arguments)),
+        Some(only) if chosen.is_empty() => Err(unknown_family(only, &families)),
+        _ => Ok(run_campaign(campaign, &chosen, count, arguments)),
     }
 }
 
 /// Examines `count` settings, divided equally among the families. Returns whether there are no disagreements.
-fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Arguments) -> bool {
+fn run_campaign(
+    campaign: &Campaign,
+    families: &[&String],
+    count: u64,
+    arguments: &Arguments,
+) -> bool {
     let per_family = count.div_ceil(campaign.each).div_ceil(families.len() as u64);
     let every = (count / arguments.lp.max(1)).max(1);
     let started = Instant::now();
@@ -312,7 +317,7 @@ fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Argume
                 tally
             })
             .reduce(Tally::default, Tally::merged);
-        bar.suspend(|| print(name, &tally, campaign.columns));
+        bar.suspend(|| print_tally(name, &tally, campaign.columns));
         total = total.merged(tally);
     }
     bar.finish_and_clear();
@@ -322,7 +327,7 @@ fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Argume
 }
 
 /// Prints a line of the table and the first disagreements. Returns whether there are none.
-fn print(name: &str, tally: &Tally, columns: &[&str]) -> bool {
+fn print_tally(name: &str, tally: &Tally, columns: &[&str]) -> bool {
     println!("{name:<20} {}", tally.line(columns));
     for line in tally.disagreements.iter().take(SHOWN) {
         println!("    {line}");
@@ -334,7 +339,7 @@ fn print(name: &str, tally: &Tally, columns: &[&str]) -> bool {
 fn replay(Case { family, seed, step }: &Case) -> Result<bool, String> {
     let families = settings();
     if !families.contains(family) {
-        return Err(unknown(family, &families));
+        return Err(unknown_family(family, &families));
     }
     Ok(match step {
         Some(step) => sequences::replay(family, *seed, *step),
@@ -343,6 +348,6 @@ fn replay(Case { family, seed, step }: &Case) -> Result<bool, String> {
 }
 
 /// Returns the message for an unknown family.
-fn unknown(family: &str, families: &[String]) -> String {
+fn unknown_family(family: &str, families: &[String]) -> String {
     format!("unknown family {family}; families of this campaign: {}", families.join(", "))
 }

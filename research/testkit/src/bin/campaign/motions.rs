@@ -46,11 +46,11 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     let [p, q] = [cast.moving(), cast.fixed()];
     let size = reach(p.vertices()) + reach(q.vertices());
     let way = cast.direction().normalize_or_zero() * size;
-    let Some(moving) = spin(poses[0], poses[1], way, size, &mut random) else { return Ok(()) };
+    let Some(moving) = draw_spin(poses[0], poses[1], way, size, &mut random) else { return Ok(()) };
     let fixed = if random.one_in(3) {
-        spin(poses[1], poses[0], -way, size, &mut random)
+        draw_spin(poses[1], poses[0], -way, size, &mut random)
     } else {
-        Some(rest(poses[1]))
+        Some(motion_at_rest(poses[1]))
     };
     let Some(fixed) = fixed else { return Ok(()) };
     let keep = match random.index(6) {
@@ -59,16 +59,16 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
         _ => 0.0,
     };
     let judge = Judge { bodies: [p, q], spins: [moving, fixed], keep };
-    Ok(examined(&judge, seed.is_multiple_of(SAMPLE), tally)?)
+    Ok(check_first_contact(&judge, seed.is_multiple_of(SAMPLE), tally)?)
 }
 
 /// Returns the motion of a body at rest.
-fn rest(start: Pose) -> Spin {
+fn motion_at_rest(start: Pose) -> Spin {
     Spin { start, arm: DVec3::ZERO, axis: DVec3::Z, angle: 0.0, way: DVec3::ZERO }
 }
 
 /// Draws a motion: a rotation, a screw, a translation, or a throw. `None` if its numbers are not finite.
-fn spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Random) -> Option<Spin> {
+fn draw_spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Random) -> Option<Spin> {
     let axis = random.direction();
     let (from, to) = (start.translation(), other.translation());
     let between = from.lerp(to, random.range(-0.5, 1.5)) + random.vector() * size;
@@ -98,7 +98,11 @@ fn motion(spin: &Spin) -> Option<Motion> {
 }
 
 /// Computes the first contact, and checks it with the library, and in integer arithmetic if required.
-fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<(), Objection> {
+fn check_first_contact(
+    judge: &Judge,
+    in_whole_numbers: bool,
+    tally: &mut Tally,
+) -> Result<(), Objection> {
     let [Some(moving), Some(fixed)] = judge.spins.each_ref().map(motion) else { return Ok(()) };
     let cast = MotionCast::new(judge.bodies[0].along(&moving), judge.bodies[1].along(&fixed));
     let kept = cast.and_then(|cast| {
@@ -117,12 +121,12 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
         tally.count("judged");
         judge.check(&outcome)?;
     }
-    clearance(judge, &cast, &outcome, judged, tally)
+    check_clearance(judge, &cast, &outcome, judged, tally)
 }
 
 /// Checks the clearance: its proof holds, it does not extend through a deep contact, and no position on the way
 /// is deep.
-fn clearance(
+fn check_clearance(
     judge: &Judge,
     cast: &MotionCast,
     first: &MotionOutcome,

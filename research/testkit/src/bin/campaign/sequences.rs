@@ -25,7 +25,7 @@ pub(crate) const QUERIES: u64 = STEPS as u64 * LANES;
 const ORACLE_EVERY: u32 = 20;
 
 /// Records a finding.
-fn note(walk: &Walk, finding: &Finding, tally: &mut Tally) {
+fn record_finding(walk: &Walk, finding: &Finding, tally: &mut Tally) {
     tally.count("queries");
     if let Ok(outcome) = &finding.answer {
         tally.count(casts::kind(outcome));
@@ -76,7 +76,7 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     for step in 0..STEPS {
         let findings = lanes.ask(&walk.setting, step.is_multiple_of(ORACLE_EVERY));
         for finding in &findings {
-            note(&walk, finding, tally);
+            record_finding(&walk, finding, tally);
         }
         tally.add(
             "flips",
@@ -111,7 +111,7 @@ pub(crate) fn replay(family: &str, seed: u64, step: u32) -> bool {
     println!("{:#?}", walk.setting);
     for finding in lanes.ask(&walk.setting, true) {
         println!("{finding:#?}");
-        note(&walk, &finding, &mut tally);
+        record_finding(&walk, &finding, &mut tally);
     }
     print_answers(&walk.setting, &bodies);
     print(family, &tally, COLUMNS)

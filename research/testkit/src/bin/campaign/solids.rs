@@ -61,7 +61,7 @@ pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> 
         let setting = Setting::draw(family, seed).ok_or_else(|| "no such family".to_owned());
         setting.and_then(|setting| setting.examine(in_fractions)).map(Some)
     };
-    note(found, tally, |seen| match seen {
+    count_outcome(found, tally, |seen| match seen {
         Seen::Overlapping => "overlapping",
         Seen::Free => "free",
         Seen::BlockedNow => "touching",
@@ -73,7 +73,7 @@ pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> 
 pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let setting = nearest::Setting::draw(asked.family, asked.seed);
     let found = setting.and_then(|found| found.map(|setting| setting.examine()).transpose());
-    note(found, tally, |seen| match seen {
+    count_outcome(found, tally, |seen| match seen {
         nearest::Seen::Touching => "touching",
         nearest::Seen::Inside => "inside",
         nearest::Seen::Near => "near",
@@ -83,7 +83,7 @@ pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), Stri
 
 /// Examines casts with a minimum gap.
 pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
-    note(keep::examine(asked.family, asked.seed), tally, |seen| match seen {
+    count_outcome(keep::examine(asked.family, asked.seed), tally, |seen| match seen {
         keep::Seen::Nearer => "nearer",
         keep::Seen::Free => "free",
         keep::Seen::Blocked => "blocked",
@@ -92,7 +92,7 @@ pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
 
 /// Examines motions.
 pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
-    note(turning::examine(asked.family, asked.seed), tally, |seen| match seen {
+    count_outcome(turning::examine(asked.family, asked.seed), tally, |seen| match seen {
         turning::Seen::Overlapping => "overlapping",
         turning::Seen::Free => "free",
         turning::Seen::Grazing => "grazing",
@@ -101,7 +101,7 @@ pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
 }
 
 /// Counts the outcome of a setting. Bodies that are not solids are counted as skipped.
-fn note<S>(
+fn count_outcome<S>(
     found: Result<Option<S>, String>,
     tally: &mut Tally,
     name: impl Fn(S) -> &'static str,

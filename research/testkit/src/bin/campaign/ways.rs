@@ -36,13 +36,13 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
         Pose::IDENTITY
     };
     match family {
-        "tunnels" | "turned tunnels" => tunnels(&mut random, pose, tally),
+        "tunnels" | "turned tunnels" => examine_puzzle(&mut random, pose, tally),
         _ => holes(&mut random, pose, tally),
     }
 }
 
 /// Examines a puzzle of cubes.
-fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), String> {
+fn examine_puzzle(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), String> {
     let cubes = Cubes::random(random);
     let solids = cubes.solids();
     let placed: Vec<Placed<'_, Solid>> = solids.iter().map(|solid| solid.at(pose)).collect();
@@ -64,7 +64,7 @@ fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Str
     // For cubes the judge computes overlaps without the library.
     let inverse = pose.matrix().transpose();
     let enters = |pair, by: DVec3| cubes.enter(pair, inverse * by, 1.1e-5);
-    judged(&placed, &answer, tally, enters)
+    check_legs(&placed, &answer, tally, enters)
 }
 
 /// Examines a cube in a box whose roof has a square hole.
@@ -103,11 +103,11 @@ fn holes(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Strin
         let cast = Cast::new(placed[i].body.at(moved), placed[j], DVec3::Z);
         cast.and_then(|cast| cast.with_tolerance(1e-5)).is_ok_and(|cast| cast.overlaps())
     };
-    judged(&placed, &answer, tally, overlap)
+    check_legs(&placed, &answer, tally, overlap)
 }
 
 /// Verifies the proof, and checks 201 positions of each leg.
-fn judged(
+fn check_legs(
     placed: &[Placed<'_, Solid>],
     answer: &WaysOut,
     tally: &mut Tally,
@@ -128,14 +128,14 @@ fn judged(
     tally.count("found");
     tally.add("legs", way.legs.len() as u64);
     tally.largest("most legs", way.legs.len() as f64);
-    if let Some(entered) = entered(way, placed.len(), &enters, tally) {
+    if let Some(entered) = first_overlap(way, placed.len(), &enters, tally) {
         return Err(entered);
     }
-    changed(placed, way, &enters, tally)
+    check_extended_leg(placed, way, &enters, tally)
 }
 
 /// Returns a description of the first overlap on a path; `None` if there is none.
-fn entered(
+fn first_overlap(
     way: &WayOut,
     bodies: usize,
     enters: &impl Fn([usize; 2], DVec3) -> bool,
@@ -163,7 +163,7 @@ fn entered(
 }
 
 /// Checks that a leg which is extended beyond its proof is rejected, or that the extended leg has no overlap.
-fn changed(
+fn check_extended_leg(
     placed: &[Placed<'_, Solid>],
     way: &WayOut,
     enters: &impl Fn([usize; 2], DVec3) -> bool,
@@ -177,7 +177,7 @@ fn changed(
         leg.direction = leg.motion.normalize();
         if longer.verify(placed).is_err() {
             tally.count("refused");
-        } else if let Some(entered) = entered(&longer, placed.len(), enters, tally) {
+        } else if let Some(entered) = first_overlap(&longer, placed.len(), enters, tally) {
             return Err(format!("leg {k}, made longer, is accepted, but {entered}"));
         }
     }

@@ -165,13 +165,13 @@ mod tests {
     use colltrans::{Certificate, Contact, Separated, Solver, VertexId};
 
     /// Checks whether the judge rejects an answer.
-    fn objects(setting: &Setting, outcome: &Outcome) -> bool {
+    fn judge_rejects(setting: &Setting, outcome: &Outcome) -> bool {
         let bodies = setting.bodies().expect("bodies");
         let judge = setting.judge(&bodies);
         judge.check(outcome).and_then(|_| judge.compare_with_oracle(outcome)).is_err()
     }
 
-    fn answers(kind: fn(&Outcome) -> bool) -> Vec<(Setting, Outcome)> {
+    fn draw_answers(kind: fn(&Outcome) -> bool) -> Vec<(Setting, Outcome)> {
         let ask = |seed| {
             let setting = setting(["random", "boxes", "peg"][seed as usize % 3], seed);
             let outcome = setting.cast(&setting.bodies().expect("bodies"), Solver::Portal);
@@ -200,9 +200,9 @@ mod tests {
             ("weights", |c| c.certificate.weights = [1.0, -1.0, 1.0]),
             ("vertex", |c| c.certificate.pairs[0].fixed = VertexId(99)),
         ];
-        let contacts = answers(|o| matches!(o, Outcome::Contact(_)));
+        let contacts = draw_answers(|o| matches!(o, Outcome::Contact(_)));
         assert_eq!(contacts.len(), 20);
-        let other = |kind: fn(&Outcome) -> bool| answers(kind).swap_remove(0).1;
+        let other = |kind: fn(&Outcome) -> bool| draw_answers(kind).swap_remove(0).1;
         let Outcome::Separated(separated) = other(|o| matches!(o, Outcome::Separated(_))) else {
             unreachable!()
         };
@@ -210,12 +210,12 @@ mod tests {
             unreachable!()
         };
         for (setting, outcome) in contacts {
-            assert!(!objects(&setting, &outcome), "{setting}");
+            assert!(!judge_rejects(&setting, &outcome), "{setting}");
             let Outcome::Contact(contact) = outcome else { unreachable!() };
             for (name, change) in changes {
                 let mut changed = contact;
                 change(&mut changed);
-                assert!(objects(&setting, &Outcome::Contact(changed)), "{setting}: {name}");
+                assert!(judge_rejects(&setting, &Outcome::Contact(changed)), "{setting}: {name}");
             }
             let Certificate { normal, .. } = contact.certificate;
             let orthogonal = normal.cross(setting.direction).normalize();
@@ -224,20 +224,23 @@ mod tests {
             if !orthogonal.is_finite() {
                 separated.certificate.normal = setting.direction.any_orthonormal_vector();
             }
-            assert!(objects(&setting, &Outcome::Separated(separated)), "{setting}: separated");
+            assert!(
+                judge_rejects(&setting, &Outcome::Separated(separated)),
+                "{setting}: separated"
+            );
             let mut grazing = grazing;
             grazing.separating_direction = separated.certificate.normal;
             (grazing.overlap, grazing.contact) = (0.0, contact);
-            assert!(objects(&setting, &Outcome::Grazing(grazing)), "{setting}: grazing");
+            assert!(judge_rejects(&setting, &Outcome::Grazing(grazing)), "{setting}: grazing");
         }
     }
 
     #[test]
     fn changed_separations_are_rejected() {
-        let separations = answers(|o| matches!(o, Outcome::Separated(_)));
+        let separations = draw_answers(|o| matches!(o, Outcome::Separated(_)));
         assert_eq!(separations.len(), 20);
         for (setting, outcome) in separations {
-            assert!(!objects(&setting, &outcome), "{setting}");
+            assert!(!judge_rejects(&setting, &outcome), "{setting}");
             let Outcome::Separated(separated) = outcome else { unreachable!() };
             let changes: [fn(&mut Separated, DVec3); 4] = [
                 |s, _| s.certificate.margin += 1e-9,
@@ -248,22 +251,25 @@ mod tests {
             for (index, change) in changes.into_iter().enumerate() {
                 let mut changed = separated;
                 change(&mut changed, setting.direction.normalize());
-                assert!(objects(&setting, &Outcome::Separated(changed)), "{setting}: {index}");
+                assert!(
+                    judge_rejects(&setting, &Outcome::Separated(changed)),
+                    "{setting}: {index}"
+                );
             }
         }
     }
 
     #[test]
     fn grazing_is_no_contact() {
-        let grazings = answers(|o| matches!(o, Outcome::Grazing(_)));
+        let grazings = draw_answers(|o| matches!(o, Outcome::Grazing(_)));
         assert_eq!(grazings.len(), 20);
         for (setting, outcome) in grazings {
-            assert!(!objects(&setting, &outcome), "{setting}");
+            assert!(!judge_rejects(&setting, &outcome), "{setting}");
             let Outcome::Grazing(grazing) = outcome else { unreachable!() };
-            assert!(objects(&setting, &Outcome::Contact(grazing.contact)), "{setting}");
+            assert!(judge_rejects(&setting, &Outcome::Contact(grazing.contact)), "{setting}");
             let mut aside = grazing;
             aside.overlap -= 1e-3;
-            assert!(objects(&setting, &Outcome::Grazing(aside)), "{setting}: overlap");
+            assert!(judge_rejects(&setting, &Outcome::Grazing(aside)), "{setting}: overlap");
         }
     }
 }

@@ -28,7 +28,7 @@ enum Read {
 }
 
 /// Reads two placed bodies; `None` if they are invalid.
-fn read(reader: &mut Reader) -> Option<Read> {
+fn read_bodies(reader: &mut Reader) -> Option<Read> {
     let turned = reader.clone().byte();
     if turned & 4 == 0 {
         return read_setting(reader).map(|setting| Read::Convex(Box::new(setting)));
@@ -49,7 +49,7 @@ fn read_pose(reader: &mut Reader, is_turned: bool) -> Option<Pose> {
 }
 
 /// Builds the pair of a setting.
-fn pair<'a>(setting: &Setting, bodies: &'a Bodies) -> Pair<'a> {
+fn build_pair<'a>(setting: &Setting, bodies: &'a Bodies) -> Pair<'a> {
     let [p, q] = [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
     Pair::new(p, q).expect("any two placed bodies are a pair")
 }
@@ -61,13 +61,13 @@ fn pair<'a>(setting: &Setting, bodies: &'a Bodies) -> Pair<'a> {
 /// If an answer is wrong.
 pub fn distance(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
-    match read(&mut reader) {
+    match read_bodies(&mut reader) {
         None => {}
         Some(Read::Solids(setting)) => {
             setting.examine().unwrap_or_else(|e| panic!("{e}"));
         }
         Some(Read::Convex(of)) => {
-            let pair = pair(&of.0, &of.1);
+            let pair = build_pair(&of.0, &of.1);
             let answer = pair.distance().unwrap_or_else(|e| panic!("{e}"));
             nearest::Judge::new(pair).check(&answer).unwrap_or_else(|e| panic!("{e}"));
         }
@@ -81,7 +81,7 @@ pub fn distance(bytes: &[u8]) {
 pub fn depth(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((setting, bodies)) = read_setting(&mut reader) else { return };
-    let pair = pair(&setting, &bodies);
+    let pair = build_pair(&setting, &bodies);
     let depth = pair.depth().unwrap_or_else(|e| panic!("{e}"));
     let judge = nearest::Judge::new(pair);
     judge.check_depth(&depth).unwrap_or_else(|e| panic!("{e}"));
@@ -98,7 +98,7 @@ pub fn depth(bytes: &[u8]) {
 pub fn within(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((setting, bodies)) = read_setting(&mut reader) else { return };
-    let pair = pair(&setting, &bodies);
+    let pair = build_pair(&setting, &bodies);
     let judge = nearest::Judge::new(pair);
     let truth = judge.truth.to_f64();
     let lengths = [truth, truth.next_up(), truth.next_down(), truth + 4.0 * judge.noise];
@@ -118,7 +118,7 @@ pub fn within(bytes: &[u8]) {
 /// If an answer is wrong.
 pub fn keep(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
-    match read(&mut reader) {
+    match read_bodies(&mut reader) {
         None => {}
         Some(Read::Solids(of)) => {
             let gap = f64::from(reader.byte()) / 16.0 + 1.0 / 64.0;
@@ -166,7 +166,7 @@ pub fn among(bytes: &[u8]) {
             bodies.push(body.into());
         }
     }
-    let Some(obstacles) = scene(&mut reader, &bodies) else { return };
+    let Some(obstacles) = read_scene(&mut reader, &bodies) else { return };
     let moving = bodies[usize::from(reader.byte()) % bodies.len()].clone();
     let Some(pose) = read_pose(&mut reader, true) else { return };
     let (direction, length) = (reader.vector(), reader.number().abs());
@@ -181,7 +181,7 @@ pub fn among(bytes: &[u8]) {
 }
 
 /// Reads a sequence of insertions, moves and removals; `None` if a pose is invalid.
-fn scene(reader: &mut Reader, bodies: &[AnyBody]) -> Option<Obstacles> {
+fn read_scene(reader: &mut Reader, bodies: &[AnyBody]) -> Option<Obstacles> {
     let mut obstacles = Obstacles::new();
     let mut ids: Vec<ObstacleId> = Vec::new();
     for _ in 0..usize::from(reader.byte()) % (MOST_CHANGES + 1) {

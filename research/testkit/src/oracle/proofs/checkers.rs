@@ -89,7 +89,7 @@ impl Fractions {
 
 impl Drop for Fractions {
     fn drop(&mut self) {
-        // The process ends when its input ends. An error means that it has already ended.
+        // An error means that the process has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

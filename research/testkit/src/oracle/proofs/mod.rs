@@ -236,7 +236,7 @@ impl<'a> Campaign<'a> {
         }
         for (verdict, who) in [(&library, Who::Library), (&fractions, Who::Fractions)] {
             if verdict.accepts() {
-                let unreadable = || Some("it is no JSON".to_owned());
+                let unreadable = || Some("the file is not JSON".to_owned());
                 let found =
                     file.as_ref().map_or_else(unreadable, |f| (self.kind.falsehood)(f, who));
                 if let Some(why) = found {

@@ -254,11 +254,11 @@ impl Path {
 }
 
 fn falsehood(file: &Value, who: Who) -> Option<String> {
-    first(found(file, who))
+    first(false_statements(file, who))
 }
 
 /// Returns the false statements; `None` if the file is invalid.
-fn found(file: &Value, _: Who) -> Option<Vec<String>> {
+fn false_statements(file: &Value, _: Who) -> Option<Vec<String>> {
     let path = Path::read(file)?;
     let lower = file.pointer("/statement/path/lower")?.as_f64()?;
     let upper = file.pointer("/statement/path/upper")?.as_f64();

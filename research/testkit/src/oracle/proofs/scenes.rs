@@ -186,7 +186,7 @@ fn worst(file: &mut Value, random: &mut Random) {
 }
 
 /// Returns the pairs of the moving body and each obstacle.
-fn pairs(file: &Value) -> Option<Vec<Bodies>> {
+fn read_pairs(file: &Value) -> Option<Vec<Bodies>> {
     let placed = |at: &Value| {
         let body = body_at(file, at)?;
         let points = vectors(body.pointer("/convex/vertices")?)?;
@@ -221,21 +221,21 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
     first(found(file, who))
 }
 
-fn squared(x: f64) -> Ratio {
+fn exact_square(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }
 
 /// Returns the false statements; `None` if the file is invalid.
 fn found(file: &Value, _: Who) -> Option<Vec<String>> {
-    let all = pairs(file)?;
+    let all = read_pairs(file)?;
     let at = |k: &Value| all.get(k.as_u64()? as usize);
     let near = |of: &Value| of.pointer("/convex/distance").and_then(Value::as_f64);
     if let Some(of) = file.pointer("/statement/nearest") {
         let (lower, upper) = (of.get("lower")?.as_f64()?, near(of.get("near")?)?);
-        if at(of.get("obstacle")?)?.distance() > squared(upper) {
+        if at(of.get("obstacle")?)?.distance() > exact_square(upper) {
             return Some(vec![format!("the obstacle is not within {upper}")]);
         }
-        let nearer = all.iter().position(|pair| pair.distance() < squared(lower));
+        let nearer = all.iter().position(|pair| pair.distance() < exact_square(lower));
         let what = nearer.map(|k| format!("obstacle {k} is nearer than {lower}"));
         return Some(what.into_iter().collect());
     }
@@ -244,7 +244,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
         if length < 0.0 {
             return Some(vec!["a length that is negative".into()]);
         }
-        let square = length.is_finite().then(|| squared(length));
+        let square = length.is_finite().then(|| exact_square(length));
         let named = |list: &str| -> Option<Vec<usize>> {
             let index = |entry: &Value| entry.get(0).unwrap_or(entry).as_u64().map(|k| k as usize);
             of.get(list)?.as_array()?.iter().map(index).collect()
@@ -274,7 +274,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
         stop.and_then(claim).is_some_and(|of| of.pointer("/convex/overlapping").is_some());
     if lower == 0.0 && overlapping {
         let pair = all.get(stop?)?;
-        let what = (pair.distance() > squared(pair.keep)).then(|| "no overlap".to_owned());
+        let what = (pair.distance() > exact_square(pair.keep)).then(|| "no overlap".to_owned());
         return Some(what.into_iter().collect());
     }
     for (k, pair) in all.iter().enumerate() {
@@ -290,7 +290,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let pair = all.get(stop)?;
     let upper = claim(stop)?.pointer("/convex/blocked/contact/certificate/upper")?.as_f64()?;
     let allowed = pair.keep.max(pair.noises(3.06));
-    let met = pair.least_distance_until(d, upper) <= squared(allowed);
+    let met = pair.least_distance_until(d, upper) <= exact_square(allowed);
     let what = (!met).then(|| format!("obstacle {stop} does not stop the body by {upper}"));
     Some(what.into_iter().collect())
 }
@@ -306,8 +306,8 @@ fn swept_meets(pair: &Bodies, d: DVec3, until: f64, allowed: f64) -> bool {
     swept.extend(pair.points[0].iter().map(|p| p.plus(&by)));
     let square = crate::oracle::distance::distance(&swept, &pair.points[1]).square;
     if pair.keep > 0.0 {
-        return square < squared((pair.keep * (1.0 - f64::EPSILON) - allowed).max(0.0));
+        return square < exact_square((pair.keep * (1.0 - f64::EPSILON) - allowed).max(0.0));
     }
     square.is_zero()
-        && (allowed == 0.0 || depth(&swept, &pair.points[1], pair.noise()) > squared(allowed))
+        && (allowed == 0.0 || depth(&swept, &pair.points[1], pair.noise()) > exact_square(allowed))
 }

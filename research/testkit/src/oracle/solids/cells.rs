@@ -78,7 +78,7 @@ impl Cells {
                 if self.0.contains(&beside) {
                     continue;
                 }
-                let mut square = square(*cell, axis, up);
+                let mut square = square_corners(*cell, axis, up);
                 if map.determinant() < 0.0 {
                     square.reverse();
                 }
@@ -107,7 +107,7 @@ impl Cells {
 }
 
 /// Returns the corners of a square of a cube, counter-clockwise from outside.
-fn square(cell: [i32; 3], axis: usize, up: i32) -> [[i32; 3]; 4] {
+fn square_corners(cell: [i32; 3], axis: usize, up: i32) -> [[i32; 3]; 4] {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(a, b)| {
         let mut corner = cell;
@@ -187,7 +187,8 @@ pub fn motion(
     for p in &moving.0 {
         for q in &fixed.0 {
             let apart = |k: usize| &(&Dyadic::new(f64::from(p[k] - q[k])) * &unit) - &shift[k];
-            let Some([first, last]) = interval([apart(0), apart(1), apart(2)], &way, &unit) else {
+            let Some([first, last]) = overlap_interval([apart(0), apart(1), apart(2)], &way, &unit)
+            else {
                 continue;
             };
             result.overlaps |= first < zero && zero < last;
@@ -207,7 +208,7 @@ pub fn motion(
 
 /// Returns the open interval of `t` with `-unit < apart + t way < unit` in all three coordinates; `None` if it
 /// is empty. The direction is not zero.
-fn interval(apart: [Dyadic; 3], way: &[Dyadic; 3], unit: &Dyadic) -> Option<[Ratio; 2]> {
+fn overlap_interval(apart: [Dyadic; 3], way: &[Dyadic; 3], unit: &Dyadic) -> Option<[Ratio; 2]> {
     let mut range: Option<[Ratio; 2]> = None;
     for (c, d) in apart.into_iter().zip(way) {
         if d.is_zero() {

@@ -36,8 +36,10 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
         against_rule(setting, &a, &b, found, cast.exit())?;
     }
     let core = Cast::new(p.at(*s), q.at(*t), setting.direction).map_err(|e| e.to_string())?;
-    let limits =
-        Limits { noise: noise(setting, &a, &b), dented: NEARLY_FLAT.contains(&setting.family) };
+    let limits = Limits {
+        noise: coordinate_error(setting, &a, &b),
+        dented: NEARLY_FLAT.contains(&setting.family),
+    };
     let range = cast.contact_range().map_err(|e| e.to_string())?;
     against_range(&core.contact_range().map_err(|e| e.to_string())?, &range, &limits)?;
     let first = core.first_contact().map_err(|e| e.to_string())?;
@@ -76,7 +78,7 @@ struct Limits {
 }
 
 /// Returns the rounding error of a coordinate, in multiples of the direction.
-fn noise(setting: &Setting, a: &Solid, b: &Solid) -> f64 {
+fn coordinate_error(setting: &Setting, a: &Solid, b: &Solid) -> f64 {
     let size = size([a.vertices(), b.vertices()], [&setting.moving_pose, &setting.fixed_pose]);
     16.0 * f64::EPSILON * size / setting.direction.length()
 }
@@ -105,7 +107,7 @@ fn against_rule(
         }
     }
     let right = right.stop;
-    let tolerance = AGREEMENT * noise(setting, a, b);
+    let tolerance = AGREEMENT * coordinate_error(setting, a, b);
     let agree = match (found, &right) {
         (Clearance::Free(_), None) => true,
         (Clearance::Blocked { distance, contact }, Some(right)) => {

@@ -102,7 +102,7 @@ impl Judge {
 
     /// Returns whether a facet points along the direction (`Greater`) or against it.
     pub fn facing(&self, triangle: &Triangle) -> Ordering {
-        let along = normal(triangle).dot(&self.direction);
+        let along = facet_normal(triangle).dot(&self.direction);
         if along.is_positive() {
             Ordering::Greater
         } else if along.is_negative() {
@@ -121,7 +121,7 @@ impl Judge {
     }
 }
 
-fn normal([a, b, c]: &Triangle) -> Vector {
+fn facet_normal([a, b, c]: &Triangle) -> Vector {
     b.minus(a).cross(&c.minus(a))
 }
 
@@ -147,7 +147,7 @@ impl Plane {
     fn gaps(&self, f: &Triangle, g: &Triangle, direction: &Vector) -> Option<[Ratio; 2]> {
         let counter_clockwise = |t: &Triangle| {
             let mut corners: Vec<Point> = t.iter().map(|p| self.shadow(p)).collect();
-            if turn(&corners[0], &corners[1], &corners[2]).is_negative() {
+            if orientation(&corners[0], &corners[1], &corners[2]).is_negative() {
                 corners.reverse();
             }
             corners
@@ -155,10 +155,11 @@ impl Plane {
         let clip = counter_clockwise(g);
         let mut common = counter_clockwise(f);
         for k in 0..3 {
-            common = cut(&common, &clip[k], &clip[(k + 1) % 3]);
+            common = cut_polygon(&common, &clip[k], &clip[(k + 1) % 3]);
         }
         let n = common.len();
-        let has_area = (2..n).any(|k| turn(&common[0], &common[k - 1], &common[k]).is_positive());
+        let has_area =
+            (2..n).any(|k| orientation(&common[0], &common[k - 1], &common[k]).is_positive());
         if !has_area {
             return None;
         }
@@ -186,7 +187,7 @@ impl Plane {
         let mut base = [Dyadic::ZERO, Dyadic::ZERO, Dyadic::ZERO];
         base[(k + 1) % 3] = shadow[0].clone();
         base[(k + 2) % 3] = shadow[1].clone();
-        let n = normal(triangle);
+        let n = facet_normal(triangle);
         let scale = &shadow[2] * &self.direction.0[k];
         // Solves n . (base / scale + t d - a) = 0.
         let above = &(&n.dot(&triangle[0]) * &scale) - &n.dot(&Vector(base));
@@ -195,7 +196,7 @@ impl Plane {
 }
 
 /// Returns `det[b - a, c - a]` times the (positive) last coordinates.
-fn turn(a: &Point, b: &Point, c: &Point) -> Dyadic {
+fn orientation(a: &Point, b: &Point, c: &Point) -> Dyadic {
     let minor = |p: &Point, q: &Point, i: usize, j: usize| &(&p[i] * &q[j]) - &(&p[j] * &q[i]);
     let x = &a[0] * &minor(b, c, 1, 2);
     let y = &a[1] * &minor(b, c, 2, 0);
@@ -204,11 +205,11 @@ fn turn(a: &Point, b: &Point, c: &Point) -> Dyadic {
 }
 
 /// Returns the part of a convex polygon to the left of a line (Sutherland and Hodgman).
-fn cut(polygon: &[Point], a: &Point, b: &Point) -> Vec<Point> {
+fn cut_polygon(polygon: &[Point], a: &Point, b: &Point) -> Vec<Point> {
     let mut kept = Vec::new();
     for (k, p) in polygon.iter().enumerate() {
         let q = &polygon[(k + 1) % polygon.len()];
-        let (s, t) = (turn(a, b, p), turn(a, b, q));
+        let (s, t) = (orientation(a, b, p), orientation(a, b, q));
         if !s.is_negative() {
             kept.push(p.clone());
         }

@@ -74,13 +74,13 @@ pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result
     };
     all.verify().map_err(|e| e.to_string())?;
     let mut rng = Random::new(seed ^ 0xf4ee);
-    tally.add("refused", changed(&all, [a.at(p), b.at(q)], &mut rng)?);
+    tally.add("refused", check_changed_proofs(&all, [a.at(p), b.at(q)], &mut rng)?);
     tally.add("cells", changed_cells([a, b], [p, q], (options, count), &mut rng)?);
     let pairs = a.triangles().len() * b.triangles().len();
     if start == StartOverlap::Refuse && tolerance == 0.0 && pairs <= THIN {
         tally.add("thin", thin::judge(&all, [a.at(p), b.at(q)])?);
     }
-    along(&all, [a.at(p), b.at(q)], count, &mut rng, tally)?;
+    compare_along(&all, [a.at(p), b.at(q)], count, &mut rng, tally)?;
     if seed % 4 == 2 {
         tally.add("compared", alike::turned(&all, &bodies, &mut rng)?);
     }
@@ -93,7 +93,7 @@ pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result
 }
 
 /// Compares the answers along `count` directions with casts and with rational arithmetic.
-fn along(
+fn compare_along(
     all: &FreeDirections,
     bodies: [Placed<'_, Solid>; 2],
     count: u64,
@@ -191,7 +191,7 @@ fn is_free_along([moving, fixed]: &[Vec<Triangle>; 2], judge: &Judge) -> bool {
     !moving.iter().any(blocks)
 }
 
-fn any(rng: &mut Random) -> DVec3 {
+fn any_direction(rng: &mut Random) -> DVec3 {
     DVec3::from([0; 3].map(|_| rng.range(-1.0, 1.0)))
 }
 
@@ -199,8 +199,8 @@ fn any(rng: &mut Random) -> DVec3 {
 fn direction(all: &FreeDirections, rng: &mut Random) -> DVec3 {
     let d = match rng.int(0, 5) {
         0 => rng.grid(-2, 2),
-        1 => rng.grid(-2, 2) + any(rng) * 1e-9,
-        2 => any(rng),
+        1 => rng.grid(-2, 2) + any_direction(rng) * 1e-9,
+        2 => any_direction(rng),
         kind => {
             let cells = all.cells().count();
             let corners = all.cells().nth(rng.int(0, cells as i64 - 1) as usize).map(|c| c.corners);
@@ -214,7 +214,7 @@ fn direction(all: &FreeDirections, rng: &mut Random) -> DVec3 {
 }
 
 /// Checks that proofs with a different facet in one cell are rejected, or make the same statement.
-fn changed(
+fn check_changed_proofs(
     all: &FreeDirections,
     bodies: [Placed<'_, Solid>; 2],
     rng: &mut Random,

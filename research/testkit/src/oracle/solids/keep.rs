@@ -104,7 +104,7 @@ impl<'a> Judge<'a> {
     fn kept(&self, t: f64) -> Result<(), String> {
         let least = (self.gap - GRAZE * self.noise).max(0.0);
         let found = self.at(t);
-        let is_kept = found >= square(least);
+        let is_kept = found >= exact_square(least);
         is_kept.then_some(()).ok_or_else(|| format!("{:e} apart after {t:e}", found.sqrt_to_f64()))
     }
 
@@ -119,7 +119,7 @@ impl<'a> Judge<'a> {
         let seen = match &clearance {
             Clearance::Overlapping(_) => {
                 let nested = cast.keeping(0.0).is_ok_and(|plain| plain.overlaps());
-                let nearer = self.at(0.0) < square(self.gap) || nested;
+                let nearer = self.at(0.0) < exact_square(self.gap) || nested;
                 return nearer.then_some(Seen::Nearer).ok_or_else(|| "not nearer".into());
             }
             Clearance::Free(free) => {
@@ -134,7 +134,7 @@ impl<'a> Judge<'a> {
             Clearance::Blocked { distance, contact } => {
                 self.on_the_way(*distance)?;
                 let upper = contact.translation.upper;
-                if self.at(upper) > square(self.gap) && upper > 0.0 {
+                if self.at(upper) > exact_square(self.gap) && upper > 0.0 {
                     return Err(format!("not as near after {upper:e}: {contact:?}"));
                 }
                 let apart = (contact.point_on_fixed
@@ -223,6 +223,6 @@ impl<'a> Judge<'a> {
     }
 }
 
-fn square(x: f64) -> Ratio {
+fn exact_square(x: f64) -> Ratio {
     Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }

@@ -59,7 +59,7 @@ impl Setting {
     /// A message if the family is unknown, or the library rejects a body.
     pub fn draw(family: &str, seed: u64) -> Result<Option<Self>, String> {
         let random = &mut Random::stream(seed, &[family.len() as u64, 0xd157]);
-        let Some(drawn) = drawn(family, seed, random)? else { return Ok(None) };
+        let Some(drawn) = draw_setting(family, seed, random)? else { return Ok(None) };
         drawn.displaced(random).map(Some)
     }
 
@@ -74,7 +74,7 @@ impl Setting {
         };
         let way = if random.one_in(2) { random.pick(&DVec3::AXES) } else { random.direction() };
         let way = if random.one_in(2) { way } else { -way };
-        self.poses[0] = moved(&self.poses[0], way * by)?;
+        self.poses[0] = translated_pose(&self.poses[0], way * by)?;
         if random.one_in(4) {
             self.brought_near(size * random.pick(&little))?;
         }
@@ -85,7 +85,7 @@ impl Setting {
     fn brought_near(&mut self, gap: f64) -> Result<(), String> {
         let found = self.pair()?.distance().map_err(|e| e.to_string())?;
         if let Some(normal) = found.normal {
-            self.poses[0] = moved(&self.poses[0], normal * (found.lower - gap))?;
+            self.poses[0] = translated_pose(&self.poses[0], normal * (found.lower - gap))?;
         }
         Ok(())
     }
@@ -118,9 +118,9 @@ impl Setting {
         let say = |what: &str| format!("{what}: {found:?}, not {}", right.sqrt_to_f64());
         pair.verify(&proof).map_err(|e| say(&e.to_string()))?;
         for distance in [&found, &plain] {
-            enclosed(distance, &right, noise).map_err(say)?;
+            check_bounds(distance, &right, noise).map_err(say)?;
         }
-        points(&found.near, &placed).map_err(say)?;
+        check_points(&found.near, &placed).map_err(say)?;
         if found.lower > 0.0 && placed[0].len() * placed[1].len() <= MOST_PAIRS {
             let claims: Vec<Claim<Apart>> =
                 proof.cover.claims(&pair).ok_or("the cover does not fit")?;
@@ -128,7 +128,7 @@ impl Setting {
         }
         let length = right.sqrt_to_f64();
         for length in [0.0, 0.5 * length, length, 1.5 * length, length + 8.0 * noise] {
-            within(&pair, length, &right).map_err(say)?;
+            check_within(&pair, length, &right).map_err(say)?;
         }
         let size = noise / (16.0 * f64::EPSILON);
         Ok(match (inside, right.is_zero()) {
@@ -165,13 +165,13 @@ impl Setting {
     }
 }
 
-fn moved(pose: &Pose, by: DVec3) -> Result<Pose, String> {
+fn translated_pose(pose: &Pose, by: DVec3) -> Result<Pose, String> {
     // Coordinates below the range of translations become zero.
     let at = (pose.translation() + by).to_array().map(|x| if x.abs() < 1e-60 { 0.0 } else { x });
     Pose::from_matrix(pose.matrix(), DVec3::from_array(at)).map_err(|e| e.to_string())
 }
 
-fn drawn(family: &str, seed: u64, random: &mut Random) -> Result<Option<Setting>, String> {
+fn draw_setting(family: &str, seed: u64, random: &mut Random) -> Result<Option<Setting>, String> {
     let made = |(vertices, facets): &(Vec<DVec3>, Vec<Vec<u32>>)| {
         Solid::from_mesh(vertices, facets).map_err(|e| e.to_string())
     };
@@ -193,7 +193,7 @@ fn drawn(family: &str, seed: u64, random: &mut Random) -> Result<Option<Setting>
     if !MESHES.contains(&family) {
         return Err(format!("no such family: {family}"));
     }
-    let solids = [mesh(family, random), mesh(family, random)]
+    let solids = [draw_mesh(family, random), draw_mesh(family, random)]
         .map(|mesh| Solid::from_open_mesh(&mesh.vertices, &mesh.faces).map_err(|e| e.to_string()));
     let [a, b] = solids;
     let mut pose = |near: f64| {
@@ -206,7 +206,7 @@ fn drawn(family: &str, seed: u64, random: &mut Random) -> Result<Option<Setting>
     Ok(Some(Setting { solids: [a?, b?], poses }))
 }
 
-fn mesh(family: &str, random: &mut Random) -> Mesh {
+fn draw_mesh(family: &str, random: &mut Random) -> Mesh {
     let ball = |random: &mut Random| bumpy_ball(random.pick(&[12, 48, 108]));
     let thin = |random: &mut Random| {
         let thin = 10.0_f64.powf(random.range(-13.0, -1.0));
@@ -276,7 +276,7 @@ pub fn surfaces([moving, fixed]: &[Vec<Triangle>; 2]) -> Ratio {
 fn holds(body: &[Triangle], point: &Vector) -> bool {
     for way in [[3.0, 5.0, 7.0], [-11.0, 2.0, 13.0], [17.0, -19.0, 3.0], [1.0, 23.0, -29.0]] {
         let way = Vector::new(DVec3::from_array(way));
-        let crossings: Option<i32> = body.iter().map(|t| crossing(t, point, &way)).sum();
+        let crossings: Option<i32> = body.iter().map(|t| ray_crossing(t, point, &way)).sum();
         if let Some(winding) = crossings {
             return winding > 0;
         }
@@ -287,7 +287,7 @@ fn holds(body: &[Triangle], point: &Vector) -> bool {
 
 /// Returns 1 if a ray leaves through a facet, -1 if it enters, and 0 if it misses the facet; `None` if it
 /// passes an edge.
-fn crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
+fn ray_crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
     let [a, b, c] = triangle.each_ref().map(|v| v.minus(point));
     let turns = [(&a, &b), (&b, &c), (&c, &a)].map(|(u, v)| u.cross(v).dot(way));
     if turns.iter().any(Dyadic::is_zero) {
@@ -309,7 +309,7 @@ fn crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
 }
 
 /// Checks that the bounds hold and are close enough.
-fn enclosed(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'static str> {
+fn check_bounds(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'static str> {
     let square = |x: f64| Ratio::from_f64(x).times(&Ratio::from_f64(x));
     if found.lower < 0.0 || square(found.lower) > *right {
         return Err("lower");
@@ -327,7 +327,7 @@ fn enclosed(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'
 }
 
 /// Checks that the points are at most as far apart as stated.
-fn points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static str> {
+fn check_points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static str> {
     let SolidNear::Points { triangles, weights, distance } = near else { return Ok(()) };
     let mean = |k: usize| {
         let corners = &placed[k][triangles[k] as usize];
@@ -344,7 +344,7 @@ fn points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static 
     if square <= claimed.times(&claimed) { Ok(()) } else { Err("points") }
 }
 
-fn within(pair: &Pair<Solid>, length: f64, right: &Ratio) -> Result<(), &'static str> {
+fn check_within(pair: &Pair<Solid>, length: f64, right: &Ratio) -> Result<(), &'static str> {
     let square = Ratio::from_f64(length).times(&Ratio::from_f64(length));
     let (said, proof) = pair.certified_within(length).map_err(|_| "within")?;
     let holds = |gap: f64| proof.is_some_and(|p| p.lower == gap && pair.verify(&p).is_ok());

@@ -69,7 +69,7 @@ impl Setting {
                 direction *= [1.0, 0.25, 3.0][rng.int(0, 2) as usize];
             }
             "sheared" => shear = sheared(rng),
-            "quarter" => turns = [quarter(rng), quarter(rng)],
+            "quarter" => turns = [draw_axis_rotation(rng), draw_axis_rotation(rng)],
             "rotated" => {
                 shear = if rng.one_in(2) { sheared(rng) } else { shear };
                 rotation = any_rotation(rng);
@@ -79,7 +79,7 @@ impl Setting {
                 translations = translations.map(|t| if zero { DVec3::ZERO } else { map * t });
                 direction = map * direction;
                 if zero {
-                    cells[1] = displaced(&cells[1], rng.grid(-2, 2));
+                    cells[1] = displaced_cells(&cells[1], rng.grid(-2, 2));
                 }
             }
             "mould" => {
@@ -226,7 +226,7 @@ pub(super) fn sheared(rng: &mut Random) -> DMat3 {
 }
 
 /// Draws a rotation that permutes axes.
-fn quarter(rng: &mut Random) -> DMat3 {
+fn draw_axis_rotation(rng: &mut Random) -> DMat3 {
     loop {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
         let pick = |rng: &mut Random| {
@@ -249,7 +249,7 @@ pub(super) fn any_rotation(rng: &mut Random) -> DQuat {
     }
 }
 
-fn displaced(cells: &Cells, by: DVec3) -> Cells {
+fn displaced_cells(cells: &Cells, by: DVec3) -> Cells {
     let by = by.to_array().map(|c| c as i32);
     Cells(cells.0.iter().map(|c| [0, 1, 2].map(|k| c[k] + by[k])).collect())
 }

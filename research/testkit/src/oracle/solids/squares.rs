@@ -50,7 +50,7 @@ impl Squares {
     /// Draws a connected surface of at most `count` squares, near the origin.
     pub fn random(count: usize, rng: &mut Random) -> Self {
         let axis = rng.int(0, 2) as usize;
-        let mut squares = Self(vec![corners([0; 3], axis)]);
+        let mut squares = Self(vec![square_corners([0; 3], axis)]);
         for _ in 0..4 * count {
             if squares.0.len() >= count {
                 break;
@@ -63,7 +63,7 @@ impl Squares {
             let across = (along + rng.int(1, 2) as usize) % 3;
             let mut at = [0, 1, 2].map(|a| side[0][a].min(side[1][a]));
             at[across] -= i32::from(rng.one_in(2));
-            let mut new = corners(at, 3 - along - across);
+            let mut new = square_corners(at, 3 - along - across);
             let runs = |q: &[[i32; 3]; 4]| (0..4).any(|j| [q[j], q[(j + 1) % 4]] == side);
             if runs(&new) {
                 new.reverse();
@@ -94,7 +94,7 @@ impl Squares {
     /// opposite direction.
     fn admits(&self, new: &[[i32; 3]; 4]) -> bool {
         let edges = |q: &[[i32; 3]; 4]| [0, 1, 2, 3].map(|k| [q[k], q[(k + 1) % 4]]);
-        let same = |q: &[[i32; 3]; 4]| piece(q) == piece(new);
+        let same = |q: &[[i32; 3]; 4]| piece_from_corners(q) == piece_from_corners(new);
         let old: Vec<_> = self.0.iter().flat_map(edges).collect();
         !self.0.iter().any(same)
             && edges(new).iter().all(|&[p, q]| {
@@ -113,7 +113,7 @@ impl Squares {
                 let [a, b] = [q[k], q[(k + 1) % 4]];
                 let at = [0, 1, 2].map(|i| a[i].min(b[i]));
                 let open = [0, 1, 2].map(|i| i32::from(a[i] != b[i]));
-                around.entry(Piece { at, open }).or_default().push(piece(q));
+                around.entry(Piece { at, open }).or_default().push(piece_from_corners(q));
             }
         }
         let straight = |(edge, squares): (Piece, Vec<Piece>)| {
@@ -140,14 +140,14 @@ impl Squares {
     }
 }
 
-fn piece(corners: &[[i32; 3]; 4]) -> Piece {
+fn piece_from_corners(corners: &[[i32; 3]; 4]) -> Piece {
     let at = [0, 1, 2].map(|k| corners.iter().map(|c| c[k]).min().unwrap_or(0));
     let high = [0, 1, 2].map(|k| corners.iter().map(|c| c[k]).max().unwrap_or(0));
     Piece { at, open: [0, 1, 2].map(|k| high[k] - at[k]) }
 }
 
 /// Returns the corners of a square perpendicular to an axis.
-fn corners(at: [i32; 3], axis: usize) -> [[i32; 3]; 4] {
+fn square_corners(at: [i32; 3], axis: usize) -> [[i32; 3]; 4] {
     [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(a, b)| {
         let mut corner = at;
         corner[(axis + 1) % 3] += a;
@@ -203,7 +203,7 @@ impl Mixed {
     }
 
     fn sheets(&self) -> Vec<Piece> {
-        self.squares.0.iter().map(piece).collect()
+        self.squares.0.iter().map(piece_from_corners).collect()
     }
 }
 
@@ -287,7 +287,7 @@ impl Crossing {
     /// unless that is the start.
     fn through(&mut self, grid: &InGrid, p: &Piece, q: &Piece) {
         let zero = Ratio::from_f64(0.0);
-        match times(grid, p, q) {
+        match meeting_times(grid, p, q) {
             Some(Times::Between(first, last)) => {
                 self.overlaps |= first < zero && zero < last;
                 self.ahead(first, last);
@@ -299,7 +299,7 @@ impl Crossing {
 
     /// Adds squares of parallel planes.
     fn upon(&mut self, grid: &InGrid, p: &Piece, q: &Piece) {
-        match times(grid, p, q) {
+        match meeting_times(grid, p, q) {
             Some(Times::Between(first, last)) => self.ahead(first, last),
             Some(Times::At(t)) if !t.is_negative() => self.stop_at(t),
             _ => (),
@@ -325,7 +325,7 @@ impl Crossing {
 
 /// Returns the `t` at which two pieces meet. `None` also for pieces that meet always, because they do not move
 /// along any axis in which they are open.
-fn times(grid: &InGrid, p: &Piece, q: &Piece) -> Option<Times> {
+fn meeting_times(grid: &InGrid, p: &Piece, q: &Piece) -> Option<Times> {
     let InGrid { shift, way, unit } = grid;
     let whole = |n: i32| &Dyadic::new(f64::from(n)) * unit;
     let mut open: Option<[Ratio; 2]> = None;

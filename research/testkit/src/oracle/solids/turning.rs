@@ -71,17 +71,17 @@ impl Turning {
     pub fn draw(family: &str, seed: u64) -> Result<Option<Self>, String> {
         let random = &mut Random::stream(seed, &[family.len() as u64, 0x7047]);
         match family {
-            "hulls" => hulls(random).map(Some),
-            "pins" => pins(random).map(Some),
-            "threads" => threads(random).map(Some),
+            "hulls" => draw_hulls(random).map(Some),
+            "pins" => draw_pin_in_hole(random).map(Some),
+            "threads" => draw_bolt_in_nut(random).map(Some),
             _ => {
                 let Some(setting) = nearest::Setting::draw(family, seed)? else { return Ok(None) };
                 let nearest::Setting { solids, poses } = setting;
                 let size = solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
                 let way = poses[1].translation() - poses[0].translation();
-                let moving = motion(poses[0], way, size, random)?;
+                let moving = draw_motion(poses[0], way, size, random)?;
                 let fixed = if random.one_in(3) {
-                    motion(poses[1], -way, size, random)?
+                    draw_motion(poses[1], -way, size, random)?
                 } else {
                     Motion::still(poses[1])
                 };
@@ -108,21 +108,24 @@ impl Turning {
         let plain = cast.first_contact().map_err(|e| e.to_string())?;
         let outcome = cast.certified_first_contact().map_err(|e| e.to_string())?;
         let [lower, upper] = cast.verify(outcome.proof()).map_err(|e| e.to_string())?;
-        let claimed = bounds(&outcome);
+        let claimed = time_bounds(&outcome);
         if claimed != [lower, upper] {
             return Err(format!("proven {lower} to {upper}, claimed {claimed:?}"));
         }
-        agree(bounds(&plain), claimed, 0.0).map_err(|e| format!("with its proof: {e}"))?;
+        check_agreement(time_bounds(&plain), claimed, 0.0)
+            .map_err(|e| format!("with its proof: {e}"))?;
         let swapped = self.cast(true)?.ok_or("swapped, nothing is left")?;
         let swapped = swapped.first_contact().map_err(|e| e.to_string())?;
-        agree(bounds(&swapped), claimed, 1e-9).map_err(|e| format!("swapped: {e}"))?;
+        check_agreement(time_bounds(&swapped), claimed, 1e-9)
+            .map_err(|e| format!("swapped: {e}"))?;
         self.on_the_way(&outcome, [lower, upper])?;
         self.how_far(&cast, &plain)?;
         if let Some([p, q]) = &self.convex {
             let [a, b] = &self.motions;
             let cast = MotionCast::new(p.along(a), q.along(b)).map_err(|e| e.to_string())?;
             let found = cast.first_contact().map_err(|e| e.to_string())?;
-            agree(bounds(&found), claimed, AGREEMENT).map_err(|e| format!("convex: {e}"))?;
+            check_agreement(time_bounds(&found), claimed, AGREEMENT)
+                .map_err(|e| format!("convex: {e}"))?;
         }
         Ok(Some(match outcome {
             MotionOutcome::Overlapping(_) => Seen::Overlapping,
@@ -147,7 +150,7 @@ impl Turning {
             _ => return object("not what the first contact says"),
         };
         let (place, shrunk) = (contact.time, [contact.shrunk.lower, contact.shrunk.upper]);
-        if shrunk != bounds(first) {
+        if shrunk != time_bounds(first) {
             return object("the shrunk bodies meet at another time");
         }
         let is_bound = time == place.lower.min(shrunk[0]) && time >= 0.0;
@@ -163,7 +166,7 @@ impl Turning {
         let convex = MotionCast::new(p.along(a), q.along(b)).and_then(|cast| cast.clearance());
         match convex.map_err(|e| format!("clearance, convex: {e}"))? {
             MotionClearance::Blocked { contact, .. } => {
-                agree(contact.time.bounds(), place.bounds(), AGREEMENT)
+                check_agreement(contact.time.bounds(), place.bounds(), AGREEMENT)
                     .map_err(|e| format!("clearance, convex: {e}"))
             }
             // Solids are slightly smaller.
@@ -216,7 +219,7 @@ impl Turning {
 }
 
 /// Returns the bounds of an answer's time.
-fn bounds<P>(outcome: &MotionOutcome<P>) -> [f64; 2] {
+fn time_bounds<P>(outcome: &MotionOutcome<P>) -> [f64; 2] {
     match outcome {
         MotionOutcome::Contact(of)
         | MotionOutcome::Grazing(of)
@@ -226,7 +229,7 @@ fn bounds<P>(outcome: &MotionOutcome<P>) -> [f64; 2] {
 }
 
 /// Checks whether two enclosures of a time have a common point, up to a tolerance.
-fn agree(one: [f64; 2], other: [f64; 2], within: f64) -> Result<(), String> {
+fn check_agreement(one: [f64; 2], other: [f64; 2], within: f64) -> Result<(), String> {
     let apart = one[0] > other[1] + within || other[0] > one[1] + within;
     // Only one of both may be free.
     let free = |bounds: [f64; 2]| bounds == [1.0, f64::INFINITY];
@@ -239,7 +242,7 @@ fn agree(one: [f64; 2], other: [f64; 2], within: f64) -> Result<(), String> {
 
 /// Draws a rotation, a screw motion, a translation, a throw or a motion through poses, of a body of about this
 /// size.
-fn motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result<Motion, String> {
+fn draw_motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result<Motion, String> {
     let at = pose.translation();
     let axis = if random.one_in(2) { random.pick(&DVec3::AXES) } else { random.direction() };
     let point = if random.one_in(3) { at } else { at + random.vector() * size };
@@ -265,7 +268,7 @@ fn motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result<Moti
 }
 
 /// Draws convex bodies that pass each other.
-fn hulls(random: &mut Random) -> Result<Turning, String> {
+fn draw_hulls(random: &mut Random) -> Result<Turning, String> {
     let body = |random: &mut Random| {
         let n = random.pick(&[4, 8, 16, 40]);
         ConvexPolyhedron::from_points(&random_hull(n, random).vertices).map_err(|e| e.to_string())
@@ -278,7 +281,8 @@ fn hulls(random: &mut Random) -> Result<Turning, String> {
     let moving = Motion::thrown(pose, from, way, spin).map_err(|e| e.to_string())?;
     let still =
         Motion::still(Pose::new(random.rotation(), DVec3::ZERO).map_err(|e| e.to_string())?);
-    let fixed = if random.one_in(3) { motion(Pose::IDENTITY, from, 2.0, random)? } else { still };
+    let fixed =
+        if random.one_in(3) { draw_motion(Pose::IDENTITY, from, 2.0, random)? } else { still };
     let solid = |body: &ConvexPolyhedron| Solid::from_convex(body).map_err(|e| e.to_string());
     let solids = [solid(&convex[0])?, solid(&convex[1])?];
     Ok(Turning {
@@ -291,7 +295,7 @@ fn hulls(random: &mut Random) -> Result<Turning, String> {
 }
 
 /// Draws a pin that rotates in a hole, and may leave it or tip over.
-fn pins(random: &mut Random) -> Result<Turning, String> {
+fn draw_pin_in_hole(random: &mut Random) -> Result<Turning, String> {
     let sides = random.int(3, 24) as usize;
     let hole = random.pick(&[1.0, 1.01, 1.1, 1.5]);
     let of = |mesh: crate::shapes::Mesh| {
@@ -312,7 +316,7 @@ fn pins(random: &mut Random) -> Result<Turning, String> {
 }
 
 /// Draws a bolt in a nut, with the matching or a different pitch.
-fn threads(random: &mut Random) -> Result<Turning, String> {
+fn draw_bolt_in_nut(random: &mut Random) -> Result<Turning, String> {
     let sides = random.int(6, 14) as usize;
     let of = |mesh: crate::shapes::Mesh| {
         Solid::from_mesh(&mesh.vertices, &mesh.faces).map_err(|e| e.to_string())

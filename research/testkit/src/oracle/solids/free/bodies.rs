@@ -25,8 +25,8 @@ pub(super) fn draw(family: &str, seed: u64) -> Result<Option<Bodies>, String> {
     let tied = rng.one_in(2);
     let points = match family {
         "boxes" => [0, 1].map(|_| cuboid(tied, rng)),
-        "tetrahedra" => [0, 1].map(|_| cloud(4, tied, rng)),
-        "hulls" => [0, 1].map(|_| cloud(rng.int(5, 52) as usize, tied, rng)),
+        "tetrahedra" => [0, 1].map(|_| draw_cloud(4, tied, rng)),
+        "hulls" => [0, 1].map(|_| draw_cloud(rng.int(5, 52) as usize, tied, rng)),
         _ => return of_cubes(family, seed),
     };
     let solids = [solid(&points[0])?, solid(&points[1])?];
@@ -64,7 +64,7 @@ fn cuboid(tied: bool, rng: &mut Random) -> Vec<DVec3> {
     (0..8).map(|k| turn * (size * corner(k))).collect()
 }
 
-fn cloud(count: usize, tied: bool, rng: &mut Random) -> Vec<DVec3> {
+fn draw_cloud(count: usize, tied: bool, rng: &mut Random) -> Vec<DVec3> {
     // On a sphere, so that many points are vertices, or in a grid.
     let point = |_| if tied { rng.grid(-2, 2) } else { rng.direction() };
     (0..count).map(point).collect()

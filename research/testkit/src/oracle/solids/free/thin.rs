@@ -50,13 +50,13 @@ pub fn judge(all: &FreeDirections, bodies: [Placed<'_, Solid>; 2]) -> Result<u64
 }
 
 /// Returns `d` displaced by a very small multiple of a vector.
-fn beside(d: &Vector, by: &Vector) -> Vector {
+fn displaced_slightly(d: &Vector, by: &Vector) -> Vector {
     // Both vectors have about the same length.
     let factor = (by.to_f64().length() / d.to_f64().length()).log2().round() as i32 + 40;
     d.times(&Dyadic::new(2.0_f64.powi(factor))).plus(by)
 }
 
-fn negative(v: &Vector) -> Vector {
+fn negated(v: &Vector) -> Vector {
     Vector::new(DVec3::ZERO).minus(v)
 }
 
@@ -104,8 +104,8 @@ impl World {
         if !self.is_free(&d) {
             return Err(format!("{point:?} is blocked"));
         }
-        let around = [a.clone(), negative(&a), b.clone(), negative(&b), a.plus(&b), a.minus(&b)];
-        match around.iter().find(|by| self.is_free(&beside(&d, by))) {
+        let around = [a.clone(), negated(&a), b.clone(), negated(&b), a.plus(&b), a.minus(&b)];
+        match around.iter().find(|by| self.is_free(&displaced_slightly(&d, by))) {
             Some(by) => Err(format!("{point:?} is free beside, too: by {}", by.to_f64())),
             None => Ok(()),
         }
@@ -142,7 +142,7 @@ impl World {
                 continue;
             }
             within += 1;
-            let sides = [beside(&d, &n), beside(&d, &negative(&n))];
+            let sides = [displaced_slightly(&d, &n), displaced_slightly(&d, &negated(&n))];
             if !self.is_free(&d) {
                 return Err(format!("{arc:?} is blocked along {}", d.to_f64()));
             }
@@ -156,9 +156,9 @@ impl World {
     /// Checks that an end of an arc is free, and that the circle beyond it is blocked or is the border of a
     /// region.
     fn end(&self, arc: &FreeArc, [e, n]: [&Vector; 2], inwards: &Vector) -> Result<(), String> {
-        let beyond = beside(e, &negative(inwards));
-        let sides = [beside(&beyond, n), beside(&beyond, &negative(n))];
-        if !self.is_free(e) || !self.is_free(&beside(e, inwards)) {
+        let beyond = displaced_slightly(e, &negated(inwards));
+        let sides = [displaced_slightly(&beyond, n), displaced_slightly(&beyond, &negated(n))];
+        if !self.is_free(e) || !self.is_free(&displaced_slightly(e, inwards)) {
             return Err(format!("{arc:?} is blocked at its end {}", e.to_f64()));
         }
         if self.is_free(&beyond) && !sides.iter().any(|side| self.is_free(side)) {
@@ -177,7 +177,7 @@ impl World {
         let (u, v) = d.any_orthonormal_pair();
         let ways = [-2.0, -1.0, -0.3, 0.0, 0.3, 1.0, 2.0].map(|t| [u + v * t, v + u * t]);
         let around = ways.into_iter().flatten().flat_map(|way| [way, -way]);
-        let mut around = around.map(|way| beside(&exactly, &Vector::new(way)));
+        let mut around = around.map(|way| displaced_slightly(&exactly, &Vector::new(way)));
         let told = all.points().iter().any(|point| all.is_at(point, d) == Ok(true));
         let near = all.arcs().iter().any(|arc| all.is_on(arc, d) == Ok(true));
         if !told && !near && !around.any(|d| self.is_free(&d)) {

@@ -131,7 +131,7 @@ fn rows_are_assigned_by_name_or_by_order() {
     assert!(error_text("0,0,0\n", &wrong).contains("joint wrist is not an independent joint"));
     assert!(
         error_text("time,shoulder,elbow,reach\n1,0,0,0\n1,0,0,0\n", &none)
-            .contains("not after the one before")
+            .contains("times must be finite and increase")
     );
 }
 

@@ -1,11 +1,11 @@
-//! When bodies that turn first meet.
+//! Answers about the first contact of bodies in motion.
 
 use glam::DVec3;
 
 use super::proof::MotionProof;
 use colltrans_convex::body::{Features, Pose};
 
-/// When the bodies first meet. Of solids a proof is made when it is asked for: till then it is `()`.
+/// The first contact of two bodies in motion. For solids, `P` is `()` unless a proof was requested.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -14,72 +14,72 @@ use colltrans_convex::body::{Features, Pose};
 )]
 #[non_exhaustive]
 pub enum MotionOutcome<P = MotionProof, C = MotionContact<P>> {
-    /// They do, at a time between two bounds.
+    /// The bodies meet, at a time between two bounds.
     Contact(C),
-    /// They come nearer to each other than rounding can tell. Proven is that they do not meet before; not
-    /// that they meet, and nothing of later times.
+    /// The bodies come nearer than rounding errors can decide. They do not meet before [`MotionContact::lower`]. A
+    /// contact is not proven, and later times are not decided.
     Grazing(C),
-    /// They do not: proven of the whole motion.
+    /// The bodies do not meet during the whole motion.
     Free(MotionFree<P>),
-    /// They overlap at time 0.
+    /// The bodies overlap at time 0.
     Overlapping(C),
-    /// The search took its maximum number of steps. Proven is that they do not meet before [`MotionContact::lower`];
-    /// whether they do later is open.
+    /// The search took its maximum number of steps. The bodies do not meet before [`MotionContact::lower`]. Later times
+    /// are not decided.
     Undecided(C),
 }
 
-/// A first contact, or what may be one.
+/// A first contact, or a possible one.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionContact<P = MotionProof> {
-    /// Up to this time the bodies do not meet; 0 if they overlap at the start.
+    /// Time up to which the bodies do not meet; 0 if they overlap at the start.
     pub lower: f64,
-    /// At this time they do; infinite (`null` in JSON) where that is not proven.
+    /// Time at which the bodies meet; infinity (`null` in JSON) if a contact is not proven.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub upper: f64,
-    /// The poses at the lower bound, to rounding.
+    /// Poses of both bodies at the lower bound, rounded.
     pub poses: [Pose; 2],
-    /// The points of both bodies that are nearest to each other then, in the world, rounded; none where the distance
-    /// has no answer.
+    /// Nearest points of both bodies at the lower bound, in the world, rounded. `None` if no distance was computed.
     pub points: Option<[DVec3; 2]>,
-    /// Unit normal in the world, from the moving body to the fixed one, at that time.
+    /// Unit normal at the lower bound, in the world, from the moving body to the fixed one. `None` if it has no
+    /// direction.
     pub normal: Option<DVec3>,
-    /// What faces each other across it.
+    /// Features of both bodies that face each other across the normal.
     pub features: Option<Features>,
-    /// What proves the bounds.
+    /// Proof of the bounds.
     pub proof: P,
-    /// How much work it was.
+    /// Work of the search.
     pub steps: MotionSteps,
 }
 
-/// No contact.
+/// The bodies do not meet.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionFree<P = MotionProof> {
-    /// What proves it.
+    /// Proof that the bodies do not meet.
     pub proof: P,
-    /// How much work it was.
+    /// Work of the search.
     pub steps: MotionSteps,
 }
 
-/// How much work an answer was.
+/// Counters of the work of a query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionSteps {
-    /// Times at which the bodies were looked at.
+    /// Number of distance samples and contact tests.
     pub looks: u32,
-    /// Support points asked for by distances then.
+    /// Number of support points computed for distances.
     pub supports: u32,
-    /// Of solids, pairs of nodes of both trees, each in an interval of time.
+    /// For solids, number of pairs of tree nodes, each with a time interval.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "colltrans_kernel::written::is_none")
     )]
     pub nodes: u64,
-    /// Of solids, pairs of facets whose distance was looked at on their way.
+    /// For solids, number of pairs of facets that were sampled.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "colltrans_kernel::written::is_none")
@@ -96,9 +96,9 @@ impl std::ops::AddAssign for MotionSteps {
     }
 }
 
-/// A contact with its proof.
+/// An answer with a proof.
 pub trait Proven<P> {
-    /// Returns the proof, and how much work it was.
+    /// Returns the proof and the work of the search.
     #[doc(hidden)]
     fn proven(&self) -> (&P, MotionSteps);
 }
@@ -119,12 +119,12 @@ impl<P, C: Proven<P>> MotionOutcome<P, C> {
         }
     }
 
-    /// What proves it.
+    /// Returns the proof of the answer.
     pub fn proof(&self) -> &P {
         self.proven().0
     }
 
-    /// How much work it was.
+    /// Returns the work of the search.
     pub fn steps(&self) -> MotionSteps {
         self.proven().1
     }

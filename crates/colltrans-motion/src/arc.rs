@@ -1,47 +1,42 @@
-//! One plane for an interval: each vertex on its arc; or both bodies and the plane carried along.
+//! Bounds for one plane over an interval: fixed, or carried by the moving body.
 //!
-//! Notation. As [`bend`](super::bend). Along a fixed normal `n` a point `z` of a body is at `n.E z`, a
-//! sinusoid of the angle: with `w` where it is at the beginning, `n.w_along + cos n.w_across + sin n.(k x
-//! w)`. The axes drift apart evenly. The least gap over an interval is at least that of both extremes apart:
-//! of the fixed body's lowest point at any time, the moving one's highest, and the axes'.
+//! - *Fixed* plane: the coordinate of each vertex along the normal is a sinusoid of the angle. The bound adds the
+//!   extremes of both bodies and of the vector between the axes.
+//! - *Carried* plane: its normal rotates with the moving body. If both bodies have the same angular velocity, the fixed
+//!   one only translates relative to the moving one. A difference of the angular velocities adds to the bound.
 //!
-//! *Carried* along by the moving body, a plane has the normal `E n`. In the frame that turns by `E`, the moving body
-//! rests. If the fixed body also turns by `E`, it only translates in that frame: by `E' (c + v t) - c`, where `c` is the
-//! vector between points of both axes and `v` the velocity of one relative to the other. Along `n`, the part of `v` along
-//! the axis counts exactly. The parts of `c` and `v` across the axis turn, so they count with the part of `n` across the
-//! axis. If the angular velocities differ, points of the fixed body are elsewhere by at most the difference, times
-//! their distances from the point of the axis.
+//! Derivation: `docs/theory/motion-bounds.md`.
 
 use glam::DVec3;
 
-use super::bend::across;
+use super::curvature::perpendicular_part;
 use super::span::{Instant, Span};
 use colltrans_convex::body::Hull;
 use colltrans_kernel::motion::{Moved, Piece};
 
-/// Sums here are off by less than this share of the sizes.
-const ROUNDED: f64 = 1e-14;
+/// Error bound of the sums in this module, relative to the sizes.
+const SUM_ERROR: f64 = 1e-14;
 
-/// Spins that differ by no more than this share are one.
-const AS_ONE: f64 = 1e-12;
+/// Maximum relative difference of angular velocities that count as equal.
+const SAME_SPIN: f64 = 1e-12;
 
-/// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
-pub(super) fn lost<B: Hull>(
+/// Returns an upper bound of the loss of gap, over an interval, of the plane with a fixed normal.
+pub(super) fn gap_loss<B: Hull>(
     span: &Span<B>,
     ends: [&Instant<[Moved; 2], B>; 2],
     normal: DVec3,
 ) -> f64 {
     let h = ends[1].time - ends[0].time;
-    let drift = normal.dot(span.drift()) * h;
+    let drift = normal.dot(span.relative_velocity()) * h;
     let sizes = (0..2).map(|which| span.piece(which).arm.length() + span.body(which).reach());
-    let size = sizes.sum::<f64>() + span.drift().length() * h;
-    let risen = rise(span, ends, 0, normal) + rise(span, ends, 1, -normal);
-    // What rises is computed of places that may be off at both ends.
-    risen - drift.min(0.0) + 2.0 * span.error + ROUNDED * size
+    let size = sizes.sum::<f64>() + span.relative_velocity().length() * h;
+    let risen = max_rise(span, ends, 0, normal) + max_rise(span, ends, 1, -normal);
+    // The rise is computed from places that have errors at both ends.
+    risen - drift.min(0.0) + 2.0 * span.error + SUM_ERROR * size
 }
 
-/// By how much the highest point of a body along a normal rises within an interval, at most.
-fn rise<B: Hull>(
+/// Returns an upper bound of the rise, within an interval, of the highest point of a body along a normal.
+fn max_rise<B: Hull>(
     span: &Span<B>,
     ends: [&Instant<[Moved; 2], B>; 2],
     which: usize,
@@ -53,15 +48,16 @@ fn rise<B: Hull>(
         return 0.0;
     }
     let moved = ends.map(|end| &end.moved[which]);
-    // More than half a turn has its peak for certain, or is taken to have it.
+    // From nearly half a turn on, the peak is assumed to be inside the interval. This only weakens the bound.
     let around = angle.abs() >= 3.0;
-    let [n, side] = [across(normal, piece.axis), normal.cross(piece.axis) * angle.signum()];
+    let [n, side] =
+        [perpendicular_part(normal, piece.axis), normal.cross(piece.axis) * angle.signum()];
     let along = normal - n;
     let (mut highest, mut before) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     for v in body.corners() {
         let first = moved[0].arm + moved[0].rotation * *v;
         let last = moved[1].arm + moved[1].rotation * *v;
-        // The slopes at both ends tell whether the peak is between them.
+        // The slopes at both ends decide whether the peak is between them.
         let peak = around || (side.dot(first) > 0.0 && side.dot(last) < 0.0);
         let here = normal.dot(first);
         let top = if peak {
@@ -76,30 +72,36 @@ fn rise<B: Hull>(
     highest - before
 }
 
-/// Returns how much of its gap a plane loses at most while the moving body carries it along for a time `h`; `offset` is
-/// the vector from the moving body's axis to the fixed one's when that begins.
-pub(super) fn carried<B: Hull>(span: &Span<B>, offset: DVec3, h: f64, normal: DVec3) -> f64 {
+/// Returns an upper bound of the gap that a plane loses while the moving body carries it for a time `h`. `offset` is
+/// the vector from the axis of the moving body to that of the fixed body at the start.
+pub(super) fn carried_gap_loss<B: Hull>(
+    span: &Span<B>,
+    offset: DVec3,
+    h: f64,
+    normal: DVec3,
+) -> f64 {
     let [p, q] = [span.piece(0), span.piece(1)];
     if p.rate == 0.0 || q.rate == 0.0 {
         return f64::INFINITY;
     }
     let arm = |piece: &Piece| piece.arm.length();
     let size = offset.length() + arm(p) + arm(q);
-    let beside = across(offset, p.axis).length() + 4.0 * span.error + ROUNDED * size;
+    let beside = perpendicular_part(offset, p.axis).length() + 4.0 * span.error + SUM_ERROR * size;
     let swung = (p.rate.abs() * h).min(2.0) * normal.length();
     let spins = q.axis * q.rate - p.axis * p.rate;
-    let other = if spins == DVec3::ZERO { 0.0 } else { spins.length() + ROUNDED * p.rate.abs() };
+    let other = if spins == DVec3::ZERO { 0.0 } else { spins.length() + SUM_ERROR * p.rate.abs() };
     let elsewhere = other * (arm(q) + span.body(1).reach()) * normal.length();
-    let drift = span.drift();
+    let drift = span.relative_velocity();
     let sinking = (-normal.dot(p.axis) * drift.dot(p.axis)).max(0.0);
-    let sideways = across(drift, p.axis).length() * across(normal, p.axis).length();
-    let rounded = ROUNDED * drift.length() * normal.length();
+    let sideways =
+        perpendicular_part(drift, p.axis).length() * perpendicular_part(normal, p.axis).length();
+    let rounded = SUM_ERROR * drift.length() * normal.length();
     (beside * swung + (elsewhere + sinking + sideways + rounded) * h) * (1.0 + 1e-12)
 }
 
-/// Checks whether both bodies have one angular velocity, to rounding.
-pub(super) fn is_one_spin<B: Hull>(span: &Span<B>) -> bool {
+/// Checks whether both bodies have the same angular velocity, up to rounding.
+pub(super) fn has_same_spin<B: Hull>(span: &Span<B>) -> bool {
     let [p, q] = [span.piece(0), span.piece(1)];
     let spins = q.axis * q.rate - p.axis * p.rate;
-    p.rate != 0.0 && spins.length() <= AS_ONE * p.rate.abs()
+    p.rate != 0.0 && spins.length() <= SAME_SPIN * p.rate.abs()
 }

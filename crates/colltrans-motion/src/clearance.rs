@@ -1,28 +1,29 @@
-//! How far along its motion a body can go: three cases, as of a [`Cast`](colltrans_convex::Cast).
+//! How far a body can move along its motion, as [`Cast::clearance`](colltrans_convex::Cast::clearance) does for
+//! translations.
 //!
-//! Bodies are asked as a tolerance leaves them, so that what touches may slide, turn and leave, and is stopped where it
-//! is pushed. That comes after the time at which the same bodies meet *in their true place*, as they are: from the last
-//! time before at which they are seen apart on, that is searched as any contact is.
+//! The bodies are searched with a tolerance. Bodies in contact may then slide, rotate and separate, and they stop where
+//! they would be pushed together. The time at which the nominal bodies meet is earlier. It is searched from the last
+//! sampled time, before this stop, at which they are separated.
 
 use super::answer::{MotionContact, MotionFree, MotionOutcome};
-use super::look::{ConvexLooker, Look, Looker};
 use super::proof::MotionProof;
-use super::search::{Advanced, End, advance};
-use super::span::{Span, spans};
-use super::{MotionCast, check_fine, stalled, usual_tolerance};
+use super::sample::{ConvexSampler, Sample, Sampler};
+use super::search::{SpanEnd, SpanResult, prove_span};
+use super::span::{Span, split_into_spans};
+use super::{MotionCast, check_accuracy, default_tolerance, step_limit_error};
 use colltrans_convex::answer::Bounded;
 use colltrans_convex::body::Hull;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::Overlap;
 
-/// How often the way back to a time at which bodies are apart as they are is doubled.
-const BACK: i32 = 40;
+/// Maximum number of doublings of the step back to a time at which the nominal bodies are separated.
+const MAX_BACK_DOUBLINGS: i32 = 40;
 
-/// The first way back, in parts of what the tolerance has added.
-const FIRST: f64 = 0.125;
+/// First step back, as a share of the time in which the tolerance closes.
+const FIRST_BACK_SHARE: f64 = 0.125;
 
-/// The answer of [`MotionCast::clearance`]: how far along its motion a body can go.
+/// The answer of [`MotionCast::clearance`]: how far a body can move along its motion.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -30,49 +31,49 @@ const FIRST: f64 = 0.125;
     serde(rename_all = "snake_case")
 )]
 pub enum MotionClearance<P = MotionProof> {
-    /// Until it touches.
+    /// The body moves until it touches the other body.
     Blocked {
-        /// Up to this time it may go: at no time before do the bodies, as the tolerance leaves them, meet, nor has what
-        /// stops them met in its true place.
+        /// Time up to which the body can move. At no earlier time do the bodies with the tolerance meet, nor do the
+        /// nominal blocking bodies or facets.
         time: f64,
-        /// What stops it.
+        /// The contact that stops the body.
         contact: Box<MotionStop<P>>,
     },
-    /// To the end of the motion.
+    /// The body can move to the end of the motion.
     Free(MotionFree<P>),
-    /// The bodies overlap when the motion begins, by more than is tolerated.
+    /// The bodies overlap at the start of the motion, by more than the tolerance.
     Overlapping(MotionOverlap),
 }
 
-/// What stops a body on its way.
+/// The contact that stops a body in motion.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionStop<P = MotionProof> {
-    /// When that meets in its true place, of solids the two facets that stop them: not before the lower bound, from the
-    /// last time on at which they were apart; at the upper one they have met, or else the bodies as the tolerance leaves
-    /// them. Without an upper bound that is not proven.
+    /// Time at which the nominal bodies meet; for solids, the two facets that stop them. They do not meet between the
+    /// last sampled time at which they are separated and the lower bound. At the upper bound they have met, or the
+    /// bodies with the tolerance have. An infinite upper bound means that this is not proven.
     pub time: Bounded,
-    /// The length of the tolerance that was used.
+    /// Length of the tolerance, in world units.
     pub tolerance: f64,
-    /// When the bodies meet as it leaves them; in [`MotionContact::upper`] infinity where that is not proven.
+    /// Contact of the bodies with the tolerance. [`MotionContact::upper`] is infinity if it is not proven.
     pub shrunk: MotionContact<P>,
 }
 
-/// An overlap when a motion begins.
+/// An overlap at the start of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionOverlap {
-    /// The least tolerance with which they would not, from above, where there is one.
+    /// Upper bound of the least tolerance without an overlap. `None` if there is no such tolerance.
     pub least_tolerance: Option<f64>,
-    /// Of solids: facets that cross, or a shell that is inside.
+    /// For solids: two facets that cross, or a shell that is inside the other solid.
     pub place: Option<Overlap>,
 }
 
 impl<P> MotionClearance<P> {
-    /// Up to which time the body may go: 1, the end, where nothing stops it; `None` if the bodies overlap when the motion
-    /// begins.
+    /// Returns the time up to which the body can move. It is 1 if the motion is free, and `None` if the bodies overlap
+    /// at the start.
     pub fn time(&self) -> Option<f64> {
         match self {
             Self::Blocked { time, .. } => Some(*time),
@@ -81,11 +82,12 @@ impl<P> MotionClearance<P> {
         }
     }
 
-    /// Whether nothing stops it.
+    /// Checks whether the body can move to the end of the motion.
     pub const fn is_free(&self) -> bool {
         matches!(self, Self::Free(_))
     }
 
+    /// Builds the answer for a blocked body. The time is the smaller of both lower bounds.
     pub(super) fn blocked(time: Bounded, tolerance: f64, shrunk: MotionContact<P>) -> Self {
         let safe = time.lower.min(shrunk.lower);
         Self::Blocked { time: safe, contact: Box::new(MotionStop { time, tolerance, shrunk }) }
@@ -93,22 +95,25 @@ impl<P> MotionClearance<P> {
 }
 
 impl MotionCast<'_> {
-    /// How far along its motion the body can go, with the [tolerance](Self::tolerating) or, where there is none, what
-    /// rounding can do to a fit: so what touches may slide, turn and leave, and is stopped where it is pushed in.
-    /// A gap that is [kept](Self::keeping) may be less by as much.
+    /// Computes how far the body can move along its motion.
     ///
-    /// The proof in the answer is one of the [cleared](Self::cleared) question. What an overlap
-    /// when the motion begins may mean else is asked of [solids](MotionCast::between).
+    /// The query uses the [tolerance](Self::tolerating), or a default that covers the rounding errors of a fit. Bodies
+    /// in contact may therefore slide, rotate and separate, and are stopped where they would be pushed together. A
+    /// [minimum gap](Self::keeping) may be violated by the tolerance.
+    ///
+    /// The proof in the answer belongs to the query [`Self::cleared`]. [Solids](MotionCast::between) also offer other
+    /// meanings of an overlap at the start.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::first_contact`], and [`QueryError::NotConverged`] if the search took its maximum
+    /// number of steps.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
     /// use colltrans::motion::{Motion, MotionCast, MotionClearance};
     /// use colltrans::{ConvexPolyhedron, Pose};
     ///
-    /// // A block that stands on a table turns there, and cannot be tipped through it.
+    /// A block that stands on a table turns there, and cannot be tipped through it.
     /// let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let clearance = |axis| {
@@ -123,43 +128,46 @@ impl MotionCast<'_> {
     /// ```
     pub fn clearance(&self) -> Result<MotionClearance, QueryError> {
         let (bodies, motions) = (self.bodies(), self.motions());
-        let tolerance = self.tolerance_or_usual();
+        let tolerance = self.tolerance_or_default();
         if self.tolerance() == 0.0 {
-            check_fine(bodies, tolerance)?;
+            check_accuracy(bodies, tolerance)?;
         }
         let cleared = self.cleared();
         let shrunk = match cleared.first_contact()? {
             MotionOutcome::Free(free) => return Ok(MotionClearance::Free(free)),
             MotionOutcome::Overlapping(_) => {
-                return Ok(MotionClearance::Overlapping(self.overlap_at_start()));
+                return Ok(MotionClearance::Overlapping(self.overlap_depth_at_start()));
             }
             MotionOutcome::Contact(shrunk) | MotionOutcome::Grazing(shrunk) => shrunk,
-            MotionOutcome::Undecided(undecided) => return Err(stalled(&undecided)),
+            MotionOutcome::Undecided(undecided) => return Err(step_limit_error(&undecided)),
         };
         let bounds = [shrunk.lower, shrunk.upper];
-        let closing = spans(bodies, motions, cleared.keep);
-        let bare = spans(bodies, motions, self.keep());
-        let mut looker = ConvexLooker::default();
-        let rate = at(&closing, shrunk.lower, &mut looker).map_or(0.0, |look| look.rate);
-        let time = true_time(&bare, &mut looker, [tolerance, rate], bounds);
+        let shrunk_spans = split_into_spans(bodies, motions, cleared.min_gap);
+        let nominal_spans = split_into_spans(bodies, motions, self.keep());
+        let mut sampler = ConvexSampler::default();
+        let rate = sample_in_spans(&shrunk_spans, shrunk.lower, &mut sampler)
+            .map_or(0.0, |sample| sample.rate);
+        let time = nominal_contact_time(&nominal_spans, &mut sampler, [tolerance, rate], bounds);
         Ok(MotionClearance::blocked(time, tolerance, shrunk))
     }
 
-    /// The same question with the tolerance of its [clearance](Self::clearance), whose proof is one of this.
+    /// Returns the cast with the tolerance of its [clearance](Self::clearance). The proof of the clearance can be
+    /// verified with it.
     #[must_use]
     pub fn cleared(&self) -> Self {
-        Self { keep: self.keep() - self.tolerance_or_usual(), ..self.clone() }
+        Self { min_gap: self.keep() - self.tolerance_or_default(), ..self.clone() }
     }
 
-    fn tolerance_or_usual(&self) -> f64 {
+    /// Returns the tolerated depth, or the default tolerance if none was set.
+    fn tolerance_or_default(&self) -> f64 {
         let given = self.tolerance();
-        if given > 0.0 { given } else { usual_tolerance(self.bodies(), self.motions()) }
+        if given > 0.0 { given } else { default_tolerance(self.bodies(), self.motions()) }
     }
 
-    /// By how much the bodies overlap, or are nearer than the gap to be kept, when the motion begins.
-    fn overlap_at_start(&self) -> MotionOverlap {
-        let first = spans(self.bodies(), self.motions(), 0.0).into_iter().next();
-        let pair = first.map(|span| Pair { bodies: span.instant(0.0).bodies });
+    /// Computes how much the bodies overlap at the start, or how much nearer than the minimum gap they are.
+    fn overlap_depth_at_start(&self) -> MotionOverlap {
+        let first = split_into_spans(self.bodies(), self.motions(), 0.0).into_iter().next();
+        let pair = first.map(|span| Pair { bodies: span.instant_at(0.0).bodies });
         let least = pair.and_then(|pair| {
             let deep = pair.depth().ok()?.upper;
             let far = if deep > 0.0 { 0.0 } else { pair.distance().ok()?.lower };
@@ -169,34 +177,35 @@ impl MotionCast<'_> {
     }
 }
 
-/// What is to be seen at a time.
-pub(super) fn at<'a, B: Hull, L: Looker<B>>(
+/// Samples the distance at a time, in the span that contains it. Returns `None` if the time is before the first span.
+pub(super) fn sample_in_spans<'a, B: Hull, L: Sampler<B>>(
     spans: &[Span<'a, B>],
     time: f64,
-    looker: &mut L,
-) -> Option<Look<'a, [colltrans_kernel::motion::Moved; 2], B>> {
+    sampler: &mut L,
+) -> Option<Sample<'a, [colltrans_kernel::motion::Moved; 2], B>> {
     let span = spans.iter().rev().find(|span| span.from <= time)?;
-    Some(looker.look(span, time))
+    Some(sampler.sample(span, time))
 }
 
-/// When bodies that meet between two times as a tolerance leaves them do as they are; what the tolerance has added is so
-/// `much` that is closed at this `rate`.
+/// Computes when the nominal bodies meet, for bodies that meet with the tolerance between `lower` and `upper`. `much`
+/// is the gap that the tolerance has added, `rate` its closing speed.
 ///
-/// They are looked at further and further back until they are apart; where they never are, as of what lies on the other
-/// from the start, it is as they close now.
-pub(super) fn true_time<B: Hull, L: Looker<B>>(
+/// Samples times at growing distances before `lower`, until the bodies are separated, and searches for the contact from
+/// there on. If they are never separated, for example if one rests on the other from the start, the time is
+/// extrapolated with the present rate.
+pub(super) fn nominal_contact_time<B: Hull, L: Sampler<B>>(
     spans: &[Span<B>],
-    looker: &mut L,
-    [much, rate]: [f64; 2],
+    sampler: &mut L,
+    [added_gap, rate]: [f64; 2],
     [lower, upper]: [f64; 2],
 ) -> Bounded {
-    let back = if rate > 0.0 { (much / rate).min(lower) } else { 0.0 };
+    let back = if rate > 0.0 { (added_gap / rate).min(lower) } else { 0.0 };
     let guess = lower - back;
-    let first = FIRST * back.max(64.0 * f64::EPSILON);
+    let first = FIRST_BACK_SHARE * back.max(64.0 * f64::EPSILON);
     let mut since = None;
-    for k in 0..BACK {
+    for k in 0..MAX_BACK_DOUBLINGS {
         let time = (guess - first * 2.0_f64.powi(k)).max(0.0);
-        if at(spans, time, looker).is_some_and(|look| look.is_apart()) {
+        if sample_in_spans(spans, time, sampler).is_some_and(|sample| sample.is_apart()) {
             since = Some(time);
             break;
         }
@@ -204,20 +213,20 @@ pub(super) fn true_time<B: Hull, L: Looker<B>>(
             break;
         }
     }
-    let passed = Bounded { value: guess, lower: guess, upper };
-    let Some(since) = since else { return passed };
+    let extrapolated = Bounded { value: guess, lower: guess, upper };
+    let Some(since) = since else { return extrapolated };
     let end = if upper.is_finite() { upper } else { lower };
     for span in spans.iter().filter(|span| span.to > since && span.from < end) {
-        let part = span.within([span.from.max(since), span.to.min(end)]);
-        let Advanced { planes, end } = advance(&part, looker);
+        let part = span.restricted_to([span.from.max(since), span.to.min(end)]);
+        let SpanResult { planes, end } = prove_span(&part, sampler);
         let reached = planes.last().map_or(part.from, |plane| plane.time);
         let met = match end {
-            End::Free => continue,
-            End::Met(time, _) => time.min(upper),
-            End::Blurred | End::Stalled => upper,
+            SpanEnd::Free => continue,
+            SpanEnd::Met(time, _) => time.min(upper),
+            SpanEnd::Indeterminate | SpanEnd::Stalled => upper,
         };
         let value = if met.is_finite() { reached + 0.5 * (met - reached) } else { reached };
         return Bounded { value, lower: reached, upper: met };
     }
-    passed
+    extrapolated
 }

@@ -1,8 +1,8 @@
-//! Motions that turn: when do two bodies first touch?
+//! Motions with rotation: the time at which two bodies first meet.
 //!
-//! A [`Motion`] says where a body is at every time from 0 to 1: it slides, turns, unscrews, is thrown, or
-//! goes through poses. A [`MotionCast`] answers when two such bodies first meet, with bounds on that time
-//! that are bounds, or proves that they never do.
+//! A [`Motion`] defines the pose of a body at every time from 0 to 1: a translation, a rotation, a screw, a free
+//! flight, or a sequence of poses. A [`MotionCast`] computes when two such bodies first meet, with proven bounds of the
+//! time, or proves that they never meet.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
@@ -23,31 +23,35 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What is promised
+//! # Guarantee
 //!
-//! Answers hold of the motion *as the real function of its numbers*, not of poses computed from it: at each
-//! time before `lower` the bodies do not meet, and at the time `upper` they do. What a computed pose may be
-//! off is taken off every gap, and that bodies meet is claimed where they overlap by more than that.
+//! Answers hold for the motion *as the real function of its numbers*, not for computed poses. The bodies do not meet at
+//! any time before `lower`, and they meet at `upper`. The error bound of computed poses is subtracted from every gap.
+//! Contact is claimed only where the overlap exceeds this error.
 //!
 //! # Method
 //!
-//! Notation. A *plane* at a time is a unit normal `n` with the gap `s = min_Q n.q - max_P n.p` that it leaves
-//! then. In a *span* both bodies spin evenly. The search proves a span
+//! - A *plane* at a time is a unit normal `n` with its gap `s = min_Q n.q - max_P n.p`.
+//! - In a *span* both bodies rotate at a constant rate.
+//! - `curvature` proves the time between two planes, with any normals, by a bound of the second derivative of the gap.
+//! - `arc` proves an interval by one plane, on whose sides all vertices stay on their arcs.
+//! - `search` chooses the times and joins the planes; `sample` computes the distance at one time.
 //!
-//! - *between two planes* by how far supporting planes may bend in between (`bend`): two gaps bound all times
-//!   in between, whatever the normals;
-//! - *by one plane* over vertices that stay below it on their arcs (`arc`).
+//! The search is conservative advancement (Mirtich) with a curvature bound in place of a velocity bound. Steps are
+//! proportional to the square root of the remaining gap instead of the gap, because a rotation differs from a
+//! translation only to second order. Near a contact the search is Newton's method. See
+//! `docs/theory/conservative-advancement.md` and `docs/theory/motion-bounds.md`.
 //!
-//! `search` proposes times, by Newton's method at the end, and `look` asks the distance at one. This is
-//! conservative advancement (Mirtich) with a bound of second order: a rotation is a translation to first
-//! order only, so that steps shrink with the square root of what is left, not with what is left.
+//! # Modules
 //!
-//! The modules, each using only those before it: `proof`, `answer`, `span`, `bend` and `arc`, `course`,
-//! `look`, `search`, `verify`, `clearance`.
+//! Each module uses only those before it: `proof`, `answer`, `span`, `curvature` and `arc`, `relative_motion`,
+//! `sample`, `search`, `verify`, `clearance`.
 //!
-//! `solid` is of solids: down both trees and through time, two facets as convex bodies are. [`path`] is bodies that joints
-//! carry: `mechanism` has frames and rows of values, `chain` bounds how joints move a body, `couple` is two of them, `follow`
-//! and `search` search over rows and down trees of boxes.
+//! - `solid` is for solids. It searches both bounding volume trees and time, and treats two facets like two convex
+//!   bodies.
+//! - [`path`] is for bodies that joints carry. `mechanism` defines frames and rows of joint values. `chain` bounds how
+//!   joints move a body, `link_pair` combines two chains. `follow` and `search` search over rows and bounding volume
+//!   trees.
 
 #![allow(
     rustdoc::private_intra_doc_links,
@@ -56,15 +60,15 @@
 
 mod answer;
 mod arc;
-mod bend;
 mod clearance;
-mod course;
-mod look;
+mod crossing_time;
+mod curvature;
 pub mod path;
 mod proof;
+mod relative_motion;
+mod sample;
 mod search;
 mod solid;
-mod soon;
 mod span;
 mod verify;
 
@@ -74,13 +78,13 @@ use derive_where::derive_where;
 
 pub use self::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps, Proven};
 pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
-use self::look::ConvexLooker;
 pub use self::proof::{Meeting, Met, MotionProof, PlaneAt};
-use self::search::{Advanced, End, advance};
+use self::sample::ConvexSampler;
+use self::search::{SpanEnd, SpanResult, prove_span};
 #[cfg(feature = "json")]
 pub use self::solid::Parts;
 pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
-use self::span::{Span, spans};
+use self::span::{Span, split_into_spans};
 pub use self::verify::MotionProofError;
 pub use colltrans_convex::body::Moving;
 use colltrans_convex::body::{ConvexPolyhedron, Hull};
@@ -94,167 +98,181 @@ use colltrans_kernel::range::MAX_MAGNITUDE;
 use colltrans_solid::StartOverlap;
 use colltrans_solid::body::Solid;
 
-/// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
-const TOLERANCE: f64 = 32.0;
+/// Factor from the error of two points (rounding and motion) to the default tolerance.
+const DEFAULT_TOLERANCE_FACTOR: f64 = 32.0;
 
-/// Two bodies, either of which may move, from time 0 to 1: convex ones, or [solids](colltrans_solid::Solid).
+/// Two bodies of one kind, of which one or both move from time 0 to time 1: convex polyhedra or
+/// [solids](colltrans_solid::Solid).
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub struct MotionCast<'a, B = ConvexPolyhedron> {
     moving: Moving<'a, B>,
     fixed: Moving<'a, B>,
-    /// A gap to be kept; negative, of convex bodies, a depth that is tolerated.
-    keep: f64,
-    /// By half of which solids are shrunk; none stands for what rounding can do.
+    /// Minimum gap, in world units. For convex bodies a negative value is a tolerated depth.
+    min_gap: f64,
+    /// Tolerance of solids, which are shrunk by half of it. `None` selects the default.
     tolerance: Option<f64>,
-    /// Of solids, what an overlap at time 0 means for their clearance.
+    /// Meaning of an overlap of solids at time 0 for their clearance.
     start_overlap: StartOverlap,
 }
 
 impl<'a, B> MotionCast<'a, B> {
-    /// Of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose, both convex or
-    /// both solids. One of each kind: [`Self::between`](MotionCast::between).
+    /// Builds the cast of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose,
+    /// both convex or both solids. For bodies of different kinds, see [`Self::between`](MotionCast::between).
     ///
     /// # Errors
-    /// None today: what a body and a motion admit, a cast does.
+    /// Returns no error at present, because bodies and motions are checked when they are built.
     pub fn new(
         moving: impl Into<Moving<'a, B>>,
         fixed: impl Into<Moving<'a, B>>,
     ) -> Result<Self, QueryError> {
         let (moving, fixed) = (moving.into(), fixed.into());
-        Ok(Self { moving, fixed, keep: 0.0, tolerance: None, start_overlap: StartOverlap::Refuse })
+        Ok(Self {
+            moving,
+            fixed,
+            min_gap: 0.0,
+            tolerance: None,
+            start_overlap: StartOverlap::Refuse,
+        })
     }
 
-    /// The gap that is kept; 0 if there is none.
+    /// Returns the minimum gap, in world units; 0 if none was set.
     pub fn keep(&self) -> f64 {
-        self.keep.max(0.0)
+        self.min_gap.max(0.0)
     }
 
-    /// What the moving and the fixed body do.
+    /// Returns the motions of the moving and of the fixed body.
     pub fn motions(&self) -> [&Motion; 2] {
         [&self.moving.motion, &self.fixed.motion]
     }
 
-    /// The moving and the fixed body.
+    /// Returns the moving and the fixed body.
     pub fn bodies(&self) -> [&'a B; 2] {
         [self.moving.body, self.fixed.body]
     }
 }
 
 impl MotionCast<'_> {
-    /// The depth that is tolerated; 0 if none is.
+    /// Returns the tolerated depth, in world units; 0 if none was set.
     pub fn tolerance(&self) -> f64 {
-        (-self.keep).max(0.0)
+        (-self.min_gap).max(0.0)
     }
 
-    /// The same with a gap to be kept, in world units: what counts is when the bodies are no farther apart.
-    /// In the place of a depth that is tolerated.
+    /// Returns the cast with a minimum gap, in world units. The queries then find when the distance of the bodies falls
+    /// to the gap. Replaces a tolerated depth.
     ///
     /// # Errors
-    /// A gap that is negative, not finite or out of range.
+    /// Returns [`QueryError::Keep`] if the gap is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
         check_min_gap(gap)?;
-        Ok(Self { keep: gap, ..self })
+        Ok(Self { min_gap: gap, ..self })
     }
 
-    /// The same with a depth that is tolerated, in world units: bodies count as meeting where every
-    /// translation that parts them is longer. So a part may rest on a table and turn there, or leave it; with
-    /// no tolerance, what touches at time 0 is *grazing* then, as rounding cannot tell it from an overlap.
+    /// Returns the cast with a tolerated depth, in world units. The bodies count as meeting if every translation that
+    /// separates them is longer than this depth. Replaces a minimum gap.
+    ///
+    /// A part may then rest on a table and rotate on it or leave it. Without a tolerance, bodies in contact at time 0
+    /// are *grazing*, because rounding errors hide whether they overlap.
     ///
     /// # Errors
-    /// A depth that is negative, not finite or out of range.
+    /// Returns [`QueryError::Tolerance`] if the depth is negative, not finite or out of range.
     pub fn tolerating(self, depth: f64) -> Result<Self, QueryError> {
-        check_tolerated(depth)?;
-        Ok(Self { keep: -depth, ..self })
+        check_depth(depth)?;
+        Ok(Self { min_gap: -depth, ..self })
     }
 
-    /// When do the bodies first meet?
+    /// Finds the first time at which the bodies meet.
     ///
-    /// If the search between convex bodies takes its maximum number of steps, the question is asked of the same bodies as
-    /// solids. If that search has no answer either, or a depth is tolerated, the answer is [`MotionOutcome::Undecided`].
+    /// If the search between convex bodies takes its maximum number of steps, the same bodies are searched as solids.
+    /// The answer is [`MotionOutcome::Undecided`] if the second search has no answer either, or if a depth is
+    /// tolerated.
     ///
     /// # Errors
-    /// Where the bodies may meet in a motion whose places are off by more than they are large.
+    /// Returns [`QueryError::Coarse`] if the bodies may meet and the error of computed places exceeds their size.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let found = self.first_contact_of_convex()?;
         let MotionOutcome::Undecided(undecided) = &found else { return Ok(found) };
-        Ok(self.as_solids(undecided).unwrap_or(found))
+        Ok(self.outcome_of_solids(undecided).unwrap_or(found))
     }
 
-    /// The question about the same bodies as solids, as they are. A gap is added by which the points that a body was
-    /// made of may be beyond its faces.
+    /// Returns the cast of the same bodies as solids, without a tolerance. The minimum gap is increased by the distance
+    /// of input points from the faces of the bodies.
     #[doc(hidden)]
     pub fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
         let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
-        MotionCast::between(moving, fixed)?.tolerating(0.0)?.keeping(self.keep + self.left_out())
+        MotionCast::between(moving, fixed)?
+            .tolerating(0.0)?
+            .keeping(self.min_gap + self.input_excess())
     }
 
-    /// Returns how far the points that both bodies were made of may be beyond their faces; 0 if they are not.
-    fn left_out(&self) -> f64 {
+    /// Returns how far the input points of both bodies may be outside their faces, in world units; 0 if none is
+    /// outside.
+    fn input_excess(&self) -> f64 {
         let beyond = |body: &ConvexPolyhedron| body.hull_error() + body.input_excess();
         (beyond(self.moving.body) + beyond(self.fixed.body)) * MAX_STRETCH
     }
 
-    /// Returns when the bodies certainly meet, if they do as solids from this time on: never for certain, if what the
-    /// solids come as near as need not be a contact.
-    fn meeting_of_solids(&self, time: f64) -> f64 {
-        if self.left_out() == 0.0 { time } else { f64::INFINITY }
+    /// Returns the upper bound of the contact time for a contact of the solids at `time`. It is infinite if input
+    /// points may be outside the faces, because the solids then have a minimum gap and may not touch.
+    fn upper_bound_from_solids(&self, time: f64) -> f64 {
+        if self.input_excess() == 0.0 { time } else { f64::INFINITY }
     }
 
-    /// Returns the answer of the search between solids; `None` if it proves no more than what is undecided.
-    fn as_solids(&self, undecided: &MotionContact) -> Option<MotionOutcome> {
+    /// Returns the answer of the search between solids. Returns `None` if it proves no more than `undecided`.
+    fn outcome_of_solids(&self, undecided: &MotionContact) -> Option<MotionOutcome> {
         let outcome = self.between_solids().ok()?.certified_first_contact().ok()?;
         let mut steps = undecided.steps;
         steps += outcome.steps();
         let solids = Some(Box::new(outcome.proof().clone()));
         let proof = MotionProof { solids, ..MotionProof::default() };
-        let touching = |bounds: [f64; 2], proof| {
-            let all = spans(self.bodies(), self.motions(), self.keep);
+        let build_touching_contact = |bounds: [f64; 2], proof| {
+            let all = split_into_spans(self.bodies(), self.motions(), self.min_gap);
             let span = all.iter().rev().find(|span| span.from <= bounds[0])?;
-            Some(contact(span, &mut ConvexLooker::default(), bounds, proof, steps))
+            Some(build_contact(span, &mut ConvexSampler::default(), bounds, proof, steps))
         };
         match &outcome {
             MotionOutcome::Free(_) => Some(MotionOutcome::Free(MotionFree { proof, steps })),
-            MotionOutcome::Contact(of) if self.left_out() == 0.0 => {
-                touching([of.lower, of.upper], proof).map(MotionOutcome::Contact)
+            MotionOutcome::Contact(of) if self.input_excess() == 0.0 => {
+                build_touching_contact([of.lower, of.upper], proof).map(MotionOutcome::Contact)
             }
             MotionOutcome::Contact(of) | MotionOutcome::Grazing(of) => {
-                let upper = self.meeting_of_solids(of.upper);
-                touching([of.lower, upper], proof).map(MotionOutcome::Grazing)
+                let upper = self.upper_bound_from_solids(of.upper);
+                build_touching_contact([of.lower, upper], proof).map(MotionOutcome::Grazing)
             }
             MotionOutcome::Undecided(of) if of.lower > undecided.lower => {
-                let upper = self.meeting_of_solids(of.upper);
-                touching([of.lower, upper], proof).map(MotionOutcome::Undecided)
+                let upper = self.upper_bound_from_solids(of.upper);
+                build_touching_contact([of.lower, upper], proof).map(MotionOutcome::Undecided)
             }
             MotionOutcome::Undecided(_) | MotionOutcome::Overlapping(_) => None,
         }
     }
 
+    /// Searches all spans of the motion for the first contact of the convex bodies.
     fn first_contact_of_convex(&self) -> Result<MotionOutcome, QueryError> {
         use MotionOutcome::{Contact, Free, Grazing, Overlapping, Undecided};
         let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
-        for span in spans(self.bodies(), self.motions(), self.keep) {
-            let mut looker = ConvexLooker::default();
-            let Advanced { planes, end } = advance(&span, &mut looker);
-            steps += looker.steps;
+        for span in split_into_spans(self.bodies(), self.motions(), self.min_gap) {
+            let mut sampler = ConvexSampler::default();
+            let SpanResult { planes, end } = prove_span(&span, &mut sampler);
+            steps += sampler.steps;
             proof.spans.push(planes);
             match end {
-                End::Free => {}
-                End::Met(time, met) => {
+                SpanEnd::Free => {}
+                SpanEnd::Met(time, met) => {
                     let bounds = [proof.reached(), time];
                     proof.meeting = Some(Meeting { time, met });
-                    let contact = contact(&span, &mut looker, bounds, proof, steps);
+                    let contact = build_contact(&span, &mut sampler, bounds, proof, steps);
                     let of = if time == 0.0 { Overlapping } else { Contact };
                     return Ok(of(contact));
                 }
-                End::Blurred | End::Stalled => {
-                    if end == End::Blurred {
-                        check_fine(self.bodies(), span.error)?;
+                SpanEnd::Indeterminate | SpanEnd::Stalled => {
+                    if end == SpanEnd::Indeterminate {
+                        check_accuracy(self.bodies(), span.error)?;
                     }
                     let bounds = [proof.reached(), f64::INFINITY];
-                    let contact = contact(&span, &mut looker, bounds, proof, steps);
-                    let of = if end == End::Blurred { Grazing } else { Undecided };
+                    let contact = build_contact(&span, &mut sampler, bounds, proof, steps);
+                    let of = if end == SpanEnd::Indeterminate { Grazing } else { Undecided };
                     return Ok(of(contact));
                 }
             }
@@ -262,55 +280,57 @@ impl MotionCast<'_> {
         Ok(Free(MotionFree { proof, steps }))
     }
 
-    /// Checks a proof without a search: all vertices are looked at. Returns up to which time the bodies are
-    /// proven not to meet, and when they are proven to, infinity if that is not claimed.
+    /// Checks a proof without a search, over all vertices. Returns the time up to which the bodies are proven not to
+    /// meet, and the time at which they are proven to meet. The latter is infinite if the proof claims no contact.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns the first entry of the proof that does not hold.
     pub fn verify(&self, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
         verify::verify(self, proof)
     }
 }
 
-/// Whether a depth may be tolerated.
-fn check_tolerated(depth: f64) -> Result<(), QueryError> {
+/// Checks that a depth is in the accepted range.
+fn check_depth(depth: f64) -> Result<(), QueryError> {
     let is_one = (0.0..=MAX_MAGNITUDE).contains(&depth);
     if is_one { Ok(()) } else { Err(QueryError::Tolerance { tolerance: depth }) }
 }
 
-/// Whether places that may be off by so much say anything of bodies. Of two points they do, as nothing is smaller.
-fn check_fine<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
+/// Checks that the bodies are larger than the error `off` of computed places. Two points always pass, because no body
+/// is smaller.
+fn check_accuracy<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
     let size = bodies[0].reach() + bodies[1].reach();
     if size > 0.0 && off > size { Err(QueryError::Coarse { off, size }) } else { Ok(()) }
 }
 
-/// Returns what is reported where the bodies meet, or may, between two times of a span.
-fn contact(
+/// Builds the report of a contact, or of a possible contact, between two times of a span.
+fn build_contact(
     span: &Span,
-    looker: &mut ConvexLooker,
+    sampler: &mut ConvexSampler,
     [lower, upper]: [f64; 2],
     proof: MotionProof,
     steps: MotionSteps,
 ) -> MotionContact {
-    let bodies = span.instant(lower).bodies;
+    let bodies = span.instant_at(lower).bodies;
     let poses = [bodies.moving_placed().pose, bodies.fixed_placed().pose];
-    // What is proven does not hang on it.
-    let near = looker.distance(bodies);
+    // The bounds do not depend on this distance.
+    let near = sampler.distance(bodies);
     let points = near.map(|near| [near.on_moving, near.on_fixed]);
     let (normal, features) = near.map_or((None, None), |near| (near.normal, near.features));
     MotionContact { lower, upper, poses, points, normal, features, proof, steps }
 }
 
-/// Returns the error of a search that took its maximum number of steps, where an answer cannot carry that.
-fn stalled(undecided: &MotionContact<impl Sized>) -> QueryError {
+/// Returns the error for a search that took its maximum number of steps, in a query whose answer cannot express it.
+fn step_limit_error(undecided: &MotionContact<impl Sized>) -> QueryError {
     QueryError::NotConverged { reason: Stalled::Motion { free_until: undecided.lower } }
 }
 
-/// What rounding can do to a fit, of bodies as they are.
-fn usual_tolerance<B: Hull>(bodies: [&B; 2], motions: [&Motion; 2]) -> f64 {
-    let off = spans(bodies, motions, 0.0).into_iter().map(|span| {
-        let ends = [span.from, span.to].map(|time| span.instant(time).bodies.scale());
+/// Computes the default tolerance of bodies along their motions, in world units: a multiple of the error of computed
+/// points.
+fn default_tolerance<B: Hull>(bodies: [&B; 2], motions: [&Motion; 2]) -> f64 {
+    let off = split_into_spans(bodies, motions, 0.0).into_iter().map(|span| {
+        let ends = [span.from, span.to].map(|time| span.instant_at(time).bodies.scale());
         Noise::of(ends[0].max(ends[1])).point() + span.error
     });
-    TOLERANCE * off.fold(0.0, f64::max)
+    DEFAULT_TOLERANCE_FACTOR * off.fold(0.0, f64::max)
 }

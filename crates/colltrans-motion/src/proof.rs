@@ -1,11 +1,11 @@
-//! What proves when bodies that turn first meet: planes between them, and that they meet.
+//! Proofs about the first contact of bodies in motion: separating planes, and the proof of a contact.
 
 use glam::DVec3;
 
 use super::solid::SolidMotionProof;
 use colltrans_convex::answer::{Depth, NearPoints};
 
-/// What proves an answer: planes, and that the bodies meet.
+/// Proof of an answer: separating planes, and a contact if the bodies meet.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -13,19 +13,19 @@ use colltrans_convex::answer::{Depth, NearPoints};
     serde(deny_unknown_fields)
 )]
 pub struct MotionProof {
-    /// For each span of time in which both bodies spin evenly, up to that in which they meet: planes in the
-    /// order of their times, each joined to the next one. None, if they meet when it begins.
+    /// For each span in which both bodies rotate at a constant rate, up to the one with the contact: planes in the
+    /// order of time, each joined to the next one. A list is empty if the bodies meet when its span begins.
     pub spans: Vec<Vec<PlaneAt>>,
-    /// That the bodies meet at a time.
+    /// Proof that the bodies meet at a time.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub meeting: Option<Meeting>,
-    /// Proof of the same question about the bodies as solids, in the place of planes. `None` unless the search between
-    /// convex bodies took its maximum number of steps.
+    /// Proof of the same query for the bodies as solids, in place of planes. `None` unless the search between convex
+    /// bodies took its maximum number of steps.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub solids: Option<Box<SolidMotionProof>>,
 }
 
-/// A plane between the bodies at a time.
+/// A plane between the bodies at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -33,18 +33,18 @@ pub struct MotionProof {
     serde(deny_unknown_fields)
 )]
 pub struct PlaneAt {
-    /// When.
+    /// Time of the plane.
     pub time: f64,
     /// Unit normal in the world, from the moving body to the fixed one.
     pub normal: DVec3,
-    /// At most the gap that it leaves, less the gap to be kept, in world units.
+    /// Lower bound of the gap of the plane minus the minimum gap, in world units.
     pub gap: f64,
-    /// Whether this plane alone proves all times up to the next one, by the arcs of all vertices; else both
+    /// Whether this plane alone proves all times up to the next one, by the arcs of all vertices. Otherwise both planes
     /// together do.
     pub alone: bool,
 }
 
-/// What proves that the bodies are too near at a time.
+/// Proof that the bodies are too near at a time.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -52,13 +52,13 @@ pub struct PlaneAt {
     serde(rename_all = "snake_case")
 )]
 pub enum Met {
-    /// They overlap, deeper than is tolerated.
+    /// The bodies overlap by more than the tolerated depth.
     Deep(Box<Depth>),
-    /// Two points are no farther apart than what is to be kept.
+    /// Two points are not farther apart than the minimum gap.
     Near(NearPoints),
 }
 
-/// That the bodies meet at a time, or are not farther apart than the gap to be kept.
+/// Proof that the bodies meet at a time, or that their distance is at most the minimum gap.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -66,14 +66,14 @@ pub enum Met {
     serde(deny_unknown_fields)
 )]
 pub struct Meeting {
-    /// When.
+    /// Time of the contact.
     pub time: f64,
-    /// Why.
+    /// Proof for this time.
     pub met: Met,
 }
 
 impl MotionProof {
-    /// How many planes it has; of solids, entries of the cover.
+    /// Returns the number of planes; for solids, the number of entries of the cover.
     pub fn planes(&self) -> usize {
         let entries = |solids: &SolidMotionProof| -> usize {
             solids.spans.iter().map(|span| span.cover.len()).sum()
@@ -82,7 +82,7 @@ impl MotionProof {
         planes + self.solids.as_deref().map_or(0, entries)
     }
 
-    /// Up to which time its planes reach; 0 if there are none.
+    /// Returns the time of the last plane; 0 if there are none.
     pub(super) fn reached(&self) -> f64 {
         self.spans.iter().flatten().last().map_or(0.0, |plane| plane.time)
     }

@@ -1,468 +1,504 @@
-//! From the beginning of a span to its end, or to where the bodies meet.
+//! Searches a span for the first contact of two bodies.
 //!
-//! Notation. *Left* is the last plane up to which all is proven, `s` its gap and `rate` how fast that closes;
-//! `K` is the last `C / h^2`. The *floor* is a gap that rounding may make of none, the *pad* the time in
-//! which one closes.
+//! Algorithm: conservative advancement with a curvature bound (`docs/theory/conservative-advancement.md`).
 //!
-//! Invariant. All planes in the list are joined, each to the next one. `end` is the end of the span, or the
-//! first time seen at which the bodies meet or are not told apart; those that wait on the stack are planes
-//! between left and `end`, the earliest on top.
-//!
-//! Where a step is to go: as far as the bound reaches, if the gap goes on as a parabola through what the last two
-//! planes saw, a little lower; but not beyond where that closes, so that a plane is there and the next step
-//! is quadratically nearer; when left is as near as rounding tells a little beyond, where the bodies meet.
-//! What is not joined waits, and time is halved. A search never ends because an estimate is small.
+//! - The *front* is the last plane up to which all times are proven. `gap` and `rate` are its gap and its closing
+//!   speed.
+//! - `K` is the last curvature bound divided by the square of the interval.
+//! - The *floor* is the largest gap that rounding errors may close. The *floor time* is the time in which one floor
+//!   closes.
+//! - Invariant: all planes in the list are joined, each to the next one.
+//! - Invariant: `end_time` is the end of the span, or the earliest sampled time without a plane.
+//! - Invariant: the pending samples have planes between front and `end_time`, the earliest on top of the stack.
 
 use glam::DVec3;
 
-use super::bend::{SPARE, most_bend};
-use super::course::Course;
-use super::look::{Look, LookAt, Looker};
+use super::curvature::{ROOT_MARGIN, max_provable_curvature};
 use super::proof::PlaneAt;
+use super::relative_motion::RelativeMotion;
+use super::sample::{Sample, SampleOf, Sampler};
 
-/// Maximum number of steps of a search, and how many more for each radian by which the bodies turn.
-const MOST: usize = 20_000;
-const MOST_A_RADIAN: f64 = 200.0;
+/// Maximum number of steps of a search, and the additional steps per radian of rotation.
+const MAX_STEPS: usize = 20_000;
+const MAX_STEPS_PER_RADIAN: f64 = 200.0;
 
-/// Number of planes from which on a search is long.
-const PATIENCE: usize = 500;
+/// Number of planes from which a search counts as long.
+const LONG_SEARCH_PLANES: usize = 500;
 
-/// Which share of the step that the bound allows is taken.
-const STEP: f64 = 0.95;
+/// Share of the step allowed by the bound that is taken.
+const STEP_SHARE: f64 = 0.95;
 
-/// By which share of `K` the gap may close faster than it was seen to.
-const DOUBT: f64 = 0.5;
+/// Share of `K` by which the gap may accelerate more than sampled.
+const ACCELERATION_MARGIN: f64 = 0.5;
 
-/// A gap that is so much smaller than the one before closes for good.
-const FELL: f64 = 0.1;
+/// Maximum ratio of a gap to the previous one for which the gap is assumed to close.
+const DROP_RATIO: f64 = 0.1;
 
-/// The next look is beyond a contact from so many floors on: those before aim at one.
-const AT_FLOOR: f64 = 1.5;
+/// Maximum gap, in floors, from which the next sample is taken beyond the contact.
+const NEAR_FLOORS: f64 = 1.5;
 
-/// It is so many pads beyond, where a depth can be told from what places may be off.
-const BEYOND_FLOOR: f64 = 1.5;
+/// Distance of that sample from the contact, in floor times. There a depth exceeds the error of computed places.
+const OVERSHOOT_FLOOR_TIMES: f64 = 1.5;
 
-/// A search ends when the bodies meet so many pads after the last plane.
-const WIDTH: f64 = 4.0;
+/// Maximum width, in floor times, of the interval between the last plane and a contact at which a search ends.
+const MAX_WIDTH_FLOOR_TIMES: f64 = 4.0;
 
-/// Bodies with more vertices have none looked at on its arc.
-const ARCS: usize = 1_000;
+/// Maximum number of rotating vertices for which single planes are tried.
+const MAX_ARC_VERTICES: usize = 1_000;
 
-/// Steps of which so many would be needed are short.
-const SHORT: f64 = 64.0;
+/// Number of steps to the end of the interval above which steps count as short.
+const SHORT_STEPS: f64 = 64.0;
 
-/// One plane alone is tried so many steps ahead, and may lose such a share of its gap: for the next one to
-/// lead on, or at the end of a span.
-const SWING: f64 = 4.0;
-const KEPT: f64 = 0.75;
+/// Length of the first trial of a single plane, in steps; and the maximum share of its gap that it may lose there.
+const FIRST_TRIAL_STEPS: f64 = 4.0;
+const MAX_LOSS_SHARE: f64 = 0.75;
 
-/// Share of its gap that a plane may lose while both bodies carry it along to the next sample.
-const CARRIED: f64 = 0.7;
-const SPENT: f64 = 0.999;
+/// Share of its gap that a carried plane may lose up to the next sample; and the maximum share that a plane may lose up
+/// to the end of a span.
+const CARRIED_LOSS_SHARE: f64 = 0.7;
+const MAX_END_LOSS_SHARE: f64 = 0.999;
 
-/// How often a time after a blur is doubled to find bodies that meet.
-const BEYOND: i32 = 48;
+/// Maximum number of times that the distance of a sample from an indeterminate time is doubled.
+const MAX_DOUBLINGS: i32 = 48;
 
-/// How a span ends.
+/// The result at the end of a span.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum End<M> {
-    /// With its last plane.
+pub(super) enum SpanEnd<M> {
+    /// The last plane is at the end of the span.
     Free,
-    /// The bodies meet at a time, as is proven.
+    /// The bodies are proven to meet at this time.
     Met(f64, M),
-    /// They come nearer than rounding can tell; that they meet is not proven.
-    Blurred,
-    /// Too many steps.
+    /// The bodies come nearer than rounding errors can decide. A contact is not proven.
+    Indeterminate,
+    /// The search took its maximum number of steps.
     Stalled,
 }
 
-/// What has become of a span.
+/// The result of a search in a span.
 #[derive(Debug, Clone)]
-pub(super) struct Advanced<M> {
-    /// In the order of their times; none if there is none at the beginning.
+pub(super) struct SpanResult<M> {
+    /// Planes in the order of time. Empty if the bodies are not separated at the start.
     pub(super) planes: Vec<PlaneAt>,
-    pub(super) end: End<M>,
+    pub(super) end: SpanEnd<M>,
 }
 
-/// What is at the end of what is searched.
+/// The event at the end of the searched interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Ahead {
     /// The end of the span.
-    Nothing,
-    /// Bodies that meet, or are not told apart.
-    Something,
+    SpanEnd,
+    /// Bodies that meet or cannot be separated.
+    PossibleContact,
 }
 
-struct Search<'s, 'a, C: Course<'a>, L> {
-    course: &'s C,
-    looker: &'s mut L,
+struct SpanSearch<'s, 'a, C: RelativeMotion<'a>, L> {
+    motion: &'s C,
+    sampler: &'s mut L,
     planes: Vec<PlaneAt>,
-    left: LookAt<'a, C>,
-    stack: Vec<LookAt<'a, C>>,
-    end: f64,
+    front: SampleOf<'a, C>,
+    pending: Vec<SampleOf<'a, C>>,
+    end_time: f64,
     ahead: Ahead,
-    /// `K`, and what it usually is at most.
+    /// `K`, and its typical maximum.
     curvature: f64,
-    usual: f64,
-    /// How the gap goes on, at least: its second derivative.
-    slowing: f64,
-    /// Whether left's gap is far smaller than that of the plane before.
-    fell: bool,
-    /// Whether the last look before a later one was no plane.
-    missed: bool,
-    /// Whether it was asked in vain if the bodies meet just beyond left.
-    is_asked: bool,
+    typical_curvature: f64,
+    /// Estimated lower bound of the second derivative of the gap.
+    gap_acceleration: f64,
+    /// Whether the gap at the front is far smaller than that of the previous plane.
+    gap_dropped: bool,
+    /// Whether the last sample before a known end had no plane either.
+    sampled_past_end: bool,
+    /// Whether a contact just beyond the front was already tested without success.
+    is_contact_tested: bool,
 }
 
-/// Proves as much of a span as it can.
-pub(super) fn advance<'a, C: Course<'a>, L: Looker<C::Body>>(
-    course: &C,
-    looker: &mut L,
-) -> Advanced<L::Met> {
-    let [from, to] = course.times();
-    let left = looker.look(course, from);
-    let usual = course.usual();
-    let mut search = Search {
-        course,
+/// Proves separation in as much of a span as possible.
+pub(super) fn prove_span<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>>(
+    motion: &C,
+    sampler: &mut L,
+) -> SpanResult<L::Met> {
+    let [from, to] = motion.time_range();
+    let front = sampler.sample(motion, from);
+    let typical_curvature = motion.typical_curvature();
+    let mut search = SpanSearch {
+        motion,
         planes: Vec::new(),
-        left,
-        stack: Vec::new(),
-        end: to,
-        ahead: Ahead::Nothing,
-        curvature: usual,
-        usual,
-        slowing: -usual,
-        fell: false,
-        missed: false,
-        is_asked: false,
-        looker,
+        front,
+        pending: Vec::new(),
+        end_time: to,
+        ahead: Ahead::SpanEnd,
+        curvature: typical_curvature,
+        typical_curvature,
+        gap_acceleration: -typical_curvature,
+        gap_dropped: false,
+        sampled_past_end: false,
+        is_contact_tested: false,
+        sampler,
     };
-    let end = if left.is_apart() {
-        search.note(&left, false);
-        search.run()
+    let end = if front.is_apart() {
+        search.append_plane(&front, false);
+        search.search_span()
     } else {
-        search.met_from(from)
+        search.find_contact_from(from)
     };
-    Advanced { planes: search.planes, end }
+    SpanResult { planes: search.planes, end }
 }
 
-impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
-    fn run(&mut self) -> End<L::Met> {
-        let [from, to] = self.course.times();
-        let turned = self.course.turning() * (to - from);
-        for _ in 0..MOST + (MOST_A_RADIAN * turned) as usize {
-            if let Some(next) = self.stack.last().copied() {
-                if self.joins(&{ self.left }, &next) {
-                    self.stack.pop();
-                    self.go_on(&next);
-                } else if self.changes_to(&next) {
-                    self.stack.pop();
-                } else if !self.halve(next.time()) {
-                    return self.met_from(self.left.time());
+impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
+    /// Repeats steps until the end of the span, a contact or the maximum number of steps.
+    fn search_span(&mut self) -> SpanEnd<L::Met> {
+        let [from, to] = self.motion.time_range();
+        let turned = self.motion.angular_speed() * (to - from);
+        for _ in 0..MAX_STEPS + (MAX_STEPS_PER_RADIAN * turned) as usize {
+            if let Some(next) = self.pending.last().copied() {
+                if self.is_joined(&{ self.front }, &next) {
+                    self.pending.pop();
+                    self.move_front_to(&next);
+                } else if self.switches_normal_before(&next) {
+                    self.pending.pop();
+                } else if !self.sample_midpoint(next.time()) {
+                    return self.find_contact_from(self.front.time());
                 }
                 continue;
             }
-            if self.ahead == Ahead::Nothing && self.left.time() >= self.end {
-                return End::Free;
+            if self.ahead == Ahead::SpanEnd && self.front.time() >= self.end_time {
+                return SpanEnd::Free;
             }
-            if let Some((time, met)) = self.meets_soon() {
-                return End::Met(time, met);
+            if let Some((time, met)) = self.find_contact_ahead() {
+                return SpanEnd::Met(time, met);
             }
-            if self.ahead == Ahead::Something && self.is_narrow() {
-                return self.met_from(self.end);
+            if self.ahead == Ahead::PossibleContact && self.is_interval_minimal() {
+                return self.find_contact_from(self.end_time);
             }
-            if self.swings_on() {
+            if self.advance_by_single_plane() {
                 continue;
             }
             let time = self.next_time();
-            self.visit(time);
+            self.sample_time(time);
         }
-        End::Stalled
+        SpanEnd::Stalled
     }
 
-    fn note(&mut self, look: &LookAt<'a, C>, alone: bool) {
+    /// Appends a plane to the list. `alone` states whether the previous plane proves the time up to this one alone.
+    fn append_plane(&mut self, sample: &SampleOf<'a, C>, alone: bool) {
         if let Some(last) = self.planes.last_mut() {
             last.alone = alone;
         }
-        let Look { normal, gap, .. } = *look;
-        self.planes.push(PlaneAt { time: look.time(), normal, gap, alone: false });
+        let Sample { normal, gap, .. } = *sample;
+        self.planes.push(PlaneAt { time: sample.time(), normal, gap, alone: false });
     }
 
-    fn go_on(&mut self, look: &LookAt<'a, C>) {
-        self.note(look, false);
-        let h = look.time() - self.left.time();
+    /// Moves the front to a joined plane and updates the estimates.
+    fn move_front_to(&mut self, sample: &SampleOf<'a, C>) {
+        self.append_plane(sample, false);
+        let h = sample.time() - self.front.time();
         if h > 0.0 {
             let k = self.curvature;
-            let seen = ((self.left.rate - look.rate) / h).min(k);
-            self.slowing = seen - DOUBT * k.max(-seen);
-            self.fell = look.gap < FELL * self.left.gap;
-            self.missed = false;
+            let seen = ((self.front.rate - sample.rate) / h).min(k);
+            self.gap_acceleration = seen - ACCELERATION_MARGIN * k.max(-seen);
+            self.gap_dropped = sample.gap < DROP_RATIO * self.front.gap;
+            self.sampled_past_end = false;
         }
-        self.left = *look;
+        self.front = *sample;
     }
 
-    /// Whether all between a plane at left and a later one is proven.
-    fn joins(&mut self, left: &LookAt<'a, C>, next: &LookAt<'a, C>) -> bool {
-        let enough = most_bend([left.gap, next.gap], 2.0 * SPARE);
-        let normals = [left.normal, next.normal];
-        // A loose bound costs less. A long search gains more by steps as long as the tight one allows.
-        let is_long = self.planes.len() > PATIENCE;
-        let (asked, least) = if is_long { (f64::NEG_INFINITY, 1e-9) } else { (enough, 1e-3) };
-        let found = self.course.bend([&left.at, &next.at], normals, asked, &L::SUPPORTS);
-        let h = next.time() - left.time();
+    /// Checks whether all times between the front `left` and a later plane are proven. Updates `K`.
+    fn is_joined(&mut self, front: &SampleOf<'a, C>, next: &SampleOf<'a, C>) -> bool {
+        let enough = max_provable_curvature([front.gap, next.gap], 2.0 * ROOT_MARGIN);
+        let normals = [front.normal, next.normal];
+        // The loose bound is cheaper. In a long search, the longer steps of the tight bound save more.
+        let is_long = self.planes.len() > LONG_SEARCH_PLANES;
+        let (sufficient, min_ratio) =
+            if is_long { (f64::NEG_INFINITY, 1e-9) } else { (enough, 1e-3) };
+        let found = self.motion.curvature_bound(
+            [&front.at, &next.at],
+            normals,
+            sufficient,
+            &L::SUPPORT_SEARCH,
+        );
+        let h = next.time() - front.time();
         if h > 0.0 {
-            self.curvature = (found.max(0.0) / h / h).max(least * self.usual);
+            self.curvature = (found.max(0.0) / h / h).max(min_ratio * self.typical_curvature);
         }
-        h == 0.0 || found <= enough || self.is_carried(left, next.time())
+        h == 0.0 || found <= enough || self.is_proven_by_carrying(front, next.time())
     }
 
-    /// Goes on to a later plane where a depth is tolerated, by either normal for all of the time in between: the shallowest
-    /// way out may change from one time to the next, while both are shallow enough for a while.
-    fn changes_to(&mut self, next: &LookAt<'a, C>) -> bool {
-        if self.course.keep() >= 0.0 {
+    /// Moves the front to a later plane by using one of the two normals at both times. This applies only with a
+    /// tolerated depth: the direction of least depth may change discontinuously, while both normals bound the depth for
+    /// a while.
+    fn switches_normal_before(&mut self, next: &SampleOf<'a, C>) -> bool {
+        if self.motion.min_gap() >= 0.0 {
             return false;
         }
-        let left = self.left;
-        let turned = |look: &LookAt<'a, C>, normal: DVec3| Look {
+        let front = self.front;
+        let turned = |sample: &SampleOf<'a, C>, normal: DVec3| Sample {
             normal,
-            gap: self.course.claimed_gap(&look.at, normal),
-            ..*look
+            gap: self.motion.claimed_gap(&sample.at, normal),
+            ..*sample
         };
-        let (last, first) = (turned(next, left.normal), turned(&left, next.normal));
-        let between = if last.is_apart() && self.joins(&left, &last) {
+        let (last, first) = (turned(next, front.normal), turned(&front, next.normal));
+        let between = if last.is_apart() && self.is_joined(&front, &last) {
             last
-        } else if first.is_apart() && self.joins(&first, next) {
+        } else if first.is_apart() && self.is_joined(&first, next) {
             first
         } else {
             return false;
         };
-        self.note(&between, false);
-        self.go_on(next);
+        self.append_plane(&between, false);
+        self.move_front_to(next);
         true
     }
 
-    /// Whether a plane proves all up to a time, carried along.
-    fn is_carried(&self, look: &LookAt<'a, C>, time: f64) -> bool {
-        let Look { at, gap, normal, .. } = look;
-        self.course.carried(at, time, *normal) < KEPT * gap
+    /// Checks whether a plane that the moving body carries proves all times up to `time`.
+    fn is_proven_by_carrying(&self, sample: &SampleOf<'a, C>, time: f64) -> bool {
+        let Sample { at, gap, normal, .. } = sample;
+        self.motion.carried_gap_loss(at, time, *normal) < MAX_LOSS_SHARE * gap
     }
 
-    /// Looks in the middle before a time; `false` if there is none.
-    fn halve(&mut self, until: f64) -> bool {
-        let middle = self.left.time() + 0.5 * (until - self.left.time());
-        let is_between = middle > self.left.time() && middle < until;
+    /// Samples the middle between the front and a time. Returns `false` if no number lies between them.
+    fn sample_midpoint(&mut self, until: f64) -> bool {
+        let middle = self.front.time() + 0.5 * (until - self.front.time());
+        let is_between = middle > self.front.time() && middle < until;
         if is_between {
-            self.visit(middle);
+            self.sample_time(middle);
         }
         is_between
     }
 
-    fn visit(&mut self, time: f64) {
-        let look = self.looker.look(self.course, time);
-        if look.is_apart() {
-            self.stack.push(look);
+    /// Samples a time: a plane becomes pending, otherwise the time becomes the new end.
+    fn sample_time(&mut self, time: f64) {
+        let sample = self.sampler.sample(self.motion, time);
+        if sample.is_apart() {
+            self.pending.push(sample);
         } else {
-            self.stack.clear();
-            self.missed = self.ahead == Ahead::Something;
-            (self.end, self.ahead) = (time, Ahead::Something);
+            self.pending.clear();
+            self.sampled_past_end = self.ahead == Ahead::PossibleContact;
+            (self.end_time, self.ahead) = (time, Ahead::PossibleContact);
         }
     }
 
-    /// The time in which a gap of one floor closes.
-    fn pad(&self) -> f64 {
-        let Look { rate, floor, .. } = self.left;
+    /// Returns the time in which a gap of one floor closes.
+    fn floor_time(&self) -> f64 {
+        let Sample { rate, floor, .. } = self.front;
         let rate = rate.max((self.curvature * floor).sqrt());
         if rate > 0.0 { floor / rate } else { f64::INFINITY }
     }
 
-    /// Whether left is as near to the end as rounding tells.
-    fn is_narrow(&self) -> bool {
-        let width = self.end - self.left.time();
-        let ulps = 4.0 * f64::EPSILON * self.end;
-        width <= ulps || (self.left.gap <= 2.0 * self.left.floor && width <= WIDTH * self.pad())
+    /// Checks whether the front is as near to the end as rounding errors allow.
+    fn is_interval_minimal(&self) -> bool {
+        let width = self.end_time - self.front.time();
+        let ulps = 4.0 * f64::EPSILON * self.end_time;
+        width <= ulps
+            || (self.front.gap <= 2.0 * self.front.floor
+                && width <= MAX_WIDTH_FLOOR_TIMES * self.floor_time())
     }
 
-    /// Where to look next.
+    /// Returns the time of the next sample.
     fn next_time(&self) -> f64 {
-        let (from, end) = (self.left.time(), self.end);
-        if self.ahead == Ahead::Nothing && self.is_carried(&self.left, end) {
+        let (from, end) = (self.front.time(), self.end_time);
+        if self.ahead == Ahead::SpanEnd && self.is_proven_by_carrying(&self.front, end) {
             return end;
         }
-        let time = from + if self.is_at_floor() { self.beyond() } else { self.far_step() };
+        let time = from
+            + if self.is_front_near_contact() {
+                self.overshoot_step()
+            } else {
+                self.extended_step()
+            };
         let between = |time: f64| time > from && time < end;
         match self.ahead {
-            Ahead::Nothing if time >= end || time.is_nan() => end,
+            Ahead::SpanEnd if time >= end || time.is_nan() => end,
             _ if between(time) => time,
-            _ => (end - self.back_from_end()).max(from.next_up()).min(end),
+            _ => (end - self.retreat_from_end()).max(from.next_up()).min(end),
         }
     }
 
-    /// How far before the end to look, where the gap seems to close only there or later: as far as that may be wrong,
-    /// if the last such look was not so wrong, and at most halfway.
-    fn back_from_end(&self) -> f64 {
-        let rest = self.end - self.left.time();
-        let off = DOUBT * self.curvature.max(-self.slowing) * rest * rest / self.left.rate;
-        let half = 0.5 * rest;
-        if self.missed || off.is_nan() || off <= 0.0 { half } else { off.max(self.pad()).min(half) }
+    /// Returns how long before the end to sample if the gap is predicted to close only at the end or later. The length
+    /// is the possible error of this prediction, at most half of the interval. It is half of the interval if the last
+    /// such sample had no plane.
+    fn retreat_from_end(&self) -> f64 {
+        let remaining = self.end_time - self.front.time();
+        let off = ACCELERATION_MARGIN
+            * self.curvature.max(-self.gap_acceleration)
+            * remaining
+            * remaining
+            / self.front.rate;
+        let half = 0.5 * remaining;
+        if self.sampled_past_end || off.is_nan() || off <= 0.0 {
+            half
+        } else {
+            off.max(self.floor_time()).min(half)
+        }
     }
 
-    /// Returns the step of [`Self::step`], or a longer one up to which both bodies carry the plane along.
-    fn far_step(&self) -> f64 {
-        let (step, from) = (self.step(), self.left.time());
-        let lost = self.course.carried(&self.left.at, from + step, self.left.normal);
-        // Little more is lost in proportion to the time.
-        let carried = CARRIED * step * self.left.gap / lost;
-        let is_longer = carried > SWING * step && self.is_carried(&self.left, from + carried);
+    /// Returns [`Self::bounded_step`], or a longer step up to which both bodies carry the plane.
+    fn extended_step(&self) -> f64 {
+        let (step, from) = (self.bounded_step(), self.front.time());
+        let lost = self.motion.carried_gap_loss(&self.front.at, from + step, self.front.normal);
+        // The loss grows slightly less than in proportion to the time.
+        let carried = CARRIED_LOSS_SHARE * step * self.front.gap / lost;
+        let is_longer = carried > FIRST_TRIAL_STEPS * step
+            && self.is_proven_by_carrying(&self.front, from + carried);
         if is_longer { carried } else { step }
     }
 
-    /// As far as the bound reaches, but to a little before the gap closes.
-    fn step(&self) -> f64 {
-        let Look { gap, rate, .. } = self.left;
-        let (root, c) = (gap.sqrt(), STEP * (0.5 * self.curvature).sqrt());
-        let closed = closes_in(gap, rate, self.slowing);
+    /// Returns the step that the bound allows, limited to slightly before the predicted time of contact.
+    fn bounded_step(&self) -> f64 {
+        let Sample { gap, rate, .. } = self.front;
+        let (root, c) = (gap.sqrt(), STEP_SHARE * (0.5 * self.curvature).sqrt());
+        let closed = closing_time(gap, rate, self.gap_acceleration);
         if c * closed <= root {
-            let before = closed - self.pad();
+            let before = closed - self.floor_time();
             if before > 0.0 { before } else { 0.5 * closed }
         } else {
-            // Where the root of the gap that is left is `c` times the way less that of this one.
-            (2.0 * c * root - rate) / (c * c - 0.5 * self.slowing)
+            // Solves sqrt(predicted gap) = c t - sqrt(gap) for t.
+            (2.0 * c * root - rate) / (c * c - 0.5 * self.gap_acceleration)
         }
     }
 
-    /// Whether left is so near to a contact that the next look is beyond it.
-    fn is_at_floor(&self) -> bool {
-        let Look { gap, rate, floor, .. } = self.left;
-        gap <= AT_FLOOR * floor && rate > STEP * (0.5 * self.curvature * gap).sqrt()
+    /// Checks whether the front is so near to a contact that the next sample is beyond it.
+    fn is_front_near_contact(&self) -> bool {
+        let Sample { gap, rate, floor, .. } = self.front;
+        gap <= NEAR_FLOORS * floor && rate > STEP_SHARE * (0.5 * self.curvature * gap).sqrt()
     }
 
-    /// A little beyond where a gap of hardly more than nothing closes.
-    fn beyond(&self) -> f64 {
-        let Look { gap, rate, .. } = self.left;
+    /// Returns the step to slightly beyond the predicted contact, for a gap of about one floor.
+    fn overshoot_step(&self) -> f64 {
+        let Sample { gap, rate, .. } = self.front;
         let off = gap / rate;
         let error = self.curvature * off * off / (2.0 * rate);
-        off + (2.0 * error).max(BEYOND_FLOOR * self.pad())
+        off + (2.0 * error).max(OVERSHOOT_FLOOR_TIMES * self.floor_time())
     }
 
-    /// That the bodies meet just beyond a left that is as near as rounding tells; asked once.
-    fn meets_soon(&mut self) -> Option<(f64, L::Met)> {
-        if self.is_asked || !self.is_at_floor() {
+    /// Tests once whether the bodies meet just beyond a front that is within rounding errors of a contact. Returns the
+    /// time and the proof, or `None`.
+    fn find_contact_ahead(&mut self) -> Option<(f64, L::Met)> {
+        if self.is_contact_tested || !self.is_front_near_contact() {
             return None;
         }
-        let width = self.beyond();
-        let time = self.left.time() + width;
-        if !(time > self.left.time() && time < self.end && width <= WIDTH * self.pad()) {
+        let width = self.overshoot_step();
+        let time = self.front.time() + width;
+        if !(time > self.front.time()
+            && time < self.end_time
+            && width <= MAX_WIDTH_FLOOR_TIMES * self.floor_time())
+        {
             return None;
         }
-        self.is_asked = true;
-        Some((time, self.looker.met(self.course, time)?))
+        self.is_contact_tested = true;
+        Some((time, self.sampler.prove_contact(self.motion, time)?))
     }
 
-    /// Goes on by the plane at left alone, or by one across the way from an axis, where that leads farther than the
-    /// bound: to the end, or from a few steps on twice as far as long as that is proven.
-    fn swings_on(&mut self) -> bool {
-        let (from, course) = (self.left.time(), self.course);
-        let Look { gap, rate, .. } = self.left;
-        let corners = course.arcs();
-        if corners == 0 || corners > ARCS {
+    /// Moves the front by a single plane, if this proves more than the next step. The plane is that of the front, or
+    /// one perpendicular to a line from an axis. It is tried up to the end of the span, and otherwise at lengths that
+    /// double from a few steps.
+    fn advance_by_single_plane(&mut self) -> bool {
+        let (from, motion) = (self.front.time(), self.motion);
+        let Sample { gap, rate, .. } = self.front;
+        let corners = motion.arc_vertex_count();
+        if corners == 0 || corners > MAX_ARC_VERTICES {
             return false;
         }
         let step = self.next_time() - from;
-        let (end, rest) = (self.end, self.end - from);
-        let first = (SWING * step).min(rest);
-        // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
-        // many, if they do not lead to where it closes.
-        if rate * first >= KEPT * gap && (SHORT * step > rest || self.fell) {
+        let (end, remaining) = (self.end_time, self.end_time - from);
+        let first = (FIRST_TRIAL_STEPS * step).min(remaining);
+        // At its present rate the gap would not suffice. If the steps are short, however, there are many of them, //
+        // unless they lead to a contact.
+        if rate * first >= MAX_LOSS_SHARE * gap
+            && (SHORT_STEPS * step > remaining || self.gap_dropped)
+        {
             return false;
         }
-        if self.ahead == Ahead::Nothing && self.swings_to_end() {
+        if self.ahead == Ahead::SpanEnd && self.finish_by_single_plane() {
             return true;
         }
-        // The sum of both may be rounded to before the end.
-        let at = |length: f64| if length >= rest { end } else { from + length };
+        // The rounded sum may be before the end.
+        let at = |length: f64| if length >= remaining { end } else { from + length };
         let (mut length, mut farthest) = (first, None);
-        while course.lost([&self.left.at, &course.instant(at(length))], self.left.normal)
-            < KEPT * gap
+        while motion.gap_loss([&self.front.at, &motion.instant_at(at(length))], self.front.normal)
+            < MAX_LOSS_SHARE * gap
         {
             farthest = Some(length);
-            if length >= rest {
+            if length >= remaining {
                 break;
             }
-            length = (2.0 * length).min(rest);
+            length = (2.0 * length).min(remaining);
         }
-        farthest.is_some_and(|length| self.swing_to(at(length)))
+        farthest.is_some_and(|length| self.move_front_by_single_plane(at(length)))
     }
 
-    /// Ends the span by one plane alone.
-    fn swings_to_end(&mut self) -> bool {
-        let (left, course) = (self.left, self.course);
-        let at = course.instant(self.end);
-        let ends_with = |look: LookAt<'a, C>, most: f64| {
-            if course.lost([&left.at, &at], look.normal) >= most {
+    /// Proves the rest of the span by a single plane. Returns `false` if none of the tried normals does.
+    fn finish_by_single_plane(&mut self) -> bool {
+        let (front, motion) = (self.front, self.motion);
+        let at = motion.instant_at(self.end_time);
+        let ends_with = |sample: SampleOf<'a, C>, most: f64| {
+            if motion.gap_loss([&front.at, &at], sample.normal) >= most {
                 return None;
             }
-            let gap = course.claimed_gap(&at, look.normal);
-            (gap > 0.0).then_some((look, gap))
+            let gap = motion.claimed_gap(&at, sample.normal);
+            (gap > 0.0).then_some((sample, gap))
         };
         let along = |normal: DVec3| {
-            let gap = course.claimed_gap(&left.at, normal);
-            (gap > 0.0).then_some(Look { normal, gap, ..left })
+            let gap = motion.claimed_gap(&front.at, normal);
+            (gap > 0.0).then_some(Sample { normal, gap, ..front })
         };
-        let plain = |look: LookAt<'a, C>| ends_with(look, SPENT * look.gap);
-        let aside = || plain(along(course.aside(&left.at, left.points)?)?);
+        let plain = |sample: SampleOf<'a, C>| ends_with(sample, MAX_END_LOSS_SHARE * sample.gap);
+        let aside = || plain(along(motion.radial_normal(&front.at, front.points)?)?);
         let between = || {
-            let look = along(course.between_axes(&left.at)?)?;
-            ends_with(look, look.gap - look.floor)
+            let sample = along(motion.normal_between_axes(&front.at)?)?;
+            ends_with(sample, sample.gap - sample.floor)
         };
-        let Some((first, gap)) = plain(left).or_else(aside).or_else(between) else {
+        let Some((first, gap)) = plain(front).or_else(aside).or_else(between) else {
             return false;
         };
-        if first.normal != left.normal {
-            self.note(&first, false);
+        if first.normal != front.normal {
+            self.append_plane(&first, false);
         }
-        let last = Look { at, gap, rate: 0.0, ..first };
-        self.note(&last, true);
-        self.left = last;
+        let last = Sample { at, gap, rate: 0.0, ..first };
+        self.append_plane(&last, true);
+        self.front = last;
         true
     }
 
-    fn swing_to(&mut self, time: f64) -> bool {
-        let next = self.looker.look(self.course, time);
-        let normal = self.left.normal;
-        let gap = self.course.claimed_gap(&next.at, normal);
+    /// Samples a time and moves the front there, by the normal of the front alone. Returns `false` if the plane does
+    /// not hold there.
+    fn move_front_by_single_plane(&mut self, time: f64) -> bool {
+        let next = self.sampler.sample(self.motion, time);
+        let normal = self.front.normal;
+        let gap = self.motion.claimed_gap(&next.at, normal);
         if !(gap > 0.0 && next.is_apart()) {
             return false;
         }
-        self.note(&Look { normal, gap, ..next }, true);
-        self.go_on(&next);
+        self.append_plane(&Sample { normal, gap, ..next }, true);
+        self.move_front_to(&next);
         true
     }
 
-    /// That the bodies meet, from a time on at which they may; doubled steps later, as long as they do not
-    /// part.
-    fn met_from(&mut self, time: f64) -> End<L::Met> {
-        let pad = self.pad();
+    /// Searches for a proven contact at a time and at doubling distances after it. Stops when the bodies are separated
+    /// again.
+    fn find_contact_from(&mut self, time: f64) -> SpanEnd<L::Met> {
+        let floor_time = self.floor_time();
         let ulp = 2.0 * f64::EPSILON * time.max(f64::EPSILON);
-        let first = if pad.is_finite() { pad.max(ulp) } else { ulp };
-        for k in -1..BEYOND {
+        let first = if floor_time.is_finite() { floor_time.max(ulp) } else { ulp };
+        for k in -1..MAX_DOUBLINGS {
             let later = if k < 0 { time } else { time + first * 2.0_f64.powi(k) };
-            if later > self.course.times()[1] {
+            if later > self.motion.time_range()[1] {
                 break;
             }
-            if let Some(met) = self.looker.met(self.course, later) {
-                return End::Met(later, met);
+            if let Some(met) = self.sampler.prove_contact(self.motion, later) {
+                return SpanEnd::Met(later, met);
             }
-            if self.looker.look(self.course, later).is_apart() && later > self.left.time() {
+            if self.sampler.sample(self.motion, later).is_apart() && later > self.front.time() {
                 break;
             }
         }
-        End::Blurred
+        SpanEnd::Indeterminate
     }
 }
 
-/// When a gap closes that does so at a rate, which changes as fast as this; infinity if it does not.
-fn closes_in(gap: f64, rate: f64, slowing: f64) -> f64 {
-    let square = rate * rate - 2.0 * slowing * gap;
+/// Returns the time at which a gap closes, for a closing speed `rate` and a second derivative `slowing` of the gap.
+/// Returns infinity if it does not close.
+fn closing_time(gap: f64, rate: f64, gap_acceleration: f64) -> f64 {
+    let square = rate * rate - 2.0 * gap_acceleration * gap;
     let sum = rate + square.max(0.0).sqrt();
     if square >= 0.0 && sum > 0.0 { 2.0 * gap / sum } else { f64::INFINITY }
 }

@@ -1,4 +1,4 @@
-//! Two bodies that turn, during a span of time in which both spin evenly: convex ones, or parts of solids.
+//! Two bodies during a span, in which both rotate at a constant rate about axes with constant velocities.
 
 use derive_where::derive_where;
 use glam::DVec3;
@@ -12,18 +12,18 @@ use colltrans_kernel::noise;
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub(super) struct Span<'a, B = ConvexPolyhedron> {
-    /// Where they are when their pieces begin.
+    /// The bodies at the starts of their motion pieces.
     start: TwoBodies<'a, B>,
     pieces: [Piece; 2],
     pub(super) from: f64,
     pub(super) to: f64,
-    /// How far the motion's points may be from where they are computed, for both bodies together.
+    /// Error bound of computed points of the motion, for both bodies together, in world units.
     pub(super) error: f64,
-    /// The gap to be kept; negative a depth that is tolerated.
-    pub(super) keep: f64,
+    /// Minimum gap, in world units; a negative value is a tolerated depth.
+    pub(super) min_gap: f64,
 }
 
-/// Both bodies at a time, and what else a course knows of it.
+/// Both bodies at one time, with additional data of the relative motion.
 #[derive(Debug)]
 #[derive_where(Clone, Copy; M)]
 pub(super) struct Instant<'a, M = [Moved; 2], B = ConvexPolyhedron> {
@@ -33,11 +33,12 @@ pub(super) struct Instant<'a, M = [Moved; 2], B = ConvexPolyhedron> {
 }
 
 impl<'a, B: Hull> Span<'a, B> {
+    /// Builds the span of two bodies from the pieces of their motions.
     pub(super) fn new(
         bodies: [&'a B; 2],
         pieces: [&Piece; 2],
         [from, to]: [f64; 2],
-        keep: f64,
+        min_gap: f64,
     ) -> Self {
         let [moving, fixed] = [0, 1].map(|k| Placed { body: bodies[k], pose: pieces[k].start });
         let error = |k: usize| pieces[k].error(bodies[k].reach(), to - pieces[k].since);
@@ -48,52 +49,55 @@ impl<'a, B: Hull> Span<'a, B> {
             from,
             to,
             error: error(0) + error(1) + noise::FLUSHED,
-            keep,
+            min_gap,
         }
     }
 
-    /// Other bodies, which are parts of these, during a part of the time.
-    pub(super) fn part<'b, C>(&self, bodies: [&'b C; 2], [from, to]: [f64; 2]) -> Span<'b, C> {
-        let Self { start, pieces, error, keep, .. } = self;
+    /// Returns the span of two parts of these bodies, over a part of the time.
+    pub(super) fn part_span<'b, C>(&self, bodies: [&'b C; 2], [from, to]: [f64; 2]) -> Span<'b, C> {
+        let Self { start, pieces, error, min_gap, .. } = self;
         let (start, pieces) = (start.holding(bodies), *pieces);
-        Span { start, pieces, from, to, error: *error, keep: *keep }
+        Span { start, pieces, from, to, error: *error, min_gap: *min_gap }
     }
 
-    /// The same bodies up to a time.
-    pub(super) fn until(&self, to: f64) -> Self {
-        self.within([self.from, to])
+    /// Returns the span of the same bodies, ended at a time.
+    pub(super) fn ending_at(&self, to: f64) -> Self {
+        self.restricted_to([self.from, to])
     }
 
-    /// The same bodies during a part of the time.
-    pub(super) fn within(&self, [from, to]: [f64; 2]) -> Self {
+    /// Returns the span of the same bodies over a part of the time.
+    pub(super) fn restricted_to(&self, [from, to]: [f64; 2]) -> Self {
         Self { from, to, ..self.clone() }
     }
 
-    pub(super) fn instant(&self, time: f64) -> Instant<'a, [Moved; 2], B> {
+    /// Returns both bodies at a time.
+    pub(super) fn instant_at(&self, time: f64) -> Instant<'a, [Moved; 2], B> {
         let moved = self.pieces.map(|piece| piece.at(time));
         let bodies = self.start.carried(moved.map(|m| m.rotation), moved.map(|m| m.by));
         Instant { time, bodies, moved }
     }
 
+    /// Returns the piece of motion of the moving body (0) or the fixed body (1).
     pub(super) fn piece(&self, which: usize) -> &Piece {
         &self.pieces[which]
     }
 
+    /// Returns the moving body (0) or the fixed body (1).
     pub(super) fn body(&self, which: usize) -> &'a B {
         [self.start.moving, self.start.fixed][which]
     }
 
-    /// How far the fixed body's axis moves beyond the moving one's in a unit of time.
-    pub(super) fn drift(&self) -> DVec3 {
+    /// Returns the velocity of the axis of the fixed body relative to that of the moving body.
+    pub(super) fn relative_velocity(&self) -> DVec3 {
         self.pieces[1].velocity - self.pieces[0].velocity
     }
 }
 
-/// The times in which both bodies spin evenly, one after the other.
-pub(super) fn spans<'a, B: Hull>(
+/// Splits the time from 0 to 1 into spans, at the starts of all pieces of both motions.
+pub(super) fn split_into_spans<'a, B: Hull>(
     bodies: [&'a B; 2],
     motions: [&Motion; 2],
-    keep: f64,
+    min_gap: f64,
 ) -> Vec<Span<'a, B>> {
     let pieces = motions.map(Motion::pieces);
     let mut times: Vec<f64> = pieces.into_iter().flatten().map(|piece| piece.since).collect();
@@ -102,12 +106,12 @@ pub(super) fn spans<'a, B: Hull>(
     times.push(1.0);
     let ends = times.windows(2).map(|pair| [pair[0], pair[1]]);
     ends.map(|[from, to]| {
-        Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to], keep)
+        Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to], min_gap)
     })
     .collect()
 }
 
-/// The piece that a time belongs to.
+/// Returns the piece that contains a time.
 fn piece_at(pieces: &[Piece], time: f64) -> &Piece {
     &pieces[pieces.partition_point(|piece| piece.since <= time).max(1) - 1]
 }

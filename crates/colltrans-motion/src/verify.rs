@@ -1,99 +1,104 @@
-//! Checks of proofs about motions: nothing of the search is used, all vertices are looked at.
+//! Checks proofs about motions without a search, over all vertices.
 //!
-//! What is checked: planes stand in the order of their times, from the beginning of their span on; each has
-//! its gap then, less what computed poses may be off; each is joined to the next. That bodies meet is checked
-//! where they are then, and has to hold with as much to spare.
+//! - Planes are in the order of time, from the start of their span on.
+//! - Each plane has its gap, minus the error of computed poses, and is joined to the next one.
+//! - A contact is checked at its time, with the same margin for errors.
 
 use super::MotionCast;
-use super::bend::Looking;
-use super::course::{At, Course};
-use super::look::deep_enough;
+use super::curvature::VertexScan;
 use super::proof::{Meeting, Met, MotionProof, PlaneAt};
-use super::span::spans;
+use super::relative_motion::{InstantOf, RelativeMotion};
+use super::sample::min_proving_depth;
+use super::span::split_into_spans;
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::pair::Pair;
 use colltrans_kernel::noise;
 use thiserror::Error;
 
-/// What of a proof about a motion is not proven.
+/// The entry of a proof about a motion that does not hold.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MotionProofError {
-    /// A plane is not at a time, or not a plane.
+    /// A plane or its time is invalid.
     #[error(
-        "plane {index} of span {span} is not in order: planes begin where the span does, times do not \
-         go back, normals have length 1, and a span begins where the one before it ended"
+        "plane {index} of span {span} is invalid: the first plane must be at the start of the span, times must not \
+         decrease, normals must have length 1, and a span must start where the previous one ended"
     )]
     Plane {
-        /// Of which span.
+        /// Index of the span.
         span: usize,
-        /// Which one.
+        /// Index of the plane in the span.
         index: usize,
     },
-    /// A plane has not the gap that is claimed.
+    /// A plane has a smaller gap than claimed.
     #[error("plane {index} of span {span} proves a gap of {proven}, not {claimed}")]
     Gap {
-        /// Of which span.
+        /// Index of the span.
         span: usize,
-        /// Which one.
+        /// Index of the plane in the span.
         index: usize,
-        /// What is proven.
+        /// Proven gap, in world units.
         proven: f64,
-        /// What is claimed.
+        /// Claimed gap, in world units.
         claimed: f64,
     },
-    /// A plane is not joined to the next one: in between the bodies may meet.
-    #[error("planes {index} and {} of span {span} do not prove the time in between", .index + 1)]
+    /// A plane is not joined to the next one: the bodies may meet between them.
+    #[error("planes {index} and {} of span {span} do not prove the time between them", .index + 1)]
     Join {
-        /// Of which span.
+        /// Index of the span.
         span: usize,
-        /// The first of them.
+        /// Index of the first of both planes.
         index: usize,
     },
-    /// Another tolerance than that which is asked about.
-    #[error("the proof is of a tolerance of {claimed}, not {asked}")]
+    /// The proof has a different tolerance than the query.
+    #[error(
+        "the proof has the tolerance {claimed}, the query {asked}; verify it with the tolerance of the proof"
+    )]
     Tolerance {
-        /// What is claimed.
+        /// Tolerance of the proof.
         claimed: f64,
-        /// What is asked about.
+        /// Tolerance of the query.
         asked: f64,
     },
-    /// What solids do when the motion begins is not proven.
-    #[error("whether the solids overlap when the motion begins is not proven")]
+    /// The state of the solids at the start of the motion is not proven.
+    #[error("the proof does not show whether the solids overlap at the start of the motion")]
     Start,
-    /// Not all pairs of facets are parted at all times.
-    #[error("entry {entry} of the cover of span {span} does not hold, or does not fit the bodies")]
+    /// An entry of a cover does not hold.
+    #[error("entry {entry} of the cover of span {span} does not hold or does not fit the bodies")]
     Cover {
-        /// Of which span.
+        /// Index of the span.
         span: usize,
-        /// Which one.
+        /// Index of the entry.
         entry: usize,
     },
-    /// That the bodies meet is not proven.
-    #[error("that the bodies meet at {time} is not proven{}", because(.reason.as_ref()))]
+    /// A contact is not proven.
+    #[error("contact at time {time} is not proven{}", reason_suffix(.reason.as_ref()))]
     Meeting {
-        /// When they are to.
+        /// Claimed time of the contact.
         time: f64,
-        /// Why not; nothing if they do too little.
+        /// Reason why the proof of the contact fails; `None` if the proof holds but does not suffice.
         reason: Option<CertificateError>,
     },
 }
 
-fn because(reason: Option<&CertificateError>) -> String {
+/// Formats the reason of an error, with a leading colon.
+fn reason_suffix(reason: Option<&CertificateError>) -> String {
     reason.map(|reason| format!(": {reason}")).unwrap_or_default()
 }
 
+/// Checks a proof of a cast of convex bodies. Returns the time up to which they do not meet, and the time at which they
+/// do, or infinity.
 pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
     if let Some(solids) = &proof.solids {
         let plain = proof.spans.is_empty() && proof.meeting.is_none();
-        let asked = cast.between_solids().ok().filter(|_| plain && cast.keep >= 0.0);
-        let [reached, meeting] = asked.ok_or(MotionProofError::Start)?.verify(solids)?;
-        return Ok([reached, cast.meeting_of_solids(meeting)]);
+        let solid_cast = cast.between_solids().ok().filter(|_| plain && cast.min_gap >= 0.0);
+        let [reached, meeting] = solid_cast.ok_or(MotionProofError::Start)?.verify(solids)?;
+        return Ok([reached, cast.upper_bound_from_solids(meeting)]);
     }
     let mut reached = 0.0;
     let mut last = None;
-    let spans = spans(cast.bodies(), cast.motions(), cast.keep);
+    let spans = split_into_spans(cast.bodies(), cast.motions(), cast.min_gap);
     let count = spans.len();
     for (which, span) in spans.into_iter().enumerate() {
         let Some(planes) = proof.spans.get(which) else { break };
@@ -102,7 +107,7 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
         if !begins || !follows {
             return Err(MotionProofError::Plane { span: which, index: 0 });
         }
-        chain(&span, planes).map_err(|broken| broken.of(which))?;
+        check_planes(&span, planes).map_err(|broken| broken.in_span(which))?;
         reached = planes.last().map_or(reached, |plane| plane.time);
         last = Some(span);
     }
@@ -112,20 +117,20 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
     let Some(Meeting { time, met }) = &proof.meeting else { return Ok([reached, f64::INFINITY]) };
     let span = last.filter(|span| (span.from..=span.to).contains(time) && *time >= reached);
     let span = span.ok_or(MotionProofError::Meeting { time: *time, reason: None })?;
-    meets(&span, *time, met)?;
+    check_contact(&span, *time, met)?;
     Ok([reached, *time])
 }
 
-/// What of a list of planes is not proven.
+/// The entry of a list of planes that does not hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Broken {
+pub(super) enum PlaneListError {
     Plane { index: usize },
     Gap { index: usize, proven: f64, claimed: f64 },
     Join { index: usize },
 }
 
-impl Broken {
-    fn of(self, span: usize) -> MotionProofError {
+impl PlaneListError {
+    fn in_span(self, span: usize) -> MotionProofError {
         match self {
             Self::Plane { index } => MotionProofError::Plane { span, index },
             Self::Gap { index, proven, claimed } => {
@@ -136,58 +141,62 @@ impl Broken {
     }
 }
 
-/// Each plane with its gap, each joined to the next.
-pub(super) fn chain<'a, C: Course<'a>>(course: &C, planes: &[PlaneAt]) -> Result<(), Broken> {
-    let to = course.times()[1];
-    let mut before: Option<(&PlaneAt, At<C>)> = None;
+/// Checks that each plane of a list has its gap and is joined to the next one.
+pub(super) fn check_planes<'a, C: RelativeMotion<'a>>(
+    motion: &C,
+    planes: &[PlaneAt],
+) -> Result<(), PlaneListError> {
+    let to = motion.time_range()[1];
+    let mut before: Option<(&PlaneAt, InstantOf<C>)> = None;
     for (index, plane) in planes.iter().enumerate() {
         let PlaneAt { time, normal, gap, .. } = *plane;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
         let is_later = before.is_none_or(|(last, _)| last.time <= time) && time <= to;
         if !is_unit || !is_later {
-            return Err(Broken::Plane { index });
+            return Err(PlaneListError::Plane { index });
         }
-        let at = course.instant(time);
-        let proven = course.proven_gap(&at, normal);
+        let at = motion.instant_at(time);
+        let proven = motion.proven_gap(&at, normal);
         if !(gap > 0.0 && gap <= proven) {
-            return Err(Broken::Gap { index, proven, claimed: gap });
+            return Err(PlaneListError::Gap { index, proven, claimed: gap });
         }
         if let Some((last, from)) = &before
-            && !course.joins([last, plane], [from, &at], &Looking)
+            && !motion.proves_between([last, plane], [from, &at], &VertexScan)
         {
-            return Err(Broken::Join { index: index - 1 });
+            return Err(PlaneListError::Join { index: index - 1 });
         }
         before = Some((plane, at));
     }
     Ok(())
 }
 
-fn meets<'a, C: Course<'a, Body = ConvexPolyhedron>>(
-    course: &C,
+/// Checks that the bodies meet at a time.
+fn check_contact<'a, C: RelativeMotion<'a, Body = ConvexPolyhedron>>(
+    motion: &C,
     time: f64,
     met: &Met,
 ) -> Result<(), MotionProofError> {
     let fails = |reason| MotionProofError::Meeting { time, reason };
-    let is_met = is_met(course, time, met).map_err(|reason| fails(Some(reason)))?;
-    if is_met { Ok(()) } else { Err(fails(None)) }
+    let proves_contact = proves_contact(motion, time, met).map_err(|reason| fails(Some(reason)))?;
+    if proves_contact { Ok(()) } else { Err(fails(None)) }
 }
 
-/// Whether bodies are proven to meet at a time.
-pub(super) fn is_met<'a, C: Course<'a, Body = ConvexPolyhedron>>(
-    course: &C,
+/// Checks whether the bodies are proven to meet at a time.
+pub(super) fn proves_contact<'a, C: RelativeMotion<'a, Body = ConvexPolyhedron>>(
+    motion: &C,
     time: f64,
     met: &Met,
 ) -> Result<bool, CertificateError> {
-    let pair = Pair { bodies: course.instant(time).bodies };
-    let [keep, error] = [course.keep(), course.error()];
+    let pair = Pair { bodies: motion.instant_at(time).bodies };
+    let [min_gap, error] = [motion.min_gap(), motion.position_error()];
     Ok(match met {
         Met::Deep(depth) => {
             pair.verify(&**depth)?;
-            depth.lower > deep_enough(keep, error)
+            depth.lower > min_proving_depth(min_gap, error)
         }
         Met::Near(near) => {
             pair.verify(near)?;
-            near.distance + error <= keep
+            near.distance + error <= min_gap
         }
     })
 }

@@ -9,27 +9,27 @@ use colltrans_solid::kinds::{AnyClearance, AnyDistance, AnyNear};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Nearest {
-    /// The one whose distance has the least upper bound; of equal ones, of those that overlap the moving
-    /// body, say, the one that came first.
+    /// The obstacle whose distance has the least upper bound. If several are equal, for example if they overlap the
+    /// moving body, the one inserted first.
     pub obstacle: ObstacleId,
-    /// How far it is, and where; its upper bound is one of the least distance of all.
+    /// Distance of this obstacle. Its upper bound is an upper bound of the least distance of all obstacles.
     pub distance: AnyDistance,
-    /// No obstacle is nearer; rounded down, and at most the lower bound of the distance.
+    /// Lower bound of the distances of all obstacles, rounded down. It is at most the lower bound of `distance`.
     pub lower: f64,
-    /// Work done.
+    /// Work of the query.
     pub steps: AmongSteps,
 }
 
-/// The answer of [`Among::within`](super::Among::within), in the order in which obstacles came.
+/// The answer of [`Among::within`](super::Among::within), in the order of insertion.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Nearby {
-    /// Those that are closer, each with two points of the bodies.
+    /// The obstacles that are closer, each with two near points.
     pub closer: Vec<(ObstacleId, AnyNear)>,
-    /// Those of which rounding cannot tell: the length lies between their bounds.
+    /// The obstacles that rounding errors cannot decide: the length lies between the bounds of their distance.
     pub undecided: Vec<(ObstacleId, AnyDistance)>,
-    /// Work done.
+    /// Work of the query.
     pub steps: AmongSteps,
 }
 
@@ -38,20 +38,21 @@ pub struct Nearby {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ClearanceAmong {
-    /// No obstacle stops the moving body before, in multiples of the direction: infinite where none ever
-    /// does, or the end that was asked for; 0 if it overlaps an obstacle now.
+    /// Translation before which no obstacle stops the moving body, in multiples of the direction. It is infinity if
+    /// none does, or the end of the query, and 0 if the body overlaps an obstacle at the start.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub lower: f64,
-    /// What stops it, [`Clearance::Blocked`](colltrans_convex::Clearance::Blocked), or overlaps it, [`Clearance::Overlapping`](colltrans_convex::Clearance::Overlapping): the obstacle whose
-    /// upper bound is least; of equal ones, and of those that overlap, the one that came first.
+    /// The obstacle that stops the body ([`Clearance::Blocked`](colltrans_convex::Clearance::Blocked)) or overlaps it
+    /// ([`Clearance::Overlapping`](colltrans_convex::Clearance::Overlapping)): the one with the least upper bound. If
+    /// several are equal or overlap, the one inserted first.
     pub stop: Option<(ObstacleId, AnyClearance)>,
-    /// Work done.
+    /// Work of the query.
     pub steps: AmongSteps,
 }
 
 impl ClearanceAmong {
-    /// How far the moving body may safely move, past all obstacles, in multiples of the direction: infinite
-    /// where nothing stops it, `None` if it overlaps an obstacle now.
+    /// Returns the translation by which the moving body can safely move past all obstacles, in multiples of the
+    /// direction. It is infinity if nothing stops the body, and `None` if it overlaps an obstacle at the start.
     pub fn distance(&self) -> Option<f64> {
         let overlaps = self.stop.is_some_and(|(_, stop)| stop.distance().is_none());
         (!overlaps).then_some(self.lower)

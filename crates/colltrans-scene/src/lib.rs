@@ -1,23 +1,19 @@
-//! One body among many placed ones: which is nearest, which are closer than a length, which is hit first.
+//! Queries of one body against many placed bodies: the nearest one, those within a distance, the first one hit.
 //!
-//! The bodies lie in a dynamic tree of [`boxes`]. A search asks about single bodies, with the questions that a
-//! [`Pair`] and a [`Cast`] answer, by the bounds of their boxes, the least first; what a box
-//! proves to be of no interest is not asked about.
+//! The bodies are in a dynamic bounding volume tree. A query visits the boxes in the order of their bounds, and runs a
+//! [`Pair`] or [`Cast`] query for each body that its box does not exclude.
 //!
-//! Notation. `U` is the least upper bound of an answer so far: of a distance, or of the translation at which a
-//! body stops the moving one.
+//! - `U` is the least upper bound found so far, of a distance or of the translation at which a body stops the moving
+//!   one.
+//! - Invariant: a box is excluded only if its bound, rounded outwards, is above `U`. The bodies in it therefore have
+//!   upper bounds above `U`, and they do not lower the lower bound of the answer.
+//! - The answer is that of querying all bodies one by one: the body with the least upper bound, or the one inserted
+//!   first if several are equal. It does not depend on the tree.
+//! - The least lower bound of the queried bodies is a lower bound for all bodies.
 //!
-//! Invariant. A box is left out only if its bound, rounded outwards, is above `U`. What is in it then has a
-//! true value above `U`, so an upper bound above `U`, and is no better than the lower bound of the answer. So:
-//!
-//! - the answer is about the body whose own upper bound is the least of all, of equal ones the one that came
-//!   first, whatever the tree looks like: that of asking all one by one;
-//! - the least lower bound of those that were asked about is one of all.
-//!
-//! The modules: `boxes` (rounded outwards, and what they prove), `obstacles` (who is kept);
-//! then the questions: `answer`, `search`, best first by boxes, `proof`, and `verify`, whose checks take all bodies one by one.
-//! `bulk` is one pair asked many times while neither body turns: `faces` of `M`, made once, each with its bound; `star`
-//! guesses where a line enters, `search` walks there, `approach` has a map for one direction.
+//! The modules: `boxes` (rounded outwards, and their bounds), `obstacles` (the stored bodies), `answer`, `search` (best
+//! first), `proof`, and `verify`, which checks all bodies one by one. `bulk` is for many casts of one pair that does
+//! not rotate.
 
 #![allow(
     rustdoc::private_intra_doc_links,
@@ -53,15 +49,14 @@ use obstacles::Obstacle;
 pub use obstacles::{Obstacles, UnknownObstacle};
 pub use proof::{AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof};
 
-/// Bodies that are not asked about.
-type Ignored<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
+/// Predicate for obstacles that a query ignores.
+type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 
-/// A moving body among many placed ones: what is asked of one and all of the others.
+/// A moving body among many placed ones, for queries of one against all.
 ///
-/// Made for one pose of the moving body, asked as often as one likes, from any thread. Answers are those of
-/// asking all obstacles one by one, a [`Pair`] or a [`Cast`] each: of several that cannot be told apart, the
-/// one whose upper bound is least, and of equal ones the one that came first. Bounds hold for all obstacles
-/// together.
+/// It is built for one pose of the moving body, and can be queried any number of times from any thread. Answers are
+/// those of querying all obstacles one by one, with a [`Pair`] or a [`Cast`] each. They report the obstacle with the
+/// least upper bound, and the one inserted first if several are equal. Bounds hold for all obstacles together.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -94,34 +89,34 @@ pub struct Among<'a> {
     moving: AnyPlaced<'a>,
     obstacles: &'a Obstacles,
     bounds: Aabb,
-    ignored: Option<Ignored<'a>>,
+    ignored: Option<IgnoredPredicate<'a>>,
     options: Options,
     solid_options: SolidOptions,
 }
 
-/// The work of an answer.
+/// Counters of the work of a query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AmongSteps {
-    /// Boxes that were looked at, of obstacles and of many together.
+    /// Number of visited boxes, of single obstacles and of inner nodes.
     pub boxes: u32,
-    /// Obstacles that were asked about.
+    /// Number of obstacles that were queried.
     pub bodies: u32,
 }
 
-/// Two bodies of the same kind.
+/// A pair of bodies of the same kind.
 pub(crate) type AnyPair<'a> = ByKind<Pair<'a>, Pair<'a, Solid>>;
 
-/// The same, and a direction.
+/// A cast of bodies of the same kind.
 pub(crate) type AnyCast<'a> = ByKind<Cast<'a>, Cast<'a, Solid>>;
 
 impl<'a> Among<'a> {
-    /// A placed body among obstacles, with the default choices.
+    /// Builds the queries of a placed body among obstacles, with default options.
     ///
     /// # Errors
-    /// A convex body whose facets [`Solid::from_mesh`](colltrans_solid::Solid::from_mesh) refuses, where a solid is asked
-    /// about it: as the moving body among solids, or among the obstacles of a moving solid, by its id
-    /// ([`QueryError::Obstacle`]).
+    /// Returns an error for a convex body whose facets [`Solid::from_mesh`](colltrans_solid::Solid::from_mesh) rejects,
+    /// if it must be converted to a solid: the moving body among solids, or an obstacle of a moving solid
+    /// ([`QueryError::Obstacle`] with its id).
     pub fn new(
         moving: impl Into<AnyPlaced<'a>>,
         obstacles: &'a Obstacles,
@@ -130,46 +125,46 @@ impl<'a> Among<'a> {
         let counts = obstacles.counts();
         match moving {
             ByKind::Convex(placed) if counts.solids > 0 => drop(placed.body.as_surface()?),
-            ByKind::Solid(_) if counts.bare > 0 => obstacles.refuse_bare()?,
+            ByKind::Solid(_) if counts.faceless > 0 => obstacles.check_all_have_faces()?,
             _ => {}
         }
         Ok(Self {
             moving,
             obstacles,
-            bounds: boxes::of_placed(&moving),
+            bounds: boxes::bounds_of_placed(&moving),
             ignored: None,
             options: Options::default(),
             solid_options: SolidOptions::default(),
         })
     }
 
-    /// Without those for which this is true: the parts of a gripper, say.
+    /// Excludes obstacles for which the predicate returns true, for example the parts of a gripper.
     #[must_use]
     pub fn ignoring(self, ignored: &'a (dyn Fn(ObstacleId) -> bool + Sync)) -> Self {
         Self { ignored: Some(ignored), ..self }
     }
 
-    /// With other choices for casts at convex bodies.
+    /// Sets the options of casts between convex bodies.
     ///
     /// # Errors
-    /// As [`Cast::with_options`].
+    /// Returns the errors of [`Cast::with_options`].
     pub fn with_options(self, options: Options) -> Result<Self, QueryError> {
         options.check()?;
         Ok(Self { options, ..self })
     }
 
-    /// With other choices for casts of solids; they are checked for each body that is asked about.
+    /// Sets the options of casts with solids. They are checked for each body that is queried.
     #[must_use]
     pub fn with_solid_options(self, solid_options: SolidOptions) -> Self {
         Self { solid_options, ..self }
     }
 
-    /// The moving body, and where it is.
+    /// Returns the moving body and its pose.
     pub fn moving(&self) -> AnyPlaced<'a> {
         self.moving
     }
 
-    /// Where the moving body is.
+    /// Returns the pose of the moving body.
     pub fn moving_pose(&self) -> Pose {
         match self.moving {
             ByKind::Convex(placed) => placed.pose,
@@ -177,23 +172,23 @@ impl<'a> Among<'a> {
         }
     }
 
-    /// The choices of casts at convex bodies.
+    /// Returns the options of casts between convex bodies.
     pub fn options(&self) -> Options {
         self.options
     }
 
-    /// The choices of casts of solids.
+    /// Returns the options of casts with solids.
     pub fn solid_options(&self) -> SolidOptions {
         self.solid_options
     }
 
-    /// All obstacles, those that are ignored as well.
+    /// Returns all obstacles, including the ignored ones.
     pub fn obstacles(&self) -> &'a Obstacles {
         self.obstacles
     }
 
-    /// The box of the moving body, with the gap that casts are to keep around it, and a little for rounding.
-    fn swept(&self) -> Aabb {
+    /// Returns the box of the moving body, enlarged by the minimum gap of casts and a margin for rounding.
+    fn query_box(&self) -> Aabb {
         let keep = self.options.keep.max(self.solid_options.keep);
         if keep > 0.0 {
             let Aabb { low, high } = self.bounds;
@@ -204,50 +199,55 @@ impl<'a> Among<'a> {
         }
     }
 
+    /// Checks whether queries ignore an obstacle.
     fn is_ignored(&self, id: ObstacleId) -> bool {
         self.ignored.is_some_and(|ignored| ignored(id))
     }
 
-    /// Those that are asked about, in no order.
-    fn asked(&self) -> impl Iterator<Item = &'a Obstacle> {
+    /// Returns the obstacles that are not ignored, in any order.
+    fn queried_obstacles(&self) -> impl Iterator<Item = &'a Obstacle> {
         self.obstacles.placed().iter().filter(|obstacle| !self.is_ignored(obstacle.id))
     }
 
-    /// How many obstacles are asked about.
+    /// Returns the number of obstacles that are not ignored.
     pub fn count(&self) -> usize {
-        if self.ignored.is_none() { self.obstacles.len() } else { self.asked().count() }
+        if self.ignored.is_none() { self.obstacles.len() } else { self.queried_obstacles().count() }
     }
 
-    /// The moving body and an obstacle, if there is such a one.
+    /// Returns the pair of the moving body and an obstacle. Returns `None` if the obstacle does not exist, or if the
+    /// pair cannot be built.
     #[cfg(feature = "serde")]
     #[doc(hidden)]
     pub fn pair_with(&self, id: ObstacleId) -> Option<AnyPair<'a>> {
-        let item = self.obstacles.item(id).ok()?;
-        self.pair(self.obstacle(item)).ok()
+        let item = self.obstacles.item_of(id).ok()?;
+        self.pair_with_obstacle(self.obstacle_of_item(item)).ok()
     }
 
-    /// The same, and a direction.
+    /// Returns the cast of the moving body at an obstacle. Returns `None` if the obstacle does not exist, or if the
+    /// cast cannot be built.
     #[cfg(feature = "serde")]
     #[doc(hidden)]
     pub fn cast_at(&self, id: ObstacleId, direction: DVec3) -> Option<AnyCast<'a>> {
-        let item = self.obstacles.item(id).ok()?;
-        self.cast(self.obstacle(item), direction).ok()
+        let item = self.obstacles.item_of(id).ok()?;
+        self.cast_with_obstacle(self.obstacle_of_item(item), direction).ok()
     }
 
-    /// The same, in the order in which they came.
+    /// Returns the bodies that are not ignored, with their poses, in the order of insertion.
     #[cfg(feature = "json")]
     #[doc(hidden)]
     pub fn asked_in_order(&self) -> impl Iterator<Item = (&'a AnyBody, Pose)> {
-        let mut all: Vec<&Obstacle> = self.asked().collect();
+        let mut all: Vec<&Obstacle> = self.queried_obstacles().collect();
         all.sort_unstable_by_key(|one| one.id);
         all.into_iter().map(|one| (&one.body, one.pose))
     }
 
-    fn obstacle(&self, item: u32) -> &'a Obstacle {
+    /// Returns the obstacle of an item of the tree.
+    fn obstacle_of_item(&self, item: u32) -> &'a Obstacle {
         &self.obstacles.placed()[item as usize]
     }
 
-    fn pair(&self, obstacle: &'a Obstacle) -> Result<AnyPair<'a>, QueryError> {
+    /// Builds the pair of the moving body and an obstacle.
+    fn pair_with_obstacle(&self, obstacle: &'a Obstacle) -> Result<AnyPair<'a>, QueryError> {
         Ok(match (self.moving, obstacle.placed()) {
             (ByKind::Convex(p), ByKind::Convex(q)) => ByKind::Convex(Pair::new(p, q)?),
             (ByKind::Convex(p), ByKind::Solid(q)) => ByKind::Solid(Pair::between(p, q)?),
@@ -256,7 +256,12 @@ impl<'a> Among<'a> {
         })
     }
 
-    fn cast(&self, obstacle: &'a Obstacle, direction: DVec3) -> Result<AnyCast<'a>, QueryError> {
+    /// Builds the cast of the moving body at an obstacle.
+    fn cast_with_obstacle(
+        &self,
+        obstacle: &'a Obstacle,
+        direction: DVec3,
+    ) -> Result<AnyCast<'a>, QueryError> {
         let cast = match (self.moving, obstacle.placed()) {
             (ByKind::Convex(p), ByKind::Convex(q)) => {
                 let cast = Cast::new(p, q, direction)?;
@@ -271,8 +276,8 @@ impl<'a> Among<'a> {
 }
 
 impl Obstacles {
-    /// What a solid cannot be asked about.
-    fn refuse_bare(&self) -> Result<(), QueryError> {
+    /// Returns an error for the first convex obstacle that cannot be converted to a solid.
+    fn check_all_have_faces(&self) -> Result<(), QueryError> {
         for (id, body, _) in self.iter() {
             if let AnyBody::Convex(body) = body {
                 body.as_surface().map_err(|error| QueryError::from(error).of_obstacle(id))?;
@@ -292,7 +297,7 @@ impl fmt::Debug for Among<'_> {
     }
 }
 
-/// From any thread.
+/// Checks at compile time that queries can be shared by threads.
 const _: fn() = || {
     fn shared<T: Send + Sync>() {}
     shared::<Among<'_>>();

@@ -1,28 +1,28 @@
-//! Many placed bodies, kept in a tree of boxes.
+//! Many placed bodies in a dynamic bounding volume tree.
 
 use std::collections::HashMap;
 
 use thiserror::Error;
 
-use super::boxes::of_placed;
+use super::boxes::bounds_of_placed;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
 use colltrans_kernel::dynamic_tree::DynamicTree;
 use colltrans_solid::kinds::{AnyBody, AnyPlaced};
 
-/// There is no such obstacle (any more).
+/// The obstacle does not exist, or was removed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("there is no obstacle {id}, or not any more")]
+#[error("unknown obstacle {id}; it was never inserted, or was removed")]
 pub struct UnknownObstacle {
-    /// The one that was named.
+    /// Id of the obstacle.
     pub id: ObstacleId,
 }
 
-/// Many placed bodies, convex ones and solids: what [`Among`](crate::Among) asks about.
+/// Many placed bodies, convex ones and solids, for queries by [`Among`](crate::Among).
 ///
-/// Bodies are shared, so thousands of placements of one mesh take the space of one. A tree of boxes over
-/// them is kept: all at once ([`Self::insert_all`]) it is built in `O(n log n)`; one that comes, moves or goes
-/// costs `O(log^2 n)` on average. Parts of the tree are built anew after as many changes as they had obstacles,
-/// so its height stays below `5.2 log2 n` plus a few, whatever happens: nobody has to build it again.
+/// Bodies are shared, so thousands of placements of one mesh take the memory of one. A tree of boxes is maintained.
+/// Inserting all at once ([`Self::insert_all`]) takes `O(n log n)`. Inserting, moving or removing one takes `O(log^2
+/// n)` amortised, because subtrees are rebuilt after as many changes as they have obstacles. The height of the tree
+/// therefore stays below `5.2 log2 n` plus a constant, and it never needs to be rebuilt by the caller.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -51,15 +51,15 @@ pub struct UnknownObstacle {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Obstacles {
-    /// In the order of the tree's items.
+    /// In the order of the items of the tree.
     placed: Vec<Obstacle>,
     tree: DynamicTree,
-    positions: HashMap<ObstacleId, u32>,
-    next: u64,
+    items: HashMap<ObstacleId, u32>,
+    next_id: u64,
     counts: Counts,
 }
 
-/// One of them.
+/// An obstacle: a placed body with its id.
 #[derive(Debug, Clone)]
 pub(super) struct Obstacle {
     pub(super) id: ObstacleId,
@@ -67,48 +67,49 @@ pub(super) struct Obstacle {
     pub(super) pose: Pose,
 }
 
-/// How many are of which kind.
+/// Numbers of obstacles by kind.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Counts {
     pub(super) solids: usize,
-    /// Points and segments.
-    pub(super) bare: usize,
+    /// Number of points and segments.
+    pub(super) faceless: usize,
 }
 
 impl Obstacle {
+    /// Returns the placed body.
     pub(super) fn placed(&self) -> AnyPlaced<'_> {
         self.body.at(self.pose)
     }
 }
 
 impl Obstacles {
-    /// None.
+    /// Returns an empty set.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One more. Of many at once see [`Self::insert_all`].
+    /// Inserts a body and returns its id. For many bodies, see [`Self::insert_all`].
     pub fn insert(&mut self, body: impl Into<AnyBody>, pose: Pose) -> ObstacleId {
-        let id = self.push(body.into(), pose);
-        let bounds = self.last_bounds();
+        let id = self.store_obstacle(body.into(), pose);
+        let bounds = self.last_obstacle_bounds();
         self.tree.insert(bounds);
         id
     }
 
-    /// Many more, in one pass where they are many beside those that there are; their numbers in the same
-    /// order.
+    /// Inserts many bodies and returns their ids in the same order. Rebuilds the tree in one pass if more than half as
+    /// many bodies are inserted as there are already.
     pub fn insert_all<B: Into<AnyBody>>(
         &mut self,
         bodies: impl IntoIterator<Item = (B, Pose)>,
     ) -> Vec<ObstacleId> {
         let before = self.placed.len();
         let bodies = bodies.into_iter();
-        let room = bodies.size_hint().0;
-        self.placed.reserve(room);
-        self.positions.reserve(room);
+        let size_hint = bodies.size_hint().0;
+        self.placed.reserve(size_hint);
+        self.items.reserve(size_hint);
         let ids: Vec<ObstacleId> =
-            bodies.map(|(body, pose)| self.push(body.into(), pose)).collect();
-        let new = self.placed[before..].iter().map(|obstacle| of_placed(&obstacle.placed()));
+            bodies.map(|(body, pose)| self.store_obstacle(body.into(), pose)).collect();
+        let new = self.placed[before..].iter().map(|obstacle| bounds_of_placed(&obstacle.placed()));
         if 2 * ids.len() > before {
             let old = (0..before).map(|item| *self.tree.bounds(item as u32));
             self.tree = DynamicTree::build(old.chain(new));
@@ -118,56 +119,58 @@ impl Obstacles {
         ids
     }
 
-    fn push(&mut self, body: AnyBody, pose: Pose) -> ObstacleId {
-        let id = ObstacleId(self.next);
-        self.next += 1;
-        self.positions.insert(id, self.placed.len() as u32);
+    /// Stores a body and assigns its id, without inserting it into the tree.
+    fn store_obstacle(&mut self, body: AnyBody, pose: Pose) -> ObstacleId {
+        let id = ObstacleId(self.next_id);
+        self.next_id += 1;
+        self.items.insert(id, self.placed.len() as u32);
         self.counts.solids += usize::from(matches!(body, AnyBody::Solid(_)));
-        self.counts.bare += usize::from(is_bare(&body));
+        self.counts.faceless += usize::from(has_no_faces(&body));
         self.placed.push(Obstacle { id, body, pose });
         id
     }
 
-    fn last_bounds(&self) -> Aabb {
-        self.placed.last().map_or(Aabb::EMPTY, |obstacle| of_placed(&obstacle.placed()))
+    /// Returns the box of the last obstacle.
+    fn last_obstacle_bounds(&self) -> Aabb {
+        self.placed.last().map_or(Aabb::EMPTY, |obstacle| bounds_of_placed(&obstacle.placed()))
     }
 
-    /// Takes one away: the body, and where it was; `None` if there is no such one.
+    /// Removes an obstacle and returns its body and pose. Returns `None` if it does not exist.
     pub fn remove(&mut self, id: ObstacleId) -> Option<(AnyBody, Pose)> {
-        let item = self.positions.remove(&id)?;
+        let item = self.items.remove(&id)?;
         self.tree.remove(item);
         let Obstacle { body, pose, .. } = self.placed.swap_remove(item as usize);
         if let Some(moved) = self.placed.get(item as usize) {
-            self.positions.insert(moved.id, item);
+            self.items.insert(moved.id, item);
         }
         self.counts.solids -= usize::from(matches!(body, AnyBody::Solid(_)));
-        self.counts.bare -= usize::from(is_bare(&body));
+        self.counts.faceless -= usize::from(has_no_faces(&body));
         Some((body, pose))
     }
 
-    /// Puts one elsewhere.
+    /// Moves an obstacle to another pose.
     ///
     /// # Errors
-    /// There is no such one.
+    /// Returns an error if the obstacle does not exist.
     pub fn set_pose(&mut self, id: ObstacleId, pose: Pose) -> Result<(), UnknownObstacle> {
-        let item = self.item(id)?;
+        let item = self.item_of(id)?;
         let obstacle = &mut self.placed[item as usize];
         obstacle.pose = pose;
-        self.tree.set(item, of_placed(&obstacle.placed()));
+        self.tree.set(item, bounds_of_placed(&obstacle.placed()));
         Ok(())
     }
 
-    /// Puts many elsewhere, in one pass where they are many.
+    /// Moves many obstacles. Rebuilds the tree in one pass if they are more than a quarter of all.
     ///
     /// # Errors
-    /// There is no such one: then nothing has moved.
+    /// Returns an error if one of the obstacles does not exist. Then none is moved.
     pub fn set_poses(&mut self, poses: &[(ObstacleId, Pose)]) -> Result<(), UnknownObstacle> {
         let items: Vec<u32> =
-            poses.iter().map(|(id, _)| self.item(*id)).collect::<Result<_, _>>()?;
+            poses.iter().map(|(id, _)| self.item_of(*id)).collect::<Result<_, _>>()?;
         for (item, (_, pose)) in items.iter().zip(poses) {
             self.placed[*item as usize].pose = *pose;
         }
-        let bounds = |item: &u32| of_placed(&self.placed[*item as usize].placed());
+        let bounds = |item: &u32| bounds_of_placed(&self.placed[*item as usize].placed());
         if 4 * items.len() > self.len() {
             let mut boxes: Vec<Aabb> =
                 (0..self.len()).map(|k| *self.tree.bounds(k as u32)).collect();
@@ -183,51 +186,55 @@ impl Obstacles {
         Ok(())
     }
 
-    pub(super) fn item(&self, id: ObstacleId) -> Result<u32, UnknownObstacle> {
-        self.positions.get(&id).copied().ok_or(UnknownObstacle { id })
+    /// Returns the item of the tree of an obstacle.
+    pub(super) fn item_of(&self, id: ObstacleId) -> Result<u32, UnknownObstacle> {
+        self.items.get(&id).copied().ok_or(UnknownObstacle { id })
     }
 
-    /// One of them, and where it is; `None` if there is no such one.
+    /// Returns a body and its pose. Returns `None` if the obstacle does not exist.
     pub fn get(&self, id: ObstacleId) -> Option<(&AnyBody, Pose)> {
-        let item = *self.positions.get(&id)?;
+        let item = *self.items.get(&id)?;
         let Obstacle { body, pose, .. } = &self.placed[item as usize];
         Some((body, *pose))
     }
 
-    /// All of them, in no order.
+    /// Returns all obstacles, in any order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (ObstacleId, &AnyBody, Pose)> {
         self.placed.iter().map(|Obstacle { id, body, pose }| (*id, body, *pose))
     }
 
-    /// How many.
+    /// Returns the number of obstacles.
     pub fn len(&self) -> usize {
         self.placed.len()
     }
 
-    /// Whether there are none.
+    /// Checks whether there are no obstacles.
     pub fn is_empty(&self) -> bool {
         self.placed.is_empty()
     }
 
-    /// A box that holds all of them, rounded outwards; `None` if there are none.
+    /// Returns a box that contains all obstacles, rounded outwards. Returns `None` if there are none.
     pub fn bounds(&self) -> Option<Aabb> {
         self.tree.root().copied()
     }
 
+    /// Returns the obstacles in the order of the items of the tree.
     pub(super) fn placed(&self) -> &[Obstacle] {
         &self.placed
     }
 
+    /// Returns the tree of boxes.
     pub(super) fn tree(&self) -> &DynamicTree {
         &self.tree
     }
 
+    /// Returns the numbers of obstacles by kind.
     pub(super) fn counts(&self) -> Counts {
         self.counts
     }
 }
 
-/// Returns whether a body has no faces: no solid can be asked about it.
-fn is_bare(body: &AnyBody) -> bool {
+/// Checks whether a body has no faces, so that it cannot be converted to a solid.
+fn has_no_faces(body: &AnyBody) -> bool {
     matches!(body, AnyBody::Convex(body) if body.face_count() == 0)
 }

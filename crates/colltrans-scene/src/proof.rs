@@ -17,11 +17,11 @@ use colltrans_solid::kinds::AnyNear;
 use colltrans_solid::pair::DistanceCertificate;
 use colltrans_solid::{SolidCast, SolidPair};
 
-/// What proves that an obstacle is not nearer than a number.
+/// Proof that an obstacle is not nearer than a distance.
 pub type ApartProof = ByKind<PlaneGap, DistanceCertificate>;
 
-/// What proves where an obstacle stops the moving body, or that it does not: of convex bodies the answer,
-/// which carries its proof.
+/// Proof where an obstacle stops the moving body, or that it does not. For convex bodies it is the answer, which
+/// contains its proof.
 pub type PassedProof = ByKind<Clearance, SolidCertificate>;
 
 /// The proof of [`Among::nearest`].
@@ -32,13 +32,13 @@ pub type PassedProof = ByKind<Clearance, SolidCertificate>;
     serde(deny_unknown_fields)
 )]
 pub struct NearestProof {
-    /// No obstacle is nearer, in world units.
+    /// Lower bound of the distances of all obstacles, in world units.
     pub lower: f64,
-    /// The one that is not farther than the upper bound.
+    /// The obstacle that proves the upper bound.
     pub obstacle: ObstacleId,
-    /// Why not: two points.
+    /// Two near points of this obstacle and the moving body.
     pub near: AnyNear,
-    /// Why obstacles are not nearer whose boxes do not tell, in the order in which they came.
+    /// Proofs for the obstacles that their boxes do not exclude, in the order of insertion.
     pub apart: Vec<(ObstacleId, ApartProof)>,
 }
 
@@ -50,14 +50,14 @@ pub struct NearestProof {
     serde(deny_unknown_fields)
 )]
 pub struct NearbyProof {
-    /// The length.
+    /// Length of the query, in world units.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub length: f64,
-    /// Those that are closer, in the order in which they came, as all of these.
+    /// The obstacles that are closer. All lists are in the order of insertion.
     pub closer: Vec<(ObstacleId, AnyNear)>,
-    /// Those of which nothing is claimed.
+    /// The obstacles about which nothing is claimed.
     pub undecided: Vec<ObstacleId>,
-    /// Why obstacles are not closer whose boxes do not tell.
+    /// Proofs that obstacles are not closer, if their boxes do not exclude them.
     pub apart: Vec<(ObstacleId, ApartProof)>,
 }
 
@@ -69,23 +69,23 @@ pub struct NearbyProof {
     serde(deny_unknown_fields)
 )]
 pub struct ClearanceProof {
-    /// The direction.
+    /// Direction of the query.
     pub direction: DVec3,
-    /// No obstacle stops the moving body before, in multiples of the direction; 0 if it overlaps one.
+    /// Translation before which no obstacle stops the moving body, in multiples of the direction; 0 if it overlaps one.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub lower: f64,
-    /// The one that stops it, or overlaps it.
+    /// The obstacle that stops or overlaps the moving body.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub stop: Option<ObstacleId>,
-    /// What obstacles do whose boxes do not tell, the one that stops it among them, in the order in which
-    /// they came.
+    /// Proofs for the obstacles that their boxes do not exclude, including the one that stops the body, in the order of
+    /// insertion.
     pub passed: Vec<(ObstacleId, PassedProof)>,
 }
 
 #[cfg(feature = "json")]
 impl ClearanceProof {
-    /// The translation by which an obstacle is claimed to stop the moving body, at most: 0 if they overlap, infinite if
-    /// none is.
+    /// Returns the claimed upper bound of the translation at which an obstacle stops the moving body: 0 if they
+    /// overlap, infinity if none does.
     #[doc(hidden)]
     pub fn upper(&self) -> f64 {
         let claim = self.stop.and_then(|stop| self.passed.iter().find(|(id, _)| *id == stop));
@@ -98,38 +98,38 @@ impl ClearanceProof {
     }
 }
 
-/// A proof to check about one body among many.
+/// A proof about one body among many.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum AmongProof<'a> {
-    /// Which is nearest.
+    /// Proof of the nearest obstacle.
     Nearest(&'a NearestProof),
-    /// Which are closer than a length.
+    /// Proof of the obstacles within a distance.
     Nearby(&'a NearbyProof),
-    /// Which stops the moving body.
+    /// Proof of the clearance.
     Clearance(&'a ClearanceProof),
 }
 
 checked_as!(AmongProof { Nearest(NearestProof), Nearby(NearbyProof), Clearance(ClearanceProof) });
 
-/// Proofs are made of answers.
+/// Queries with proofs.
 impl<'a> Among<'a> {
-    /// The nearest obstacle, as [`Self::nearest`] says, and the proof of it: of all obstacles whose boxes are
-    /// nearer than that.
+    /// Finds the nearest obstacle as [`Self::nearest`] does, with a proof. The proof covers all obstacles whose boxes
+    /// are nearer than the lower bound.
     ///
     /// # Errors
-    /// As [`Self::nearest`].
+    /// Returns the errors of [`Self::nearest`].
     pub fn certified_nearest(&self) -> Result<Option<(Nearest, NearestProof)>, QueryError> {
         let Some(nearest) = self.nearest()? else { return Ok(None) };
         let Nearest { obstacle, mut lower, distance, .. } = nearest;
         let mut apart = Vec::new();
-        for one in self.sorted(lower, |other| boxes::distance(&self.bounds, other)) {
+        for one in self.obstacles_below(lower, |other| boxes::box_distance(&self.bounds, other)) {
             let apart_from = self.prove_apart(one, lower).map_err(|e| e.of_obstacle(one.id))?;
             let Some(proof) = apart_from else {
                 lower = 0.0;
                 break;
             };
-            lower = lower.min(gap_of(&proof));
+            lower = lower.min(claimed_distance(&proof));
             apart.push((one.id, proof));
         }
         if lower == 0.0 {
@@ -138,21 +138,25 @@ impl<'a> Among<'a> {
         Ok(Some((nearest, NearestProof { lower, obstacle, near: distance.near(), apart })))
     }
 
-    /// Which obstacles are closer than a length, as [`Self::within`] says, and the proof of it.
+    /// Finds the obstacles within a distance as [`Self::within`] does, with a proof.
     ///
     /// # Errors
-    /// As [`Self::within`].
+    /// Returns the errors of [`Self::within`].
     pub fn certified_within(&self, length: f64) -> Result<(Nearby, NearbyProof), QueryError> {
         check_length(length)?;
         let nearby = self.within(length)?;
         let undecided = nearby.undecided.iter().map(|(id, _)| *id).collect();
         let closer = nearby.closer.clone();
         let mut proof = NearbyProof { length, closer, undecided, apart: Vec::new() };
-        for one in self.sorted(length.next_up(), |other| boxes::distance(&self.bounds, other)) {
+        for one in
+            self.obstacles_below(length.next_up(), |other| boxes::box_distance(&self.bounds, other))
+        {
             let of_one = |e: QueryError| e.of_obstacle(one.id);
-            if let Closeness::Farther = self.is_within(one, length).map_err(of_one)? {
+            if let Closeness::Farther = self.closeness_of(one, length).map_err(of_one)? {
                 match self.prove_apart(one, length).map_err(of_one)? {
-                    Some(apart) if gap_of(&apart) > length => proof.apart.push((one.id, apart)),
+                    Some(apart) if claimed_distance(&apart) > length => {
+                        proof.apart.push((one.id, apart))
+                    }
                     _ => proof.undecided.push(one.id),
                 }
             }
@@ -161,11 +165,11 @@ impl<'a> Among<'a> {
         Ok((nearby, proof))
     }
 
-    /// How far the moving body can move, as [`Self::clearance`] says, and the proof of it: of all obstacles
-    /// whose boxes are met before that.
+    /// Computes the clearance as [`Self::clearance`] does, with a proof. The proof covers all obstacles whose boxes are
+    /// met before the end of the clearance.
     ///
     /// # Errors
-    /// As [`Self::clearance`].
+    /// Returns the errors of [`Self::clearance`].
     pub fn certified_clearance(
         &self,
         direction: DVec3,
@@ -174,32 +178,41 @@ impl<'a> Among<'a> {
         let stop = clearance.stop.map(|(id, _)| id);
         let mut proof =
             ClearanceProof { direction, lower: clearance.lower, stop, passed: Vec::new() };
-        for one in self.before(&clearance, direction) {
-            let passed = self.prove_passed(one, direction).map_err(|e| e.of_obstacle(one.id))?;
-            proof.lower = proof.lower.min(lower_of(&passed));
+        for one in self.obstacles_to_prove(&clearance, direction) {
+            let passed = self.prove_clearance(one, direction).map_err(|e| e.of_obstacle(one.id))?;
+            proof.lower = proof.lower.min(claimed_translation(&passed));
             proof.passed.push((one.id, passed));
         }
         Ok((clearance, proof))
     }
 
-    fn prove_passed(&self, one: &'a Obstacle, direction: DVec3) -> Result<PassedProof, QueryError> {
-        Ok(match self.cast(one, direction)? {
+    /// Proves where an obstacle stops the moving body, or that it does not.
+    fn prove_clearance(
+        &self,
+        one: &'a Obstacle,
+        direction: DVec3,
+    ) -> Result<PassedProof, QueryError> {
+        Ok(match self.cast_with_obstacle(one, direction)? {
             ByKind::Convex(cast) => ByKind::Convex(cast.clearance()?),
             ByKind::Solid(cast) => ByKind::Solid(cast.certified_clearance()?.1),
         })
     }
 
-    /// Obstacles whose boxes do not tell that they are met later than the moving body is stopped, and the one
-    /// that stops it; that one alone if they overlap.
-    fn before(&self, clearance: &ClearanceAmong, direction: DVec3) -> Vec<&'a Obstacle> {
-        let stop = clearance.stop.and_then(|(id, _)| self.obstacles.item(id).ok());
-        let stop = stop.map(|item| self.obstacle(item));
+    /// Returns the obstacles that need a proof: those whose boxes do not exclude a contact before the lower bound, and
+    /// the one that stops the body. If the bodies overlap, only the latter is returned.
+    fn obstacles_to_prove(
+        &self,
+        clearance: &ClearanceAmong,
+        direction: DVec3,
+    ) -> Vec<&'a Obstacle> {
+        let stop = clearance.stop.and_then(|(id, _)| self.obstacles.item_of(id).ok());
+        let stop = stop.map(|item| self.obstacle_of_item(item));
         if clearance.distance().is_none() {
             return stop.into_iter().collect();
         }
-        let sweep = Sweep::new(self.swept(), direction);
+        let sweep = Sweep::new(self.query_box(), direction);
         let below = clearance.lower.max(f64::MIN_POSITIVE);
-        let mut found = self.sorted(below, |other| sweep.entry(other));
+        let mut found = self.obstacles_below(below, |other| sweep.entry(other));
         if let Some(stop) = stop
             && let Err(place) = found.binary_search_by_key(&stop.id, |one| one.id)
         {
@@ -208,11 +221,11 @@ impl<'a> Among<'a> {
         found
     }
 
-    /// Obstacles whose boxes have a bound below this one, in the order in which they came.
-    fn sorted(&self, below: f64, bound: impl Fn(&Aabb) -> f64) -> Vec<&'a Obstacle> {
+    /// Returns the obstacles whose boxes have a bound below the given one, in the order of insertion.
+    fn obstacles_below(&self, below: f64, bound: impl Fn(&Aabb) -> f64) -> Vec<&'a Obstacle> {
         let mut found = Vec::new();
         let visit = |item, bound| {
-            let one = self.obstacle(item);
+            let one = self.obstacle_of_item(item);
             if bound < below && !self.is_ignored(one.id) {
                 found.push(one);
             }
@@ -223,17 +236,18 @@ impl<'a> Among<'a> {
         found
     }
 
-    /// That an obstacle is not nearer than a length, if it is not, or else than it is.
+    /// Proves that an obstacle is not nearer than a length. If it is nearer, proves a smaller lower bound. Returns
+    /// `None` if no positive lower bound is proven.
     fn prove_apart(
         &self,
         one: &'a Obstacle,
         length: f64,
     ) -> Result<Option<ApartProof>, QueryError> {
-        Ok(match self.pair(one)? {
+        Ok(match self.pair_with_obstacle(one)? {
             ByKind::Convex(pair) => pair.distance()?.gap.map(ByKind::Convex),
             ByKind::Solid(pair) => {
                 let proof = match pair.certified_within(length)? {
-                    // What is closer has a lower bound of its own.
+                    // A closer body still has a positive lower bound.
                     (Within::Closer(_), _) => Some(pair.certified_distance()?.1),
                     (Within::Farther(_) | Within::Undecided(_), proof) => proof,
                 };
@@ -243,16 +257,16 @@ impl<'a> Among<'a> {
     }
 }
 
-/// What it claims.
-pub(super) fn gap_of(proof: &ApartProof) -> f64 {
+/// Returns the distance that a proof claims as a lower bound.
+pub(super) fn claimed_distance(proof: &ApartProof) -> f64 {
     match proof {
         ByKind::Convex(plane) => plane.gap,
         ByKind::Solid(certificate) => certificate.lower,
     }
 }
 
-/// Before which translation an obstacle is claimed not to stop the moving body: 0 if they overlap.
-fn lower_of(proof: &PassedProof) -> f64 {
+/// Returns the translation before which the proof claims no contact; 0 if the bodies overlap.
+fn claimed_translation(proof: &PassedProof) -> f64 {
     match proof {
         ByKind::Convex(clearance) => clearance.distance().unwrap_or(0.0),
         ByKind::Solid(certificate) => certificate.lower,

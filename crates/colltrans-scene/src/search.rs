@@ -1,4 +1,4 @@
-//! Which obstacle is nearest, which are closer than a length, and which stops the moving body first.
+//! Searches for the nearest obstacle, for those within a distance, and for the one that stops the moving body first.
 
 use glam::DVec3;
 
@@ -15,20 +15,21 @@ use colltrans_solid::Solid;
 use colltrans_solid::kinds::{AnyClearance, AnyDistance, AnyNear};
 use colltrans_solid::{SolidCast, SolidScene};
 
-/// Searches between solids end so many noises beyond the best answer: more than their bounds are off.
-const BEYOND: f64 = 64.0;
+/// Distance, in noises, behind the best answer at which searches between solids end. It exceeds the errors of their
+/// bounds.
+const SEARCH_MARGIN: f64 = 64.0;
 
 impl Among<'_> {
-    /// Which obstacle is nearest, and how far is it? `None` if there are none.
+    /// Finds the nearest obstacle and its distance. Returns `None` if there are no obstacles.
     ///
     /// # Errors
-    /// A search that ends without an answer: see [`QueryError::NotConverged`].
+    /// Returns [`QueryError::NotConverged`] with the obstacle if a search ends without an answer.
     pub fn nearest(&self) -> Result<Option<Nearest>, QueryError> {
         let mut best: Option<(ObstacleId, AnyDistance)> = None;
         let (mut lower, mut limit, mut bodies) = (f64::INFINITY, f64::INFINITY, 0);
-        let bound = |other: &_| boxes::distance(&self.bounds, other);
+        let bound = |other: &_| boxes::box_distance(&self.bounds, other);
         let boxes = self.obstacles.tree().search(limit, bound, |item, bound| {
-            let obstacle = self.obstacle(item);
+            let obstacle = self.obstacle_of_item(item);
             let id = obstacle.id;
             let is_later = best.is_some_and(|(first, _)| bound == limit && id > first);
             if is_later || self.is_ignored(id) {
@@ -50,13 +51,13 @@ impl Among<'_> {
         Ok(best.map(|(obstacle, distance)| Nearest { obstacle, distance, lower, steps }))
     }
 
-    /// What an obstacle is not nearer than, and its distance if it may be closer than a length.
+    /// Returns a lower bound of the distance of an obstacle, and the distance unless it exceeds the limit.
     fn distance_to(
         &self,
         obstacle: &Obstacle,
         limit: f64,
     ) -> Result<(f64, Option<AnyDistance>), QueryError> {
-        let distance = match self.pair(obstacle)? {
+        let distance = match self.pair_with_obstacle(obstacle)? {
             ByKind::Convex(pair) => ByKind::Convex(pair.distance()?),
             ByKind::Solid(pair) if limit < f64::INFINITY => match pair.within(limit)? {
                 Within::Farther(gap) => return Ok((gap.gap, None)),
@@ -68,19 +69,19 @@ impl Among<'_> {
         Ok((distance.lower(), Some(distance)))
     }
 
-    /// Which obstacles are closer than a length, in world units?
+    /// Finds the obstacles that are closer than a length, in world units.
     ///
     /// # Errors
-    /// A length that is negative or not a number; and as [`Self::nearest`].
+    /// Returns an error if the length is negative or not a number, and the errors of [`Self::nearest`].
     pub fn within(&self, length: f64) -> Result<Nearby, QueryError> {
         check_length(length)?;
         let mut nearby = Nearby::default();
-        let bound = |other: &_| boxes::distance(&self.bounds, other);
+        let bound = |other: &_| boxes::box_distance(&self.bounds, other);
         let boxes = self.obstacles.tree().search(length, bound, |item, _| {
-            let obstacle = self.obstacle(item);
+            let obstacle = self.obstacle_of_item(item);
             if !self.is_ignored(obstacle.id) {
-                let found = self.is_within(obstacle, length);
-                nearby.add(obstacle.id, found.map_err(|e| e.of_obstacle(obstacle.id))?);
+                let found = self.closeness_of(obstacle, length);
+                nearby.add_obstacle(obstacle.id, found.map_err(|e| e.of_obstacle(obstacle.id))?);
             }
             Ok::<_, QueryError>(length)
         })?;
@@ -90,12 +91,13 @@ impl Among<'_> {
         Ok(nearby)
     }
 
-    pub(super) fn is_within(
+    /// Checks whether an obstacle is closer than a length.
+    pub(super) fn closeness_of(
         &self,
         obstacle: &Obstacle,
         length: f64,
     ) -> Result<Closeness, QueryError> {
-        Ok(match self.pair(obstacle)? {
+        Ok(match self.pair_with_obstacle(obstacle)? {
             ByKind::Convex(pair) => match pair.within(length)? {
                 Within::Closer(near) => Closeness::Closer(ByKind::Convex(near)),
                 Within::Farther(_) => Closeness::Farther,
@@ -110,7 +112,7 @@ impl Among<'_> {
     }
 }
 
-/// Whether one obstacle is closer than a length.
+/// Whether an obstacle is closer than a length.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Closeness {
     Closer(AnyNear),
@@ -119,7 +121,8 @@ pub(super) enum Closeness {
 }
 
 impl Nearby {
-    fn add(&mut self, id: ObstacleId, closeness: Closeness) {
+    /// Adds the result of one obstacle to the answer.
+    fn add_obstacle(&mut self, id: ObstacleId, closeness: Closeness) {
         self.steps.bodies += 1;
         match closeness {
             Closeness::Closer(near) => self.closer.push((id, near)),
@@ -130,24 +133,24 @@ impl Nearby {
 }
 
 impl Among<'_> {
-    /// How far can the moving body move from where it is, along a direction of any length, and what stops it?
+    /// Computes how far the moving body can move along a direction of any length, and the obstacle that stops it.
     ///
-    /// As [`Cast::clearance`] of each obstacle: what is behind does not stop it, nor what it slides along
-    /// within the graze tolerance; obstacles whose boxes are never met ahead do not at all. For "the first
-    /// that is hit within a way" see [`Self::clearance_before`].
+    /// The answer is that of [`Cast::clearance`] of each obstacle. Obstacles behind the body do not stop it, nor do
+    /// those along which it slides within the graze tolerance, nor those whose boxes the swept box does not meet. For
+    /// the first obstacle within a limited travel, see [`Self::clearance_before`].
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range; and as [`Cast::clearance`] of an obstacle that
-    /// is asked about.
+    /// Returns an error if the direction is zero, not finite or out of range, and the errors of [`Cast::clearance`] of
+    /// the obstacles.
     pub fn clearance(&self, direction: DVec3) -> Result<ClearanceAmong, QueryError> {
         self.clearance_before(direction, f64::INFINITY)
     }
 
-    /// The same up to an end, in multiples of the direction: what is not met before it for certain, by its
-    /// upper bound, is of no interest.
+    /// Computes the clearance up to an end, in multiples of the direction. Obstacles whose upper bound is not before
+    /// the end are ignored.
     ///
     /// # Errors
-    /// An end that is negative or not a number; and as [`Self::clearance`].
+    /// Returns an error if the end is negative or not a number, and the errors of [`Self::clearance`].
     pub fn clearance_before(
         &self,
         direction: DVec3,
@@ -155,14 +158,14 @@ impl Among<'_> {
     ) -> Result<ClearanceAmong, QueryError> {
         check_direction(direction)?;
         check_length(end)?;
-        let sweep = Sweep::new(self.swept(), direction);
+        let sweep = Sweep::new(self.query_box(), direction);
         let mut stop: Option<(ObstacleId, AnyClearance)> = None;
         let (mut lower, mut upper, mut bodies) = (end, end, 0);
         let entry = |other: &_| sweep.entry(other);
         let boxes = self.obstacles.tree().search(end, entry, |item, bound| {
-            let obstacle = self.obstacle(item);
+            let obstacle = self.obstacle_of_item(item);
             let (id, first) = (obstacle.id, stop.map_or(ObstacleId(0), |(first, _)| first));
-            // A bound of 0 says nothing: the bodies may overlap.
+            // A bound of 0 excludes nothing, because the bodies may overlap.
             let is_no_better = upper == f64::NEG_INFINITY || (bound > 0.0 && bound == upper);
             if (is_no_better && id > first) || self.is_ignored(id) {
                 return Ok(upper.max(0.0));
@@ -179,29 +182,31 @@ impl Among<'_> {
         Ok(ClearanceAmong { lower, stop, steps: AmongSteps { boxes, bodies } })
     }
 
-    /// The clearance of one obstacle, of interest if it is below a limit.
+    /// Computes the clearance of an obstacle. If it is not below the limit, any answer that is not below it may be
+    /// returned.
     fn clearance_of(
         &self,
         obstacle: &Obstacle,
         direction: DVec3,
         limit: f64,
     ) -> Result<AnyClearance, QueryError> {
-        Ok(match self.cast(obstacle, direction)? {
+        Ok(match self.cast_with_obstacle(obstacle, direction)? {
             ByKind::Convex(cast) => ByKind::Convex(cast.clearance()?),
             ByKind::Solid(cast) => ByKind::Solid(clearance_below(&cast, limit)?),
         })
     }
 }
 
-/// The clearance of two solids, or that they are free where it is clearly not below a limit.
+/// Computes the clearance of two solids. Returns `Free` if it is clearly not below the limit.
 ///
-/// Searches end by where shrunk bodies meet. Those that meet in their true place before the limit may do so, shrunk, any
-/// way behind it, if their facets are all but along the direction: the limit is of use without a tolerance only.
+/// Searches end where the offset solids meet. With a tolerance, solids that meet in nominal position before the limit
+/// may meet any distance later after the offset, if their facets are nearly parallel to the direction. The limit is
+/// therefore used without a tolerance only.
 fn clearance_below(cast: &Cast<'_, Solid>, limit: f64) -> Result<Clearance<Solid>, QueryError> {
     if limit == f64::INFINITY || cast.tolerance() > 0.0 {
         return cast.clearance();
     }
-    let beyond = BEYOND * cast.scene(0.0).noise / cast.setting.length;
-    let before = cast.options().before.unwrap_or(f64::INFINITY).min(limit + beyond);
-    cast.with_options(cast.options().with_before(before))?.clearance()
+    let margin = SEARCH_MARGIN * cast.scene(0.0).noise / cast.setting.length;
+    let search_end = cast.options().before.unwrap_or(f64::INFINITY).min(limit + margin);
+    cast.with_options(cast.options().with_before(search_end))?.clearance()
 }

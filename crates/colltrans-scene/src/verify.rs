@@ -1,7 +1,7 @@
-//! Checks of proofs about one body among many.
+//! Checks proofs about one body among many.
 //!
-//! A check takes all obstacles one by one: each is beyond what is claimed by its box alone, made anew from
-//! its vertices, or by a proof that names it. The tree plays no part, and nothing is searched.
+//! A check considers all obstacles one by one. Each satisfies the claim by its box, computed again from its vertices,
+//! or by a proof that names it. The check uses neither the tree nor a search.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,8 @@ use glam::DVec3;
 use super::boxes::{self, Sweep};
 use super::obstacles::Obstacle;
 use super::proof::{
-    AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof, gap_of,
+    AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof,
+    claimed_distance,
 };
 use super::{Among, ByKind};
 use colltrans_convex::answer::{CertificateError, Clearance, WhyFree};
@@ -22,16 +23,16 @@ use colltrans_solid::cast::StartProof;
 use colltrans_solid::kinds::AnyNear;
 
 impl Among<'_> {
-    /// Checks a proof against all obstacles, and returns how far the bounds are apart that it proves: of the
-    /// least distance, or of the translation at which the moving body is stopped; 0 where there is one bound.
+    /// Checks a proof against all obstacles. Returns the difference of the bounds that it proves, of the least distance
+    /// or of the translation at which the body is stopped. Returns 0 if there is only one bound.
     ///
-    /// All obstacles are looked at that are not ignored, each by its box, made anew, or by its own proof, as
-    /// [`Pair::verify`](colltrans_convex::Pair::verify) and [`Cast::verify`] check it. Choices have to be those of the
-    /// answer. Obstacles that are slid along, or moved away from, are so to within the graze tolerance and
-    /// rounding, as [`Cast::clearance`] takes them.
+    /// Each obstacle that is not ignored is checked by its box, which is computed again, or by its own proof, as
+    /// [`Pair::verify`](colltrans_convex::Pair::verify) and [`Cast::verify`] do. The options must be those of the
+    /// answer. Obstacles along which the body slides, or from which it moves away, are checked within the graze
+    /// tolerance and rounding errors, as in [`Cast::clearance`].
     ///
     /// # Errors
-    /// What is not proven, and of which obstacle.
+    /// Returns the first claim that is not proven, with its obstacle.
     pub fn verify<'p>(&self, proof: impl Into<AmongProof<'p>>) -> Result<f64, CertificateError> {
         match proof.into() {
             AmongProof::Nearest(proof) => self.verify_nearest(proof),
@@ -40,27 +41,31 @@ impl Among<'_> {
         }
     }
 
+    /// Checks a proof of the nearest obstacle.
     fn verify_nearest(&self, proof: &NearestProof) -> Result<f64, CertificateError> {
         let NearestProof { lower, obstacle, near, apart } = proof;
         let upper = self.verify_near(*obstacle, near)?;
-        let claims = self.named(apart)?;
+        let claims = self.claims_by_obstacle(apart)?;
         if lower.is_nan() || *lower < 0.0 || *lower > upper {
             return Err(CertificateError::Order { lower: *lower, upper });
         }
-        for one in self.asked().filter(|one| *lower > 0.0 || claims.contains_key(&one.id)) {
+        for one in
+            self.queried_obstacles().filter(|one| *lower > 0.0 || claims.contains_key(&one.id))
+        {
             let proven = self.verify_apart(one, claims.get(&one.id).copied())?;
-            require(proven >= *lower, one.id)?;
+            require_proof(proven >= *lower, one.id)?;
         }
         Ok(upper - lower)
     }
 
+    /// Checks a proof of the obstacles within a distance.
     fn verify_nearby(&self, proof: &NearbyProof) -> Result<f64, CertificateError> {
         let NearbyProof { length, closer, undecided, apart } = proof;
         check_length(*length)?;
-        let claims = self.named(apart)?;
+        let claims = self.claims_by_obstacle(apart)?;
         let open: Vec<(ObstacleId, ())> = undecided.iter().map(|id| (*id, ())).collect();
-        let (open, close) = (self.named(&open)?, self.named(closer)?);
-        // Of each obstacle one thing is claimed.
+        let (open, close) = (self.claims_by_obstacle(&open)?, self.claims_by_obstacle(closer)?);
+        // Each obstacle may have one claim only.
         let twice = |id: &&ObstacleId| {
             usize::from(open.contains_key(*id)) + usize::from(claims.contains_key(*id)) > 1
                 || close.contains_key(*id) && (open.contains_key(*id) || claims.contains_key(*id))
@@ -70,28 +75,30 @@ impl Among<'_> {
         }
         for (id, near) in closer {
             let proven = self.verify_near(*id, near)?;
-            require(proven <= *length, *id)?;
+            require_proof(proven <= *length, *id)?;
         }
-        for one in
-            self.asked().filter(|one| !open.contains_key(&one.id) && !close.contains_key(&one.id))
+        for one in self
+            .queried_obstacles()
+            .filter(|one| !open.contains_key(&one.id) && !close.contains_key(&one.id))
         {
             let proven = self.verify_apart(one, claims.get(&one.id).copied())?;
-            require(proven > *length, one.id)?;
+            require_proof(proven > *length, one.id)?;
         }
         Ok(0.0)
     }
 
+    /// Checks a proof of a clearance.
     fn verify_clearance(&self, proof: &ClearanceProof) -> Result<f64, CertificateError> {
         let ClearanceProof { direction, lower, stop, passed } = proof;
         check_direction(*direction)?;
         let mut bounds = HashMap::with_capacity(passed.len());
-        for (id, claim) in self.named(passed)? {
-            let proven = self.verify_passed(self.known(id)?, claim, *direction);
+        for (id, claim) in self.claims_by_obstacle(passed)? {
+            let proven = self.verify_passed(self.queried_obstacle(id)?, claim, *direction);
             bounds.insert(id, proven.map_err(|e| e.of_obstacle(id))?);
         }
         let mut upper = f64::INFINITY;
         if let Some(id) = *stop {
-            self.known(id)?;
+            self.queried_obstacle(id)?;
             upper = bounds.get(&id).ok_or(CertificateError::Unproven { obstacle: id })?[1];
         }
         if upper == f64::NEG_INFINITY && *lower == 0.0 {
@@ -102,32 +109,34 @@ impl Among<'_> {
         {
             return Err(CertificateError::Order { lower: *lower, upper });
         }
-        let sweep = Sweep::new(self.swept(), *direction);
-        for one in self.asked() {
+        let sweep = Sweep::new(self.query_box(), *direction);
+        for one in self.queried_obstacles() {
             let named = bounds.get(&one.id).map(|[lower, _]| *lower);
-            let proven = named.unwrap_or_else(|| sweep.entry(&boxes::of_placed(&one.placed())));
-            // Who is met at 0 has to be named: what a box says there is nothing.
-            require(proven >= *lower && (proven > 0.0 || named.is_some()), one.id)?;
+            let proven =
+                named.unwrap_or_else(|| sweep.entry(&boxes::bounds_of_placed(&one.placed())));
+            // An obstacle that is met at 0 needs a proof, because its box excludes nothing there.
+            require_proof(proven >= *lower && (proven > 0.0 || named.is_some()), one.id)?;
         }
         Ok(if is_stopped { (upper - lower).max(0.0) } else { 0.0 })
     }
 
-    /// An obstacle that is asked about.
-    fn known(&self, id: ObstacleId) -> Result<&Obstacle, CertificateError> {
+    /// Returns an obstacle by its id. Returns an error if it does not exist or is ignored.
+    fn queried_obstacle(&self, id: ObstacleId) -> Result<&Obstacle, CertificateError> {
         let unknown = CertificateError::UnknownObstacle { obstacle: id };
-        let item = self.obstacles.item(id).ok().filter(|_| !self.is_ignored(id));
-        item.map(|item| self.obstacle(item)).ok_or(unknown)
+        let item = self.obstacles.item_of(id).ok().filter(|_| !self.is_ignored(id));
+        item.map(|item| self.obstacle_of_item(item)).ok_or(unknown)
     }
 
-    /// Claims by obstacle: each of one that is asked about, in order, none twice.
-    fn named<'p, T>(
+    /// Returns the claims by obstacle. Returns an error unless each obstacle is part of the query, in the order of
+    /// insertion, and has one claim.
+    fn claims_by_obstacle<'p, T>(
         &self,
         claims: &'p [(ObstacleId, T)],
     ) -> Result<HashMap<ObstacleId, &'p T>, CertificateError> {
         let mut named = HashMap::with_capacity(claims.len());
         let mut last = None;
         for (id, claim) in claims {
-            self.known(*id)?;
+            self.queried_obstacle(*id)?;
             if last.is_some_and(|last| last >= *id) {
                 return Err(CertificateError::UnknownObstacle { obstacle: *id });
             }
@@ -137,10 +146,10 @@ impl Among<'_> {
         Ok(named)
     }
 
-    /// The distance that an obstacle is proven not to exceed.
+    /// Checks a proof of closeness, and returns the proven upper bound of the distance of an obstacle.
     fn verify_near(&self, id: ObstacleId, near: &AnyNear) -> Result<f64, CertificateError> {
-        let one = self.known(id)?;
-        let proven = match (self.pair(one)?, near) {
+        let one = self.queried_obstacle(id)?;
+        let proven = match (self.pair_with_obstacle(one)?, near) {
             (ByKind::Convex(pair), ByKind::Convex(near)) => pair.verify(near),
             (ByKind::Solid(pair), ByKind::Solid(near)) => pair.verify(near),
             _ => Err(CertificateError::Start),
@@ -149,34 +158,36 @@ impl Among<'_> {
         Ok(near.distance())
     }
 
-    /// The distance below which an obstacle is proven not to be, by what is claimed or by its box.
+    /// Returns the proven lower bound of the distance of an obstacle, by a claim or by its box.
     fn verify_apart(
         &self,
         one: &Obstacle,
         claim: Option<&ApartProof>,
     ) -> Result<f64, CertificateError> {
         let Some(claim) = claim else {
-            return Ok(boxes::distance(&self.bounds, &boxes::of_placed(&one.placed())));
+            return Ok(boxes::box_distance(&self.bounds, &boxes::bounds_of_placed(&one.placed())));
         };
-        let proven = match (self.pair(one)?, claim) {
+        let proven = match (self.pair_with_obstacle(one)?, claim) {
             (ByKind::Convex(pair), ByKind::Convex(plane)) => pair.verify(plane),
             (ByKind::Solid(pair), ByKind::Solid(certificate)) => pair.verify(certificate),
             _ => Err(CertificateError::Start),
         };
         proven.map_err(|e| e.of_obstacle(one.id))?;
-        Ok(gap_of(claim))
+        Ok(claimed_distance(claim))
     }
 
-    /// The bounds of where an obstacle is proven to stop the moving body: infinite if it does not, minus
-    /// infinite if they overlap.
+    /// Returns the proven bounds of the translation at which an obstacle stops the moving body. They are infinity if it
+    /// does not, and negative infinity if the bodies overlap.
     fn verify_passed(
         &self,
         one: &Obstacle,
         claim: &PassedProof,
         direction: DVec3,
     ) -> Result<[f64; 2], CertificateError> {
-        match (self.cast(one, direction)?, claim) {
-            (ByKind::Convex(cast), ByKind::Convex(clearance)) => convex_bounds(&cast, clearance),
+        match (self.cast_with_obstacle(one, direction)?, claim) {
+            (ByKind::Convex(cast), ByKind::Convex(clearance)) => {
+                verify_convex_clearance(&cast, clearance)
+            }
             (ByKind::Solid(cast), ByKind::Solid(certificate)) => {
                 cast.verify(certificate)?;
                 let overlaps = matches!(certificate.start, StartProof::Overlapping(_));
@@ -191,12 +202,16 @@ impl Among<'_> {
     }
 }
 
-fn require(holds: bool, obstacle: ObstacleId) -> Result<(), CertificateError> {
+/// Returns an error for an obstacle unless a condition holds.
+fn require_proof(holds: bool, obstacle: ObstacleId) -> Result<(), CertificateError> {
     if holds { Ok(()) } else { Err(CertificateError::Unproven { obstacle }) }
 }
 
-/// What a clearance of convex bodies proves: bounds of where the moving one is stopped.
-fn convex_bounds(cast: &Cast<'_>, clearance: &Clearance) -> Result<[f64; 2], CertificateError> {
+/// Checks a clearance of convex bodies, and returns the bounds of the translation at which the moving body is stopped.
+fn verify_convex_clearance(
+    cast: &Cast<'_>,
+    clearance: &Clearance,
+) -> Result<[f64; 2], CertificateError> {
     const NEVER: [f64; 2] = [f64::INFINITY; 2];
     match clearance {
         Clearance::Blocked { distance, contact } => {

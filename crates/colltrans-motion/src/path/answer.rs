@@ -1,4 +1,4 @@
-//! Answers about paths.
+//! Answers about paths of joints.
 
 use glam::DVec3;
 
@@ -7,39 +7,38 @@ use super::mechanism::Place;
 use super::proof::PathProof;
 use colltrans_convex::body::{Features, Pose};
 
-/// What the bodies of a mechanism do on a path: which two of them meet first, or that none do, proven of the whole path.
+/// The first contact of two bodies of a mechanism on a path.
 ///
-/// [`MotionOutcome::Undecided`]: the search between the two bodies of [`PathContact::pair`] took its maximum number of
-/// steps. Proven is that no two bodies of all pairs meet before [`PathContact::lower`]; whether these two do later is open.
-/// A finite [`PathContact::upper`] is when the two bodies of [`PathProof::meeting`] are proven to meet.
+/// [`MotionOutcome::Undecided`] means that the search between the two bodies of [`PathContact::pair`] took its maximum
+/// number of steps. No two bodies of any pair meet before [`PathContact::lower`]. A finite [`PathContact::upper`] is
+/// the time at which the two bodies of [`PathProof::meeting`] are proven to meet.
 pub type PathOutcome = MotionOutcome<PathProof, PathContact>;
 
-/// A first contact, or what may be one.
+/// A first contact on a path, or a possible one.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PathContact {
-    /// Up to this time no two of the bodies meet.
+    /// Time up to which no two bodies of any pair meet.
     pub lower: f64,
-    /// At this time these two do; infinite (`null` in JSON) where that is not proven.
+    /// Time at which the two bodies meet; infinity (`null` in JSON) if a contact is not proven.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub upper: f64,
-    /// Where on the path that is.
+    /// Place on the path of the lower bound.
     pub place: Place,
-    /// Which two bodies, by their numbers.
+    /// Numbers of the two bodies.
     pub pair: [usize; 2],
-    /// Where they are then, to rounding.
+    /// Poses of the two bodies at this place, rounded.
     pub poses: [Pose; 2],
-    /// The points of both that are nearest to each other then, in the world, rounded; none where the distance has no
-    /// answer.
+    /// Nearest points of both bodies at this place, in the world, rounded. `None` if no distance was computed.
     pub points: Option<[DVec3; 2]>,
-    /// Unit normal in the world, from the first to the second.
+    /// Unit normal in the world, from the first to the second body. `None` if it has no direction.
     pub normal: Option<DVec3>,
-    /// What faces each other across it, of bodies that are convex.
+    /// Features of both bodies that face each other across the normal; for convex bodies only.
     pub features: Option<Features>,
-    /// What proves the bounds.
+    /// Proof of the bounds.
     pub proof: PathProof,
-    /// How much work it was.
+    /// Work of the search.
     pub steps: MotionSteps,
 }
 
@@ -50,7 +49,8 @@ impl Proven<PathProof> for PathContact {
 }
 
 impl PathOutcome {
-    pub(super) fn parts_mut(&mut self) -> (&mut PathProof, &mut MotionSteps) {
+    /// Returns the proof and the counters of work for changes.
+    pub(super) fn proof_and_steps_mut(&mut self) -> (&mut PathProof, &mut MotionSteps) {
         match self {
             Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
                 (&mut of.proof, &mut of.steps)

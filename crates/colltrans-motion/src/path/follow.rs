@@ -1,40 +1,41 @@
-//! Two convex pieces along a path: planes between them, from a place to another one or to where they meet.
+//! Follows two convex pieces along a path: planes between them, up to a place or to a contact.
 //!
-//! Far from each other they are looked at from time to time, over many rows; near each other the search for two
-//! bodies that move evenly goes from row to row.
+//! Pieces far from each other are sampled at distances over many rows. Near each other, the search for two moving
+//! bodies runs from row to row.
 
-use super::super::look::{ConvexLooker, Looker};
 use super::super::proof::{Met, PlaneAt};
-use super::super::search::{Advanced, End, advance};
-use super::couple::Couple;
+use super::super::sample::{ConvexSampler, Sampler};
+use super::super::search::{SpanEnd, SpanResult, prove_span};
+use super::link_pair::LinkPair;
 use super::mechanism::Place;
 use super::proof::Stretch;
 use colltrans_convex::body::ConvexPolyhedron;
 
-/// The next look is where both may have moved by so much of the gap; and, if that is too far, by so much.
-const FAR: [f64; 2] = [1.5, 0.9];
+/// Shares of the gap by which both pieces may move up to the next sample: the first attempt, and the second one.
+const LEAP_SHARES: [f64; 2] = [1.5, 0.9];
 
-/// What has become of two pieces.
+/// Result of following two pieces.
 #[derive(Debug)]
-pub(super) enum Fate {
-    /// They are apart up to the end.
+pub(super) enum FollowEnd {
+    /// They are separated up to the end.
     Apart,
-    /// They meet.
+    /// They meet at this place.
     Met(Place, Met),
-    /// They come nearer than rounding can tell.
-    Blurred,
-    /// Too many steps.
+    /// They come nearer than rounding errors can decide.
+    Indeterminate,
+    /// The search took its maximum number of steps.
     Stalled,
 }
 
-/// Planes up to a place.
+/// The planes up to a place.
 #[derive(Debug, Default)]
-pub(super) struct Way {
+pub(super) struct PlanePath {
     pub(super) stretches: Vec<Stretch>,
 }
 
-impl Way {
-    pub(super) fn note(&mut self, row: usize, plane: PlaneAt) {
+/// Appends a plane to the planes of its row.
+impl PlanePath {
+    pub(super) fn append_plane(&mut self, row: usize, plane: PlaneAt) {
         match self.stretches.last_mut() {
             Some(last) if last.row == row => {
                 if last.planes.last() != Some(&plane) {
@@ -45,13 +46,13 @@ impl Way {
         }
     }
 
-    /// A plane to which gaps alone lead.
-    pub(super) fn leap_to(&mut self, row: usize, plane: PlaneAt) {
+    /// Appends a plane that only the gaps connect to the previous one.
+    pub(super) fn append_stretch(&mut self, row: usize, plane: PlaneAt) {
         self.stretches.push(Stretch { row, planes: vec![plane] });
     }
 
-    /// Where the last plane is, and its gap.
-    pub(super) fn end(&self) -> Option<(Place, f64)> {
+    /// Returns the place and the gap of the last plane. Returns `None` if there is no plane.
+    pub(super) fn last_plane(&self) -> Option<(Place, f64)> {
         let last = self.stretches.last()?;
         let plane = last.planes.last()?;
         Some((Place { row: last.row, share: plane.time }, plane.gap))
@@ -60,43 +61,44 @@ impl Way {
 
 /// Two pieces of two bodies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pieces<'p> {
-    pub(super) couple: &'p Couple<'p>,
+pub(super) struct PiecePair<'p> {
+    pub(super) link_pair: &'p LinkPair<'p>,
     pub(super) pieces: [&'p ConvexPolyhedron; 2],
 }
 
-impl Pieces<'_> {
-    /// A plane at a place.
-    pub(super) fn plane(&self, looker: &mut ConvexLooker, place: Place) -> Option<PlaneAt> {
-        let course = self.couple.course(self.pieces, place.row, [place.share; 2]);
-        let look = looker.look(&course, place.share);
-        let (time, normal, gap) = (place.share, look.normal, look.gap);
-        look.is_apart().then_some(PlaneAt { time, normal, gap, alone: false })
+impl PiecePair<'_> {
+    /// Returns the plane between the pieces at a place. Returns `None` if separation is not proven.
+    pub(super) fn plane_at(&self, sampler: &mut ConvexSampler, place: Place) -> Option<PlaneAt> {
+        let motion = self.link_pair.segment_motion(self.pieces, place.row, [place.share; 2]);
+        let sample = sampler.sample(&motion, place.share);
+        let (time, normal, gap) = (place.share, sample.normal, sample.gap);
+        sample.is_apart().then_some(PlaneAt { time, normal, gap, alone: false })
     }
 
-    /// What proves that they meet at a place.
-    pub(super) fn met(&self, looker: &mut ConvexLooker, place: Place) -> Option<Met> {
-        let course = self.couple.course(self.pieces, place.row, [place.share; 2]);
-        looker.met(&course, place.share)
+    /// Returns the proof that the pieces meet at a place, or `None`.
+    pub(super) fn prove_contact(&self, sampler: &mut ConvexSampler, place: Place) -> Option<Met> {
+        let motion = self.link_pair.segment_motion(self.pieces, place.row, [place.share; 2]);
+        sampler.prove_contact(&motion, place.share)
     }
 
-    /// From a place with a plane to one as far as gaps alone prove, if that is not before `least`: the plane there.
-    pub(super) fn leap(
+    /// Moves from a place with a plane as far as gaps alone prove. Returns the new place and its plane, or `None` if it
+    /// would be before `least`.
+    pub(super) fn leap_by_gaps(
         &self,
-        looker: &mut ConvexLooker,
+        sampler: &mut ConvexSampler,
         (from, gap): (Place, f64),
         least: Place,
         until: Place,
     ) -> Option<(Place, PlaneAt)> {
         let mut tried = None;
-        for share in FAR {
-            let place = self.couple.within(from, until, share * gap);
+        for share in LEAP_SHARES {
+            let place = self.link_pair.place_within(from, until, share * gap);
             if place < least || place <= from || tried == Some(place) {
                 break;
             }
             tried = Some(place);
-            if let Some(plane) = self.plane(looker, place)
-                && self.couple.is_near([from, place], [gap, plane.gap])
+            if let Some(plane) = self.plane_at(sampler, place)
+                && self.link_pair.gaps_prove_between([from, place], [gap, plane.gap])
             {
                 return Some((place, plane));
             }
@@ -104,64 +106,72 @@ impl Pieces<'_> {
         None
     }
 
-    /// From a place to another one, or to where they meet.
-    pub(super) fn follow(
+    /// Follows the pieces from a place to another one, or to a contact.
+    pub(super) fn follow_pieces(
         &self,
-        looker: &mut ConvexLooker,
+        sampler: &mut ConvexSampler,
         from: Place,
         until: Place,
-    ) -> (Way, Fate) {
-        let mut way = Way::default();
-        if let Some(plane) = self.plane(looker, from) {
-            way.note(from.row, plane);
+    ) -> (PlanePath, FollowEnd) {
+        let mut plane_path = PlanePath::default();
+        if let Some(plane) = self.plane_at(sampler, from) {
+            plane_path.append_plane(from.row, plane);
         }
         loop {
-            let here = match way.end() {
-                Some((place, _)) if place.settled() >= until.settled() => {
-                    return (way, Fate::Apart);
+            let here = match plane_path.last_plane() {
+                Some((place, _)) if place.normalised() >= until.normalised() => {
+                    return (plane_path, FollowEnd::Apart);
                 }
-                Some((place, gap)) => (place.settled(), gap),
+                Some((place, gap)) => (place.normalised(), gap),
                 None => (from, 0.0),
             };
-            // Near each other the search within a row leads farther.
-            let next = Place::at_row(here.0.row + 1).min_of(until);
+            // Near each other, the search within a row proves more.
+            let next = Place::at_row(here.0.row + 1).earlier_of(until);
             if here.1 > 0.0
-                && let Some((place, plane)) = self.leap(looker, here, next, until)
+                && let Some((place, plane)) = self.leap_by_gaps(sampler, here, next, until)
             {
-                way.leap_to(place.row, plane);
+                plane_path.append_stretch(place.row, plane);
                 continue;
             }
-            match self.step(looker, here.0, until, &mut way) {
-                Fate::Apart => {}
-                other => return (way, other),
+            match self.follow_row(sampler, here.0, until, &mut plane_path) {
+                FollowEnd::Apart => {}
+                other => return (plane_path, other),
             }
         }
     }
 
-    /// To the end of a row, or to where they meet.
-    fn step(&self, looker: &mut ConvexLooker, from: Place, until: Place, way: &mut Way) -> Fate {
+    /// Follows the pieces to the end of a row, or to a contact.
+    fn follow_row(
+        &self,
+        sampler: &mut ConvexSampler,
+        from: Place,
+        until: Place,
+        plane_path: &mut PlanePath,
+    ) -> FollowEnd {
         let row = from.row;
         let to = if until.row == row { until.share } else { 1.0 };
-        let course = self.couple.course(self.pieces, row, [from.share, to]);
-        let Advanced { planes, end } = advance(&course, looker);
+        let motion = self.link_pair.segment_motion(self.pieces, row, [from.share, to]);
+        let SpanResult { planes, end } = prove_span(&motion, sampler);
         for plane in &planes {
-            way.note(row, *plane);
+            plane_path.append_plane(row, *plane);
         }
         match end {
-            End::Free => Fate::Apart,
-            End::Met(share, met) => Fate::Met(Place { row, share }, met),
-            End::Stalled => Fate::Stalled,
-            // What is not told apart at the end of a row may meet at the beginning of the next one.
-            End::Blurred if to == 1.0 && row + 1 < self.couple.path.last() && until.row > row => {
-                let next = self.couple.course(self.pieces, row + 1, [0.0, 1.0]);
-                match advance(&next, looker) {
-                    Advanced { planes, end: End::Met(share, met) } if planes.is_empty() => {
-                        Fate::Met(Place { row: row + 1, share }, met)
+            SpanEnd::Free => FollowEnd::Apart,
+            SpanEnd::Met(share, met) => FollowEnd::Met(Place { row, share }, met),
+            SpanEnd::Stalled => FollowEnd::Stalled,
+            // Pieces that cannot be separated at the end of a row may meet at the start of the next one.
+            SpanEnd::Indeterminate
+                if to == 1.0 && row + 1 < self.link_pair.path.last_row() && until.row > row =>
+            {
+                let next = self.link_pair.segment_motion(self.pieces, row + 1, [0.0, 1.0]);
+                match prove_span(&next, sampler) {
+                    SpanResult { planes, end: SpanEnd::Met(share, met) } if planes.is_empty() => {
+                        FollowEnd::Met(Place { row: row + 1, share }, met)
                     }
-                    _ => Fate::Blurred,
+                    _ => FollowEnd::Indeterminate,
                 }
             }
-            End::Blurred => Fate::Blurred,
+            SpanEnd::Indeterminate => FollowEnd::Indeterminate,
         }
     }
 }

@@ -1,9 +1,9 @@
-//! Frames that joints carry, and the values that the joints take.
+//! Frames that joints carry, and the values of the joints over time.
 //!
-//! Notation. Frame `f` stands in its parent at `O J(q)`: its origin `O`, then what its joint does: nothing, a
-//! rotation by `q` radians about an axis through the frame's origin, or a translation by `q` along one. The
-//! numbers of `O`, the axis, and the values *define* where frames are, as real numbers; an axis counts as if its
-//! length were exactly 1. Between two rows of values each joint goes evenly from one to the other.
+//! Frame `f` has the pose `O J(q)` in its parent. `O` is its origin. `J` is the motion of its joint: the identity, a
+//! rotation by `q` radians about an axis through the origin of the frame, or a translation by `q` along an axis. The
+//! numbers of `O`, the axis, and the values *define* the poses as real numbers, as if the length of the axis were
+//! exactly 1. Between two rows of values, each joint moves at a constant rate.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -15,7 +15,7 @@ use colltrans_kernel::error::PoseError;
 use colltrans_kernel::noise;
 use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range, without_traces};
 
-/// A place that a joint carries.
+/// A frame that a joint carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -23,16 +23,16 @@ use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range, without_traces};
     serde(deny_unknown_fields)
 )]
 pub struct Frame {
-    /// The frame it stands in, one with a smaller number; none is the world.
+    /// Number of the parent frame, which is smaller than that of this frame; `None` for the world.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub parent: Option<usize>,
-    /// Where its joint is in that frame.
+    /// Pose of the joint in the parent frame.
     pub origin: Pose,
-    /// What moves it from there.
+    /// The joint that moves the frame.
     pub joint: Joint,
 }
 
-/// What moves a frame.
+/// The motion of a frame relative to its origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -40,16 +40,16 @@ pub struct Frame {
     serde(rename_all = "snake_case")
 )]
 pub enum Joint {
-    /// Nothing.
+    /// A fixed frame.
     Fixed,
-    /// A turn about an axis, by a value in radians.
+    /// A revolute joint: rotation about an axis, by a value in radians.
     Turning(DVec3),
-    /// A translation along an axis, by a value in world units.
+    /// A prismatic joint: translation along an axis, by a value in world units.
     Sliding(DVec3),
 }
 
 impl Joint {
-    /// Returns its axis, if it has one.
+    /// Returns the axis of the joint; `None` for a fixed frame.
     #[doc(hidden)]
     pub fn axis(&self) -> Option<DVec3> {
         match self {
@@ -59,14 +59,14 @@ impl Joint {
     }
 }
 
-/// Frames in frames, in the order of their numbers.
+/// A tree of frames, in the order of their numbers.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
 /// use colltrans::motion::path::{Frame, Joint, Mechanism};
 /// use colltrans::Pose;
 ///
-/// // An arm of two links in a plane, each of length 1.
+/// An arm of two links in a plane, each of length 1.
 /// let elbow = Pose::from_translation(DVec3::X)?;
 /// let arm = Mechanism::new(vec![
 ///     Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Turning(DVec3::Z) },
@@ -81,10 +81,12 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
-    /// Of frames, each after the one it stands in. Axes are divided by their lengths, unless that is 1 to rounding.
+    /// Builds a mechanism from frames, each after its parent. Axes are divided by their lengths, unless the length is 1
+    /// up to rounding.
     ///
     /// # Errors
-    /// A frame that stands in itself or in a later one, an axis that is zero.
+    /// [`PathError::Parent`] if the parent of a frame is the frame itself or a later one. [`PathError::Axis`] if an
+    /// axis is zero, not finite or out of range.
     pub fn new(mut frames: Vec<Frame>) -> Result<Self, PathError> {
         for (k, frame) in frames.iter_mut().enumerate() {
             if frame.parent.is_some_and(|parent| parent >= k) {
@@ -104,18 +106,18 @@ impl Mechanism {
         Ok(Self { frames })
     }
 
-    /// The frames.
+    /// Returns the frames.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
     }
 
-    /// How many of them move: a row has a value for each, in the order of their numbers.
+    /// Returns the number of joints that move. A row has a value for each of them, in the order of the frames.
     pub fn joints(&self) -> usize {
         self.frames.iter().filter(|frame| frame.joint != Joint::Fixed).count()
     }
 
-    /// The value of a row that moves each frame.
-    pub(super) fn columns(&self) -> Vec<Option<usize>> {
+    /// Returns for each frame the column of its joint in a row; `None` for a fixed frame.
+    pub(super) fn joint_columns(&self) -> Vec<Option<usize>> {
         let mut next = 0..;
         let column = |frame: &Frame| match frame.joint {
             Joint::Fixed => None,
@@ -124,8 +126,8 @@ impl Mechanism {
         self.frames.iter().map(column).collect()
     }
 
-    /// The frames that a frame stands in, itself last.
-    pub(super) fn above(&self, frame: Option<usize>) -> Vec<usize> {
+    /// Returns the frames from the world down to a frame, including the frame.
+    pub(super) fn frames_above(&self, frame: Option<usize>) -> Vec<usize> {
         let mut found: Vec<usize> =
             std::iter::successors(frame, |k| self.frames[*k].parent).collect();
         found.reverse();
@@ -133,7 +135,7 @@ impl Mechanism {
     }
 }
 
-/// Values of all joints at several times, in between evenly from row to row.
+/// Values of all joints at several times. Between two rows each joint moves at a constant rate.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -146,10 +148,11 @@ pub struct JointPath {
 }
 
 impl JointPath {
-    /// At times that grow, in any unit.
+    /// Builds a path from rows of joint values at increasing times, in any unit.
     ///
     /// # Errors
-    /// No rows, rows of different lengths, times that are not as many or do not grow, numbers that are not finite.
+    /// [`PathError::Rows`] if there are no rows, or another number of times. [`PathError::Time`] if the times do not
+    /// increase or are out of range. [`PathError::Row`] if the rows have different lengths.
     pub fn new(times: Vec<f64>, rows: Vec<Vec<f64>>) -> Result<Self, PathError> {
         if times.len() != rows.len() || rows.is_empty() {
             return Err(PathError::Rows { times: times.len(), rows: rows.len() });
@@ -168,41 +171,42 @@ impl JointPath {
         Ok(Self { times, rows })
     }
 
-    /// At the times 0, 1, 2 and so on.
+    /// Builds a path from rows at the times 0, 1, 2, and so on.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Returns the errors of [`Self::new`].
     pub fn evenly(rows: Vec<Vec<f64>>) -> Result<Self, PathError> {
         Self::new((0..rows.len()).map(|k| k as f64).collect(), rows)
     }
 
-    /// The times of the rows.
+    /// Returns the times of the rows.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The values of all joints at each of them.
+    /// Returns the rows of joint values, one for each time.
     pub fn rows(&self) -> &[Vec<f64>] {
         &self.rows
     }
 
-    /// The first and the last time.
+    /// Returns the first and the last time.
     pub fn ends(&self) -> [f64; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
-    /// Whether a place is on it.
-    pub(super) fn has(&self, Place { row, share }: Place) -> bool {
-        row < self.last() && (0.0..=1.0).contains(&share) || row == self.last() && share == 0.0
+    /// Checks whether a place is on the path.
+    pub(super) fn contains(&self, Place { row, share }: Place) -> bool {
+        row < self.last_row() && (0.0..=1.0).contains(&share)
+            || row == self.last_row() && share == 0.0
     }
 
-    /// The last row, or how many rows have a way to the next one.
-    pub(super) fn last(&self) -> usize {
+    /// Returns the index of the last row, which is the number of intervals between rows.
+    pub(super) fn last_row(&self) -> usize {
         self.times.len() - 1
     }
 
-    /// Bounds of the time of a place between two rows.
-    pub(super) fn time(&self, place: Place) -> [f64; 2] {
+    /// Returns bounds of the time of a place.
+    pub(super) fn time_bounds(&self, place: Place) -> [f64; 2] {
         let here = self.times[place.row];
         if place.share == 0.0 {
             return [here; 2];
@@ -212,26 +216,26 @@ impl JointPath {
             return [next; 2];
         }
         let time = here + place.share * (next - here);
-        // Off by two roundings of the way, and one of the sum.
+        // Error: two roundings of the product, one of the sum.
         let off = f64::EPSILON * (time.abs() + 2.0 * (next - here));
         [(time - off).max(here), (time + off).min(next)]
     }
 
-    /// The value of a joint at a row and by how much it grows to the next one.
-    pub(super) fn value(&self, row: usize, column: usize) -> [f64; 2] {
+    /// Returns the value of a joint at a row, and its change up to the next row.
+    pub(super) fn value_and_change(&self, row: usize, column: usize) -> [f64; 2] {
         let value = self.rows[row][column];
         [value, self.rows.get(row + 1).map_or(0.0, |next| next[column] - value)]
     }
 
-    /// The largest value of a joint, by magnitude.
-    pub(super) fn most(&self, column: usize) -> f64 {
+    /// Returns the maximum absolute value of a joint.
+    pub(super) fn max_value(&self, column: usize) -> f64 {
         self.rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max)
     }
 
-    /// Whether the values are those of a mechanism's joints.
-    pub(super) fn check(&self, mechanism: &Mechanism) -> Result<(), PathError> {
+    /// Checks that the rows have one value in range for each joint of a mechanism.
+    pub(super) fn check_rows(&self, mechanism: &Mechanism) -> Result<(), PathError> {
         let joints = mechanism.joints();
-        let columns = mechanism.columns();
+        let columns = mechanism.joint_columns();
         for (row, values) in self.rows.iter().enumerate() {
             if values.len() != joints {
                 return Err(PathError::Row { row, values: values.len(), joints });
@@ -252,7 +256,7 @@ impl JointPath {
     }
 }
 
-/// A place on a path: which share of the way from a row to the next one is done.
+/// A place on a path: a row, and the share of the interval to the next row.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 #[cfg_attr(
     feature = "serde",
@@ -260,33 +264,33 @@ impl JointPath {
     serde(deny_unknown_fields)
 )]
 pub struct Place {
-    /// The row, from 0.
+    /// Index of the row, from 0.
     pub row: usize,
-    /// From 0 to 1.
+    /// Share of the interval to the next row, from 0 to 1.
     pub share: f64,
 }
 
 impl Place {
-    /// Where a path begins.
+    /// The start of a path.
     pub(super) const START: Self = Self { row: 0, share: 0.0 };
 
-    /// At a row.
+    /// Returns the place of a row.
     pub(super) fn at_row(row: usize) -> Self {
         Self { row, share: 0.0 }
     }
 
-    /// The earlier one.
-    pub(super) fn min_of(self, other: Self) -> Self {
+    /// Returns the earlier of two places.
+    pub(super) fn earlier_of(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 
-    /// The same place, told by the row that begins there.
-    pub(super) fn settled(self) -> Self {
+    /// Returns the same place, with the end of an interval expressed as the start of the next one.
+    pub(super) fn normalised(self) -> Self {
         if self.share >= 1.0 { Self::at_row(self.row + 1) } else { self }
     }
 }
 
-/// A path as it is written; read, it is checked like any other.
+/// The serialised form of a path, which is checked when it is read.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -304,97 +308,101 @@ impl TryFrom<PathRecord> for JointPath {
     }
 }
 
-/// Why there is no answer about a path.
+/// The reason why a mechanism, a path or a query about it is rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PathError {
-    /// A frame does not stand in an earlier one.
-    #[error("frame {frame} stands in itself, or in a frame that comes after it")]
+    /// The parent of a frame is not an earlier frame.
+    #[error(
+        "frame {frame} has itself or a later frame as its parent; parents must come before their children"
+    )]
     Parent {
-        /// Which one.
+        /// Number of the frame.
         frame: usize,
     },
-    /// An axis is none.
-    #[error("the axis {:?} of frame {frame} is zero, not finite or out of range", .axis.to_array())]
+    /// An axis has no direction.
+    #[error("axis {:?} of frame {frame} is zero, not finite or out of range", .axis.to_array())]
     Axis {
-        /// Which one.
+        /// Number of the frame.
         frame: usize,
-        /// As given.
+        /// The axis, as given.
         axis: DVec3,
     },
-    /// There are no rows, or not as many as times.
-    #[error("a path needs a row, and a time for each: there are {times} times for {rows} rows")]
+    /// There are no rows, or the number of times differs from that of rows.
+    #[error(
+        "the path has {rows} rows and {times} times; give at least one row, and one time for each row"
+    )]
     Rows {
-        /// How many times.
+        /// Number of times.
         times: usize,
-        /// How many rows.
+        /// Number of rows.
         rows: usize,
     },
-    /// A time is not after the one before.
-    #[error("the time {time} of row {row} is not finite, or not after the one before it")]
+    /// A time does not increase.
+    #[error("invalid time {time} of row {row}; times must be finite and increase from row to row")]
     Time {
-        /// Which row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// As given.
+        /// The time, as given.
         time: f64,
     },
-    /// A row has not a value for each joint.
-    #[error("row {row} has {values} values for {joints} joints")]
+    /// A row does not have one value for each joint.
+    #[error("row {row} has {values} values, expected {joints}, one for each joint")]
     Row {
-        /// Which one, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// How many it has.
+        /// Number of values of the row.
         values: usize,
-        /// How many it should have.
+        /// Number of joints.
         joints: usize,
     },
-    /// A value is none.
+    /// A joint value is invalid.
     #[error(
-        "the value {value} of frame {frame} in row {row} is not finite, or too large (1e5 radians)"
+        "invalid value {value} of frame {frame} in row {row}; accepted: finite, at most 1e5 for angles in radians"
     )]
     Value {
-        /// Which row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// Which frame it is to move.
+        /// Number of the frame that the value moves.
         frame: usize,
-        /// As given.
+        /// The value, as given.
         value: f64,
     },
-    /// A body stands in a frame that does not exist.
-    #[error("body {body} stands in frame {frame}, which does not exist")]
+    /// A body refers to a frame that does not exist.
+    #[error("body {body} refers to frame {frame}, which does not exist")]
     Frame {
-        /// Which body.
+        /// Number of the body.
         body: usize,
-        /// The frame.
+        /// Number of the frame.
         frame: usize,
     },
-    /// A pair is not of two bodies.
-    #[error("the pair of body {} and body {} is not one of two bodies that there are", .pair[0], .pair[1])]
+    /// A pair does not consist of two bodies.
+    #[error("invalid pair of bodies {} and {}; a pair needs the numbers of two different bodies", .pair[0], .pair[1])]
     Pair {
-        /// As given.
+        /// The pair, as given.
         pair: [usize; 2],
     },
-    /// The gap to be kept is none.
-    #[error("the gap {gap} to be kept is negative, not finite or larger than 2^200")]
+    /// The minimum gap is invalid.
+    #[error("invalid minimum gap {gap}; accepted: finite, from 0 to 2^200")]
     Keep {
-        /// As given.
+        /// The gap, as given.
         gap: f64,
     },
-    /// All that stands in frames is too far out.
-    #[error("body {body} can be farther than 2^200 from where its frames begin")]
+    /// A body can move out of range.
+    #[error("body {body} can be farther than 2^200 from the start of its chain of frames")]
     Far {
-        /// Which body.
+        /// Number of the body.
         body: usize,
     },
-    /// A pose is none.
-    #[error("a pose is none: {0}")]
+    /// A pose is invalid.
+    #[error("invalid pose: {0}")]
     Pose(#[from] PoseError),
-    /// Two bodies have no answer.
+    /// The query about two bodies failed.
     #[error("body {} and body {}: {reason}", .pair[0], .pair[1])]
     Query {
-        /// Which ones.
+        /// Numbers of the bodies.
         pair: [usize; 2],
-        /// Why.
+        /// Reason of the failure.
         #[source]
         reason: Box<QueryError>,
     },

@@ -1,8 +1,8 @@
-//! Paths of joints: when do two bodies that a mechanism carries first touch, each other or what stands around?
+//! Paths of joints: the time at which two bodies of a mechanism first touch each other or a body of the scene.
 //!
-//! A [`Mechanism`] is frames in frames, each moved by a joint; a [`JointPath`] has rows of joint values, and each
-//! joint goes evenly from row to row. A [`PathCast`] answers which two of its bodies first meet, with bounds on the
-//! time that are bounds, or proves that none do on the whole path.
+//! A [`Mechanism`] is a tree of frames, each moved by a joint. A [`JointPath`] has rows of joint values; between rows
+//! each joint moves at a constant rate. A [`PathCast`] computes which two bodies first meet, with proven bounds of the
+//! time, or proves that no two bodies meet on the whole path.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
@@ -36,26 +36,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What is promised
+//! # Guarantee
 //!
-//! As of other motions: answers hold of the path as the real function of its numbers, not of places computed from it.
-//! Before `lower` no two bodies of a pair meet, and at `upper` two do. Two frames of one mechanism are looked at from
-//! the frame that both stand in: only the joints between them count.
+//! Answers hold for the path as the real function of its numbers, not for computed poses. No two bodies of a pair meet
+//! before `lower`, and two bodies meet at `upper`. Two frames of one mechanism are compared in the last frame that
+//! contains both, so only the joints between them matter.
 //!
 //! # Method
 //!
-//! Planes between the bodies, as of other motions, and two ways to prove the time between two of them: from row to
-//! row by how far supporting planes may bend, which a chain of joints bounds; over many rows by how far the
-//! bodies move. Bodies that are not convex are taken apart into boxes and facets, where they come near. That closed
-//! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
+//! Planes separate the bodies, as for other motions. Two bounds prove the time between two planes: from row to row a
+//! curvature bound of a chain of joints, and over many rows the distance that the bodies move. Bodies that are not
+//! convex are split into boxes and facets where they come near. Whether one closed body contains another at the start
+//! is decided exactly; later their surfaces would meet first.
 //!
-//! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `proof`, `answer`, `follow`,
-//! `search`, `verify`.
+//! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `link_pair`, `proof`, `answer`,
+//! `follow`, `search`, `verify`.
 
 mod answer;
 mod chain;
-mod couple;
 mod follow;
+mod link_pair;
 mod mechanism;
 mod proof;
 mod search;
@@ -75,37 +75,37 @@ use colltrans_solid::{AsSolid, SolidPairSearch};
 
 pub use self::answer::{PathContact, PathOutcome};
 use self::chain::Chain;
-use self::couple::Couple;
+use self::link_pair::LinkPair;
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
 pub use self::proof::{Cover, How, PathMeeting, PathProof, Step, Stretch};
-use self::search::{Search, Stop};
+use self::search::{PathSearch, Stop};
 use self::shape::Shape;
 pub use self::verify::PathProofError;
 use super::answer::{MotionFree, MotionSteps};
-use super::course::Course;
+use super::relative_motion::RelativeMotion;
 
-/// A body that a mechanism carries, or that stands in the world.
+/// A body that a mechanism carries, or that rests in the world.
 #[derive(Debug, Clone, Copy)]
 pub struct PathBody<'a> {
-    /// The frame that carries it; none is the world.
+    /// Number of the frame that carries the body; `None` for the world.
     pub frame: Option<usize>,
-    /// The body, and where it is in that frame.
+    /// The body and its pose in that frame.
     pub placed: AnyPlaced<'a>,
 }
 
 impl<'a> PathBody<'a> {
-    /// Carried by a frame, in which it has a pose.
-    pub fn carried(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
+    /// Returns a body carried by a frame, with its pose in the frame.
+    pub fn carried_gap_loss(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
         Self { frame: Some(frame), placed: placed.into() }
     }
 
-    /// In the world.
+    /// Returns a body that rests in the world.
     pub fn standing(placed: impl Into<AnyPlaced<'a>>) -> Self {
         Self { frame: None, placed: placed.into() }
     }
 }
 
-/// Bodies of a mechanism on a path, and which pairs of them are not to meet.
+/// Bodies of a mechanism on a path, and the pairs of them that must not meet.
 #[derive(Debug)]
 pub struct PathCast<'a> {
     mechanism: &'a Mechanism,
@@ -113,22 +113,25 @@ pub struct PathCast<'a> {
     frames: Vec<Option<usize>>,
     shapes: Vec<Shape<'a>>,
     pairs: Vec<[usize; 2]>,
-    keep: f64,
+    min_gap: f64,
 }
 
 impl<'a> PathCast<'a> {
-    /// Of bodies, and pairs of their numbers.
+    /// Builds the cast of bodies, with pairs of their numbers.
     ///
     /// # Errors
-    /// Rows that are not of the mechanism's joints; a frame or a body that does not exist; a place out of range; a
-    /// point or a segment where a solid may enclose it.
+    /// Returns an error if
+    /// - a row does not have one value for each joint,
+    /// - a pair or a body refers to a body or a frame that does not exist,
+    /// - a body can move out of the accepted range,
+    /// - a body of a pair with a solid is a point or a segment.
     pub fn new(
         mechanism: &'a Mechanism,
         path: &'a JointPath,
         bodies: Vec<PathBody<'a>>,
         pairs: Vec<[usize; 2]>,
     ) -> Result<Self, PathError> {
-        path.check(mechanism)?;
+        path.check_rows(mechanism)?;
         for (body, PathBody { frame, .. }) in bodies.iter().enumerate() {
             if let Some(frame) = frame.filter(|frame| *frame >= mechanism.frames().len()) {
                 return Err(PathError::Frame { body, frame });
@@ -140,62 +143,64 @@ impl<'a> PathCast<'a> {
         }
         let frames = bodies.iter().map(|body| body.frame).collect();
         let shapes = bodies.into_iter().map(|body| Shape::new(body.placed)).collect();
-        let cast = Self { mechanism, path, frames, shapes, pairs, keep: 0.0 };
+        let cast = Self { mechanism, path, frames, shapes, pairs, min_gap: 0.0 };
         for body in 0..count {
-            let chain = cast.chain(body, &mechanism.above(cast.frames[body]));
+            let chain = cast.body_chain(body, &mechanism.frames_above(cast.frames[body]));
             if chain.size.is_nan() || chain.size > MAX_MAGNITUDE {
                 return Err(PathError::Far { body });
             }
         }
         for (k, pair) in cast.pairs.iter().enumerate() {
-            if let Err(reason) = nested(&cast, k) {
+            if let Err(reason) = is_nested_at_start(&cast, k) {
                 return Err(PathError::Query { pair: *pair, reason: reason.into() });
             }
         }
         Ok(cast)
     }
 
-    /// The same with a gap to be kept, in world units: what counts is when two bodies are no farther apart.
+    /// Returns the cast with a minimum gap, in world units. The query then finds when the distance of two bodies falls
+    /// to the gap.
     ///
     /// # Errors
-    /// A gap that is negative, not finite or out of range.
+    /// Returns [`PathError::Keep`] if the gap is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, PathError> {
         check_min_gap(gap).map_err(|_| PathError::Keep { gap })?;
-        Ok(Self { keep: gap, ..self })
+        Ok(Self { min_gap: gap, ..self })
     }
 
-    /// The pairs that are asked about.
+    /// Returns the pairs of the query.
     pub fn pairs(&self) -> &[[usize; 2]] {
         &self.pairs
     }
 
-    /// Two bodies each that are not asked about, though joints may move one against the other: nothing is said of them.
+    /// Returns all pairs of bodies that joints move relative to each other and that are not part of the query. No
+    /// answer covers them. Takes time quadratic in the number of bodies.
     pub fn left_out(&self) -> Vec<[usize; 2]> {
         let moved_by = |frame: &Option<usize>| {
-            let mut above = self.mechanism.above(*frame);
+            let mut above = self.mechanism.frames_above(*frame);
             above.retain(|k| self.mechanism.frames()[*k].joint != Joint::Fixed);
             above
         };
         let moved_by: Vec<Vec<usize>> = self.frames.iter().map(moved_by).collect();
-        let asked: HashSet<[usize; 2]> =
+        let queried: HashSet<[usize; 2]> =
             self.pairs.iter().flat_map(|&[i, j]| [[i, j], [j, i]]).collect();
         let pairs = (0..self.frames.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
         pairs
-            .filter(|pair| moved_by[pair[0]] != moved_by[pair[1]] && !asked.contains(pair))
+            .filter(|pair| moved_by[pair[0]] != moved_by[pair[1]] && !queried.contains(pair))
             .collect()
     }
 
-    /// The gap to be kept, 0 for none.
+    /// Returns the minimum gap, in world units; 0 if none was set.
     pub const fn keep(&self) -> f64 {
-        self.keep
+        self.min_gap
     }
 
-    /// The bodies, where they are in the frames that carry them.
+    /// Returns the bodies, with their poses in the frames that carry them.
     pub fn bodies(&self) -> impl Iterator<Item = AnyPlaced<'a>> {
         self.shapes.iter().map(|shape| shape.placed)
     }
 
-    /// The bodies, with the frames that carry them.
+    /// Returns the bodies with the frames that carry them.
     pub fn carried_bodies(&self) -> impl Iterator<Item = PathBody<'a>> {
         let of = |(shape, frame): (&Shape<'a>, &Option<usize>)| PathBody {
             frame: *frame,
@@ -204,39 +209,39 @@ impl<'a> PathCast<'a> {
         self.shapes.iter().zip(&self.frames).map(of)
     }
 
-    /// The frames that carry them.
+    /// Returns the mechanism that carries the bodies.
     pub const fn mechanism(&self) -> &'a Mechanism {
         self.mechanism
     }
 
-    /// What the joints do.
+    /// Returns the path of the joints.
     pub const fn path(&self) -> &'a JointPath {
         self.path
     }
 
-    /// Where a body is in the world, to rounding.
+    /// Returns the pose of a body in the world, rounded.
     pub fn pose(&self, body: usize, place: Place) -> Pose {
-        let chain = self.chain(body, &self.mechanism.above(self.frames[body]));
-        chain.at(self.path, place.row, place.share).0
+        let chain = self.body_chain(body, &self.mechanism.frames_above(self.frames[body]));
+        chain.pose_and_rates(self.path, place.row, place.share).0
     }
 
-    /// Which two bodies of a pair first meet, and when?
+    /// Finds the two bodies of a pair that meet first, and when.
     ///
-    /// If the search between two bodies takes its maximum number of steps, those of them that are convex are taken as
-    /// solids, and the question is asked again. If that has no answer for the pair either, the others are still asked,
-    /// and the answer is [`PathOutcome::Undecided`] unless another pair meets before.
+    /// If the search between two bodies takes its maximum number of steps, the convex ones of them are converted to
+    /// solids, and all pairs are searched again. If the new search does not decide the pair either, the other pairs are
+    /// still searched. The answer is then [`PathOutcome::Undecided`], unless another pair meets earlier.
     ///
     /// # Errors
-    /// A body that is no solid where a solid may enclose it.
+    /// Returns an error if a body cannot be converted to a solid where a solid may contain it.
     pub fn first_contact(&self) -> Result<PathOutcome, PathError> {
         let (mut solids, mut before) = (Vec::new(), MotionSteps::default());
         let mut with_solids: Option<Self> = None;
         loop {
             let cast = with_solids.as_ref().unwrap_or(self);
-            let Searched { mut outcome, stalled } = cast.searched()?;
+            let Searched { mut outcome, stalled } = cast.search_all_pairs()?;
             let more: Vec<usize> = stalled.into_iter().filter(|k| cast.can_be_solid(*k)).collect();
             if more.is_empty() {
-                let (proof, steps) = outcome.parts_mut();
+                let (proof, steps) = outcome.proof_and_steps_mut();
                 proof.solids = solids;
                 *steps += before;
                 return Ok(outcome);
@@ -249,35 +254,34 @@ impl<'a> PathCast<'a> {
         }
     }
 
-    /// All pairs of bodies that overlap where the path begins, or are no farther apart than the gap to be kept.
+    /// Finds all pairs of bodies that overlap at the start of the path, or whose distance is at most the minimum gap.
     ///
     /// # Errors
-    /// A body that is no solid where a solid may enclose it.
+    /// Returns an error if a body cannot be converted to a solid where a solid may contain it.
     pub fn start_overlaps(&self) -> Result<Vec<[usize; 2]>, PathError> {
         let mut found = Vec::new();
         for (k, pair) in self.pairs.iter().enumerate() {
             let query =
                 |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
-            let couple = self.couple(k);
-            let mut search = Search::new(&couple, self.shapes_of(k), Place::START);
-            search.cover([0, 0], Place::START, Place::START);
+            let link_pair = self.link_pair(k);
+            let mut search = PathSearch::new(&link_pair, self.shapes_of(k), Place::START);
+            search.cover_pieces([0, 0], Place::START, Place::START);
             let meets = matches!(search.stop, Some((_, Stop::Met(..))));
-            if meets || nested(self, k).map_err(query)? {
+            if meets || is_nested_at_start(self, k).map_err(query)? {
                 found.push(*pair);
             }
         }
         Ok(found)
     }
 
-    /// Returns the same question with these convex bodies taken as solids. Pieces of shapes that this cast has made are
-    /// made anew.
+    /// Returns the cast with these convex bodies converted to solids. The pieces of all bodies are built again.
     #[doc(hidden)]
     #[must_use]
     pub fn with_solids(&self, solids: &[usize]) -> Self {
         let shape = |(k, shape): (usize, &Shape<'a>)| {
             let placed = shape.placed;
             Shape::new(if solids.contains(&k) {
-                as_solid(placed).unwrap_or(placed)
+                convert_to_solid(placed).unwrap_or(placed)
             } else {
                 placed
             })
@@ -290,61 +294,62 @@ impl<'a> PathCast<'a> {
         }
     }
 
-    /// Checks whether a body is convex and has a surface.
+    /// Checks whether a body is convex and can be converted to a solid.
     fn can_be_solid(&self, body: usize) -> bool {
         let placed = self.shapes[body].placed;
-        matches!(placed, ByKind::Convex(_)) && as_solid(placed).is_some()
+        matches!(placed, ByKind::Convex(_)) && convert_to_solid(placed).is_some()
     }
 
-    fn searched(&self) -> Result<Searched, PathError> {
+    /// Searches all pairs once, with the bodies as they are.
+    fn search_all_pairs(&self) -> Result<Searched, PathError> {
         let (mut proof, mut steps) = (PathProof::default(), MotionSteps::default());
-        let mut until = Place::at_row(self.path.last());
+        let mut until = Place::at_row(self.path.last_row());
         let mut reached = until;
         let mut stopped: Option<(usize, Stop)> = None;
-        // Pairs whose search took its maximum number of steps, and up to where each is apart.
+        // Pairs whose search took its maximum number of steps, and the place up to which each is separated.
         let mut open: Vec<(usize, Place)> = Vec::new();
         for (k, pair) in self.pairs.iter().enumerate() {
-            let couple = self.couple(k);
+            let link_pair = self.link_pair(k);
             let query =
                 |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
-            if nested(self, k).map_err(query)? {
+            if is_nested_at_start(self, k).map_err(query)? {
                 let meeting = PathMeeting { pair: k, place: Place::START, how: How::Inside };
-                let outcome = self.overlapping(meeting, proof, steps);
+                let outcome = self.overlap_outcome(meeting, proof, steps);
                 return Ok(Searched { outcome, stalled: Vec::new() });
             }
-            let mut search = Search::new(&couple, self.shapes_of(k), until);
-            proof.covers.push(search.cover([0, 0], Place::START, until));
+            let mut search = PathSearch::new(&link_pair, self.shapes_of(k), until);
+            proof.covers.push(search.cover_pieces([0, 0], Place::START, until));
             let is_open = matches!(search.stop, Some((_, Stop::Stalled)));
             if is_open {
                 open.push((k, search.reached));
             } else if search.stop.is_some() {
-                reached = reached.min_of(search.reached);
+                reached = reached.earlier_of(search.reached);
             }
-            let found = search.confirmed();
-            steps += search.looker.steps;
+            let found = search.with_earlier_contact();
+            steps += search.sampler.steps;
             if let Some((place, stop)) = found.filter(|_| !is_open) {
                 until = place;
-                if stopped.as_ref().is_none_or(|(_, before)| stop.tells_more(before)) {
+                if stopped.as_ref().is_none_or(|(_, before)| stop.replaces(before)) {
                     stopped = Some((k, stop));
                 }
             }
         }
-        // What is open later than two bodies meet does not matter.
+        // Undecided pairs do not matter if two bodies meet before.
         open.retain(|(_, place)| stopped.is_none() || *place < reached);
         let stalled = open.iter().flat_map(|(k, _)| self.pairs[*k]).collect();
         let first = open.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a });
         let outcome = match first {
-            None => self.outcome(stopped, reached, proof, steps),
-            Some((pair, place)) => self.undecided(pair, place, stopped, proof, steps),
+            None => self.build_outcome(stopped, reached, proof, steps),
+            Some((pair, place)) => self.undecided_outcome(pair, place, stopped, proof, steps),
         };
         Ok(Searched { outcome, stalled })
     }
 
-    /// Checks a proof without a search: all vertices are looked at. Returns up to which time no two bodies are proven
-    /// to meet, and when two are proven to, infinity if that is not claimed.
+    /// Checks a proof without a search, over all vertices. Returns the time up to which no two bodies are proven to
+    /// meet, and the time at which two are proven to meet. The latter is infinite if the proof claims no contact.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns the first entry of the proof that does not hold.
     pub fn verify(&self, proof: &PathProof) -> Result<[f64; 2], PathProofError> {
         let is_body = |k: &usize| *k < self.shapes.len();
         if !proof.solids.iter().all(is_body) {
@@ -356,31 +361,34 @@ impl<'a> PathCast<'a> {
         verify::verify(&self.with_solids(&proof.solids), proof)
     }
 
-    fn chain(&self, body: usize, frames: &[usize]) -> Chain {
+    /// Returns the chain of a body through the given frames.
+    fn body_chain(&self, body: usize, frames: &[usize]) -> Chain {
         let shape = &self.shapes[body];
         Chain::new(self.mechanism, frames, self.path, shape.pose(), shape.corners())
     }
 
-    /// The frames that both bodies of a pair stand in, and those that each does beyond.
-    fn beyond(&self, pair: usize) -> (Vec<usize>, [Vec<usize>; 2]) {
-        let above = self.pairs[pair].map(|body| self.mechanism.above(self.frames[body]));
+    /// Returns the frames that contain both bodies of a pair, and the remaining frames of each body.
+    fn split_at_shared_frame(&self, pair: usize) -> (Vec<usize>, [Vec<usize>; 2]) {
+        let above = self.pairs[pair].map(|body| self.mechanism.frames_above(self.frames[body]));
         let shared = above[0].iter().zip(&above[1]).take_while(|(a, b)| a == b).count();
         let rest = above.each_ref().map(|frames| frames[shared..].to_vec());
         (above[0][..shared].to_vec(), rest)
     }
 
-    fn couple(&self, pair: usize) -> Couple<'_> {
-        let (_, frames) = self.beyond(pair);
-        let chains = [0, 1].map(|k| self.chain(self.pairs[pair][k], &frames[k]));
-        Couple::new(self.path, chains, self.keep)
+    /// Builds the pair of chains of a pair.
+    fn link_pair(&self, pair: usize) -> LinkPair<'_> {
+        let (_, frames) = self.split_at_shared_frame(pair);
+        let chains = [0, 1].map(|k| self.body_chain(self.pairs[pair][k], &frames[k]));
+        LinkPair::new(self.path, chains, self.min_gap)
     }
 
+    /// Returns the shapes of the bodies of a pair.
     fn shapes_of(&self, pair: usize) -> [&Shape<'_>; 2] {
         self.pairs[pair].map(|body| &self.shapes[body])
     }
 
-    /// What is to be said of the first stop.
-    fn outcome(
+    /// Builds the outcome for the first stop of the search.
+    fn build_outcome(
         &self,
         stopped: Option<(usize, Stop)>,
         reached: Place,
@@ -392,20 +400,20 @@ impl<'a> PathCast<'a> {
             Some((pair, Stop::Met(place, how))) => {
                 let meeting = PathMeeting { pair, place, how };
                 if place == Place::START {
-                    return self.overlapping(meeting, proof, steps);
+                    return self.overlap_outcome(meeting, proof, steps);
                 }
                 proof.meeting = Some(meeting);
-                let upper = self.path.time(place)[1];
-                PathOutcome::Contact(self.contact(pair, reached, upper, proof, steps))
+                let upper = self.path.time_bounds(place)[1];
+                PathOutcome::Contact(self.build_contact(pair, reached, upper, proof, steps))
             }
             Some((pair, _)) => {
-                PathOutcome::Grazing(self.contact(pair, reached, f64::INFINITY, proof, steps))
+                PathOutcome::Grazing(self.build_contact(pair, reached, f64::INFINITY, proof, steps))
             }
         }
     }
 
-    /// What is reported of a pair that is open from a place on; two other bodies may meet later.
-    fn undecided(
+    /// Builds the outcome for a pair that is undecided from a place on. Two other bodies may meet later.
+    fn undecided_outcome(
         &self,
         pair: usize,
         place: Place,
@@ -415,14 +423,14 @@ impl<'a> PathCast<'a> {
     ) -> PathOutcome {
         let mut upper = f64::INFINITY;
         if let Some((pair, Stop::Met(place, how))) = stopped {
-            upper = self.path.time(place)[1];
+            upper = self.path.time_bounds(place)[1];
             proof.meeting = Some(PathMeeting { pair, place, how });
         }
-        PathOutcome::Undecided(self.contact(pair, place, upper, proof, steps))
+        PathOutcome::Undecided(self.build_contact(pair, place, upper, proof, steps))
     }
 
-    /// Where the path begins with two bodies that overlap: nothing is said of the others.
-    fn overlapping(
+    /// Builds the outcome for two bodies that overlap at the start. It states nothing about the other pairs.
+    fn overlap_outcome(
         &self,
         meeting: PathMeeting,
         mut proof: PathProof,
@@ -432,10 +440,11 @@ impl<'a> PathCast<'a> {
         proof.covers = vec![Cover::default(); self.pairs.len()];
         proof.meeting = Some(meeting);
         let upper = self.path.ends()[0];
-        PathOutcome::Overlapping(self.contact(pair, Place::START, upper, proof, steps))
+        PathOutcome::Overlapping(self.build_contact(pair, Place::START, upper, proof, steps))
     }
 
-    fn contact(
+    /// Builds the report of a contact of a pair at a place.
+    fn build_contact(
         &self,
         pair: usize,
         place: Place,
@@ -443,13 +452,13 @@ impl<'a> PathCast<'a> {
         proof: PathProof,
         steps: MotionSteps,
     ) -> PathContact {
-        let (shared, _) = self.beyond(pair);
+        let (shared, _) = self.split_at_shared_frame(pair);
         let bodies = self.pairs[pair];
         let chain = Chain::new(self.mechanism, &shared, self.path, Pose::IDENTITY, &[]);
-        let (world, _) = chain.at(self.path, place.row, place.share);
+        let (world, _) = chain.pose_and_rates(self.path, place.row, place.share);
         let meeting = proof.meeting.as_ref().filter(|meeting| meeting.pair == pair);
-        let near = self.near(pair, place, meeting);
-        let lower = self.path.time(place)[0];
+        let near = self.nearest_points(pair, place, meeting);
+        let lower = self.path.time_bounds(place)[0];
         let poses = bodies.map(|body| self.pose(body, place));
         let points = near.map(|near| near.0.map(|point| world.transform_point(point)));
         let normal = near.and_then(|near| near.1).map(|normal| world.transform_vector(normal));
@@ -468,33 +477,39 @@ impl<'a> PathCast<'a> {
         }
     }
 
-    /// The points of a pair that are nearest to each other at a place, in the frame that both share.
-    fn near(&self, pair: usize, place: Place, meeting: Option<&PathMeeting>) -> Option<Near> {
-        let couple = self.couple(pair);
+    /// Computes the nearest points of a pair at a place, in the frame that contains both bodies. Returns `None` for a
+    /// solid without pieces in contact, or if no distance is computed.
+    fn nearest_points(
+        &self,
+        pair: usize,
+        place: Place,
+        meeting: Option<&PathMeeting>,
+    ) -> Option<NearestPoints> {
+        let link_pair = self.link_pair(pair);
         let shapes = self.shapes_of(pair);
         let pieces = match meeting.map(|meeting| &meeting.how) {
             Some(How::Pieces { pieces, .. } | How::Point { pieces, .. }) => *pieces,
-            _ if shapes.iter().all(|shape| shape.count() == 1) => [0, 0],
+            _ if shapes.iter().all(|shape| shape.piece_count() == 1) => [0, 0],
             _ => return None,
         };
         let bodies = [shapes[0].piece(pieces[0]), shapes[1].piece(pieces[1])];
-        let course = couple.course(bodies, place.row, [place.share; 2]);
-        let near = Pair { bodies: course.instant(place.share).bodies }.distance().ok()?;
-        let convex = shapes.iter().all(|shape| shape.count() == 1);
+        let motion = link_pair.segment_motion(bodies, place.row, [place.share; 2]);
+        let near = Pair { bodies: motion.instant_at(place.share).bodies }.distance().ok()?;
+        let convex = shapes.iter().all(|shape| shape.piece_count() == 1);
         let features = near.features.filter(|_| convex);
         Some(([near.on_moving, near.on_fixed], near.normal, features))
     }
 }
 
-/// What a search over all pairs has found.
+/// The result of a search over all pairs.
 struct Searched {
     outcome: PathOutcome,
-    /// The bodies of pairs whose search took its maximum number of steps.
+    /// Bodies of the pairs whose search took its maximum number of steps.
     stalled: Vec<usize>,
 }
 
-/// A convex body as a solid; `None` for a point or a segment.
-fn as_solid(placed: AnyPlaced<'_>) -> Option<AnyPlaced<'_>> {
+/// Converts a convex body to a solid. Returns `None` for a point or a segment.
+fn convert_to_solid(placed: AnyPlaced<'_>) -> Option<AnyPlaced<'_>> {
     match placed {
         ByKind::Convex(Placed { body, pose }) => {
             Some(AsSolid::as_solid(body).ok()?.at(pose).into())
@@ -503,19 +518,20 @@ fn as_solid(placed: AnyPlaced<'_>) -> Option<AnyPlaced<'_>> {
     }
 }
 
-/// Points, normal and features.
-type Near = ([glam::DVec3; 2], Option<glam::DVec3>, Option<colltrans_convex::body::Features>);
+/// Nearest points, normal and features.
+type NearestPoints =
+    ([glam::DVec3; 2], Option<glam::DVec3>, Option<colltrans_convex::body::Features>);
 
-/// Whether one body of a pair is inside the other one where the path begins, or a part of it is; of bodies whose
-/// surfaces are apart.
-fn nested(cast: &PathCast, pair: usize) -> Result<bool, QueryError> {
+/// Checks whether one body of a pair contains the other one, or a part of it, at the start of the path. The surfaces of
+/// the bodies are assumed to be separated.
+fn is_nested_at_start(cast: &PathCast, pair: usize) -> Result<bool, QueryError> {
     let shapes = cast.shapes_of(pair);
     if shapes.iter().all(|shape| matches!(shape.placed, ByKind::Convex(_))) {
         return Ok(false);
     }
-    let couple = cast.couple(pair);
+    let link_pair = cast.link_pair(pair);
     let placed = |k: usize| -> Result<Placed<'_, Solid>, QueryError> {
-        let (pose, _) = couple.chains[k].at(cast.path, 0, 0.0);
+        let (pose, _) = link_pair.chains[k].pose_and_rates(cast.path, 0, 0.0);
         Ok(match shapes[k].placed {
             ByKind::Convex(placed) => AsSolid::as_solid(placed.body)?.at(pose),
             ByKind::Solid(placed) => placed.body.at(pose),

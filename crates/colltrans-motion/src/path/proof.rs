@@ -1,9 +1,9 @@
-//! What proves answers about paths: planes between the bodies of each pair, and that two meet.
+//! Proofs about paths of joints: planes between the bodies of each pair, and the proof of a contact.
 
 use super::super::proof::{Met, PlaneAt};
 use super::mechanism::Place;
 
-/// What proves an answer: planes between the bodies of each pair, and that two meet.
+/// Proof of an answer: planes between the bodies of each pair, and a contact if two bodies meet.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -11,18 +11,18 @@ use super::mechanism::Place;
     serde(deny_unknown_fields)
 )]
 pub struct PathProof {
-    /// For each pair, in the order in which they are asked about.
+    /// One cover for each pair, in the order of the query.
     pub covers: Vec<Cover>,
-    /// That two bodies meet.
+    /// Proof that two bodies meet.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub meeting: Option<PathMeeting>,
-    /// Numbers of the convex bodies that the proof takes as solids: those of a pair whose search as convex bodies took its
-    /// maximum number of steps.
+    /// Numbers of the convex bodies that the proof converts to solids: those of a pair whose search as convex bodies
+    /// took its maximum number of steps.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub solids: Vec<usize>,
 }
 
-/// What proves that two pieces do not meet up to some place: steps, each from where the last one ends.
+/// Proof that two pieces do not meet up to a place: steps, each from the end of the previous one.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -30,7 +30,7 @@ pub struct PathProof {
     serde(deny_unknown_fields)
 )]
 pub struct Cover {
-    /// One after the other.
+    /// The steps in order.
     pub steps: Vec<Step>,
 }
 
@@ -42,22 +42,22 @@ pub struct Cover {
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Step {
-    /// Planes between both pieces: within a row each is joined to the next; the last one of a stretch and the first one
-    /// of the next prove all between them by their gaps.
+    /// Planes between both pieces. Within a stretch, each plane is joined to the next one. The last plane of a stretch
+    /// and the first plane of the next one prove all times between them by their gaps.
     Planes(Vec<Stretch>),
-    /// Each part of one piece for itself.
+    /// A cover for each part of one piece.
     Parts {
-        /// Which piece is taken apart, the first (0) or the second one (1).
+        /// The piece that is split: the first (0) or the second (1).
         which: usize,
-        /// Up to where, at most.
+        /// Maximum end of the covers.
         until: Place,
-        /// For each of its parts.
+        /// One cover for each part.
         covers: Vec<Cover>,
     },
 }
 
-/// Planes on the way from a row to the next one. Their times are shares of that way; normals are in the frame that
-/// both bodies share.
+/// Planes between two consecutive rows. Their times are shares of the interval, and their normals are in the frame that
+/// contains both bodies.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -65,13 +65,13 @@ pub enum Step {
     serde(deny_unknown_fields)
 )]
 pub struct Stretch {
-    /// The row.
+    /// Index of the row.
     pub row: usize,
-    /// In the order of their times.
+    /// Planes in the order of time.
     pub planes: Vec<PlaneAt>,
 }
 
-/// That two bodies meet.
+/// Proof that two bodies meet.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -79,15 +79,15 @@ pub struct Stretch {
     serde(deny_unknown_fields)
 )]
 pub struct PathMeeting {
-    /// The number of the pair among those that are asked about.
+    /// Index of the pair in the query.
     pub pair: usize,
-    /// Where on the path.
+    /// Place of the contact on the path.
     pub place: Place,
-    /// Why.
+    /// Proof for this place.
     pub how: How,
 }
 
-/// Why two bodies meet.
+/// Proof that two bodies meet at a place.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -95,51 +95,52 @@ pub struct PathMeeting {
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum How {
-    /// Pieces of them do.
+    /// Two pieces of the bodies meet.
     Pieces {
-        /// Their numbers.
+        /// Numbers of the pieces.
         pieces: [usize; 2],
-        /// What proves it.
+        /// Proof that the pieces meet.
         met: Met,
     },
-    /// A point is inside both solids, near these facets of theirs: of such as meet face to face.
+    /// A point is inside both solids, for facets that meet face to face.
     Point {
-        /// The numbers of the facets, as pieces.
+        /// Numbers of the pieces of two facets near the point.
         pieces: [usize; 2],
-        /// Where, in the frame of the second one.
+        /// The point, in the frame of the second body.
         point: [f64; 3],
     },
-    /// One is inside the other one, or a part of it is: only where the path begins.
+    /// One body contains the other one, or a part of it. Only valid at the start of the path.
     Inside,
 }
 
 impl PathProof {
-    /// How many planes it has.
+    /// Returns the number of planes.
     pub fn planes(&self) -> usize {
-        self.covers.iter().map(Cover::planes).sum()
+        self.covers.iter().map(Cover::plane_count).sum()
     }
 
-    /// Whether it proves of all pairs, if it holds, that the bodies do not meet where the path begins.
+    /// Checks whether the proof, if it holds, shows for all pairs that the bodies do not meet at the start of the path.
     #[cfg(feature = "json")]
     #[doc(hidden)]
     pub fn is_of_the_beginning(&self) -> bool {
-        self.covers.iter().all(Cover::is_of_the_beginning)
+        self.covers.iter().all(Cover::proves_start)
     }
 }
 
 impl Cover {
-    /// Whether it proves, if it holds, that two pieces do not meet where it begins.
-    pub(super) fn is_of_the_beginning(&self) -> bool {
+    /// Checks whether the cover, if it holds, shows that the pieces do not meet at its start.
+    pub(super) fn proves_start(&self) -> bool {
         self.steps.iter().any(|step| match step {
             Step::Planes(stretches) => !stretches.is_empty(),
-            Step::Parts { covers, .. } => covers.iter().all(Self::is_of_the_beginning),
+            Step::Parts { covers, .. } => covers.iter().all(Self::proves_start),
         })
     }
 
-    fn planes(&self) -> usize {
+    /// Returns the number of planes in the cover.
+    fn plane_count(&self) -> usize {
         let of = |step: &Step| match step {
             Step::Planes(stretches) => stretches.iter().map(|stretch| stretch.planes.len()).sum(),
-            Step::Parts { covers, .. } => covers.iter().map(Self::planes).sum::<usize>(),
+            Step::Parts { covers, .. } => covers.iter().map(Self::plane_count).sum::<usize>(),
         };
         self.steps.iter().map(of).sum()
     }

@@ -1,20 +1,20 @@
-//! Two bodies along a path, by their pieces.
+//! Searches two bodies along a path, by their pieces.
 //!
-//! Pieces that hold others, boxes, are only kept apart where that is cheap: in steps that are not small beside them.
-//! Where they are not, for a while, the larger one is taken apart, and its parts are followed for that while, and so
-//! on down to the bodies' own pieces.
+//! Boxes, which contain other pieces, are separated only where that is cheap: in steps that are not short compared with
+//! their size. Where they are not separated, the larger box is split for a while, and its parts are followed for that
+//! time, down to the pieces of the bodies themselves.
 //!
-//! Invariant. Up to where a cover ends, no two points of the pieces meet; it ends where it is to, or where two of
-//! the bodies' own pieces meet, or may.
+//! Invariant: no two points of the pieces meet up to the end of a cover. A cover ends at its requested end, or where
+//! two of the bodies' own pieces meet or may meet.
 
-use super::super::bend::Climbing;
-use super::super::course::Course;
-use super::super::look::ConvexLooker;
+use super::super::crossing_time::{ContactState, find_crossing_time};
+use super::super::curvature::HillClimbing;
 use super::super::proof::PlaneAt;
+use super::super::relative_motion::RelativeMotion;
+use super::super::sample::ConvexSampler;
 use super::super::solid::inside::Guesses;
-use super::super::soon::{Seen, soon};
-use super::couple::Couple;
-use super::follow::{Fate, Pieces, Way};
+use super::follow::{FollowEnd, PiecePair, PlanePath};
+use super::link_pair::LinkPair;
 use super::mechanism::Place;
 use super::proof::{Cover, How, Step};
 use super::shape::Shape;
@@ -23,217 +23,251 @@ use colltrans_convex::setting::TwoBodies;
 use colltrans_kernel::descent::{node_to_split, replaced};
 use colltrans_solid::body::Solid;
 
-/// Steps of boxes are not smaller than such a share of their size.
-const SMALL: f64 = 0.25;
+/// Minimum step of boxes, as a share of their size.
+const MIN_STEP_SHARE: f64 = 0.25;
 
-/// Pairs of pieces that are looked at in one place, at most.
-const MOST_SEEN: usize = 1 << 14;
+/// Maximum number of pairs of pieces that are tested at one place.
+const MAX_PAIRS_AT_PLACE: usize = 1 << 14;
 
-/// What ends the search.
+/// The event that ends a search.
 #[derive(Debug)]
 pub(super) enum Stop {
-    /// The bodies meet at a place.
+    /// The bodies are proven to meet at a place.
     Met(Place, How),
-    /// They may.
-    Blurred,
-    /// Too many steps.
+    /// The bodies come nearer than rounding errors can decide.
+    Indeterminate,
+    /// The search took its maximum number of steps.
     Stalled,
 }
 
 impl Stop {
-    /// Whether this, found at a place before that of another stop, takes its place: but bodies that may meet here do so no
-    /// later than where others are proven to.
-    pub(super) fn tells_more(&self, before: &Self) -> bool {
-        !matches!((self, before), (Self::Blurred, Self::Met(..)))
+    /// Checks whether this stop replaces another one that was found at a later place. A possible contact does not
+    /// replace a proven one, because the bodies meet no later than the proven contact.
+    pub(super) fn replaces(&self, before: &Self) -> bool {
+        !matches!((self, before), (Self::Indeterminate, Self::Met(..)))
     }
 }
 
 /// A search between two bodies.
-pub(super) struct Search<'p> {
-    pub(super) couple: &'p Couple<'p>,
+pub(super) struct PathSearch<'p> {
+    pub(super) link_pair: &'p LinkPair<'p>,
     pub(super) shapes: [&'p Shape<'p>; 2],
-    pub(super) looker: ConvexLooker,
-    /// The first stop that was found, and where: nothing is asked beyond.
+    pub(super) sampler: ConvexSampler,
+    /// The first stop found, with its place. Later places are not searched.
     pub(super) stop: Option<(Place, Stop)>,
-    /// Up to where pieces that stop are apart.
+    /// Place up to which the pieces of all stops are separated.
     pub(super) reached: Place,
 }
 
-impl<'p> Search<'p> {
-    pub(super) fn new(couple: &'p Couple<'p>, shapes: [&'p Shape<'p>; 2], until: Place) -> Self {
-        Self { couple, shapes, looker: ConvexLooker::default(), stop: None, reached: until }
+impl<'p> PathSearch<'p> {
+    pub(super) fn new(
+        link_pair: &'p LinkPair<'p>,
+        shapes: [&'p Shape<'p>; 2],
+        until: Place,
+    ) -> Self {
+        Self { link_pair, shapes, sampler: ConvexSampler::default(), stop: None, reached: until }
     }
 
-    /// The first stop, by two pieces that are proven to meet soon after it where there are some.
-    pub(super) fn confirmed(&mut self) -> Option<(Place, Stop)> {
+    /// Returns the first stop, replaced by a proven contact soon after it if there is one. Returns `None` if the search
+    /// did not stop.
+    pub(super) fn with_earlier_contact(&mut self) -> Option<(Place, Stop)> {
         let (until, stop) = self.stop.take()?;
-        let Place { row, share } = self.reached.settled();
+        let Place { row, share } = self.reached.normalised();
         let known = match &stop {
             Stop::Stalled => return Some((until, stop)),
             Stop::Met(place, ..) if place.row == row => Some(place.share),
             _ => None,
         };
-        if row >= self.couple.path.last() {
+        if row >= self.link_pair.path.last_row() {
             return Some((until, stop));
         }
-        let found = soon(share, known, 1.0, |share| self.seen(Place { row, share }));
+        let found =
+            find_crossing_time(share, known, 1.0, |share| self.contact_state(Place { row, share }));
         Some(found.map_or((until, stop), |(share, how)| {
             let place = Place { row, share };
             (place, Stop::Met(place, how))
         }))
     }
 
-    /// What the bodies are at one place.
-    fn seen(&mut self, place: Place) -> Seen<How> {
-        let (mut stack, mut count, mut seen) = (vec![[0, 0]], 0, Seen::Apart);
-        let mut flush = Flush::new(self, place);
+    /// Returns the state of the bodies at one place.
+    fn contact_state(&mut self, place: Place) -> ContactState<How> {
+        let (mut stack, mut count, mut state) = (vec![[0, 0]], 0, ContactState::Apart);
+        let mut interior = InteriorGuesses::new(self, place);
         while let Some(numbers) = stack.pop() {
             count += 1;
-            if count > MOST_SEEN {
-                return Seen::Open;
+            if count > MAX_PAIRS_AT_PLACE {
+                return ContactState::Undecided;
             }
-            self.looker.forget();
-            let pieces = self.pieces(numbers);
-            if let Some(flush) = &mut flush {
-                flush.take(numbers);
+            self.sampler.discard_pairs();
+            let pieces = self.piece_pair(numbers);
+            if let Some(interior) = &mut interior {
+                interior.add_pieces(numbers);
             }
-            if pieces.plane(&mut self.looker, place).is_some() {
+            if pieces.plane_at(&mut self.sampler, place).is_some() {
                 continue;
             }
-            let Some(which) = which_to_part(self.shapes, numbers) else {
-                if let Some(met) = pieces.met(&mut self.looker, place) {
-                    return Seen::Met(How::Pieces { pieces: numbers, met });
+            let Some(which) = piece_to_split(self.shapes, numbers) else {
+                if let Some(met) = pieces.prove_contact(&mut self.sampler, place) {
+                    return ContactState::Met(How::Pieces { pieces: numbers, met });
                 }
-                seen = Seen::Open;
+                state = ContactState::Undecided;
                 continue;
             };
             stack.extend(
                 self.shapes[which]
-                    .parts(numbers[which])
+                    .sub_pieces(numbers[which])
                     .into_iter()
                     .map(|part| replaced(numbers, which, part)),
             );
         }
-        match flush.and_then(|flush| flush.holding()) {
-            Some(how) if matches!(seen, Seen::Open) => Seen::Met(how),
-            _ => seen,
+        match interior.and_then(|interior| interior.interior_point()) {
+            Some(how) if matches!(state, ContactState::Undecided) => ContactState::Met(how),
+            _ => state,
         }
     }
 
-    /// From a place to another one, or to the first stop.
-    pub(super) fn cover(&mut self, pieces: [usize; 2], from: Place, until: Place) -> Cover {
-        match which_to_part(self.shapes, pieces) {
-            Some(which) => self.by_parts(pieces, which, from, until),
-            None => self.directly(pieces, from, until),
+    /// Covers two pieces from a place to another one, or to the first stop.
+    pub(super) fn cover_pieces(&mut self, pieces: [usize; 2], from: Place, until: Place) -> Cover {
+        match piece_to_split(self.shapes, pieces) {
+            Some(which) => self.cover_by_parts(pieces, which, from, until),
+            None => self.cover_by_planes(pieces, from, until),
         }
     }
 
-    fn pieces(&self, pieces: [usize; 2]) -> Pieces<'p> {
+    /// Returns two pieces by their numbers.
+    fn piece_pair(&self, pieces: [usize; 2]) -> PiecePair<'p> {
         let [p, q] = self.shapes;
-        Pieces { couple: self.couple, pieces: [p.piece(pieces[0]), q.piece(pieces[1])] }
+        PiecePair { link_pair: self.link_pair, pieces: [p.piece(pieces[0]), q.piece(pieces[1])] }
     }
 
-    fn until(&self, until: Place) -> Place {
-        self.stop.as_ref().map_or(until, |stop| until.min_of(stop.0))
+    /// Returns the earlier of a place and the first stop.
+    fn limited_to_stop(&self, until: Place) -> Place {
+        self.stop.as_ref().map_or(until, |stop| until.earlier_of(stop.0))
     }
 
-    fn directly(&mut self, numbers: [usize; 2], from: Place, until: Place) -> Cover {
-        // Of another pair of pieces nothing is known yet.
-        self.looker.forget();
-        let (way, fate) = self.pieces(numbers).follow(&mut self.looker, from, until);
-        let reached = way.end().map_or(from, |(place, _)| place);
+    /// Covers two of the bodies' own pieces by planes.
+    fn cover_by_planes(&mut self, numbers: [usize; 2], from: Place, until: Place) -> Cover {
+        // The nearest pairs of other pieces are not valid for these.
+        self.sampler.discard_pairs();
+        let (plane_path, fate) =
+            self.piece_pair(numbers).follow_pieces(&mut self.sampler, from, until);
+        let reached = plane_path.last_plane().map_or(from, |(place, _)| place);
         let stop = match fate {
-            Fate::Apart => None,
-            Fate::Met(place, met) => {
+            FollowEnd::Apart => None,
+            FollowEnd::Met(place, met) => {
                 Some((place, Stop::Met(place, How::Pieces { pieces: numbers, met })))
             }
-            Fate::Blurred => Some((reached, Stop::Blurred)),
-            Fate::Stalled => Some((reached, Stop::Stalled)),
+            FollowEnd::Indeterminate => Some((reached, Stop::Indeterminate)),
+            FollowEnd::Stalled => Some((reached, Stop::Stalled)),
         };
         if let Some((place, stop)) = stop {
             let before = self.stop.take().map(|(_, before)| before);
-            let stop = before.filter(|before| !stop.tells_more(before)).unwrap_or(stop);
+            let stop = before.filter(|before| !stop.replaces(before)).unwrap_or(stop);
             self.stop = Some((place, stop));
-            self.reached = self.reached.min_of(reached);
+            self.reached = self.reached.earlier_of(reached);
         }
-        Cover { steps: vec![Step::Planes(way.stretches)] }
+        Cover { steps: vec![Step::Planes(plane_path.stretches)] }
     }
 
-    fn by_parts(&mut self, numbers: [usize; 2], which: usize, from: Place, until: Place) -> Cover {
-        let pieces = self.pieces(numbers);
-        let size = pieces.pieces.iter().map(|piece| extent(piece)).fold(0.0, f64::max);
-        let (mut steps, mut here) = (Vec::new(), from);
+    /// Covers two pieces by planes where possible, and otherwise by the parts of one of them.
+    fn cover_by_parts(
+        &mut self,
+        numbers: [usize; 2],
+        which: usize,
+        from: Place,
+        until: Place,
+    ) -> Cover {
+        let pieces = self.piece_pair(numbers);
+        let size = pieces.pieces.iter().map(|piece| piece_extent(piece)).fold(0.0, f64::max);
+        let (mut steps, mut reached_place) = (Vec::new(), from);
         loop {
-            self.looker.forget();
-            let until = self.until(until);
-            let way = self.coarsely(&pieces, size, here, until);
-            if let Some((place, _)) = way.end() {
-                here = place.settled();
-                steps.push(Step::Planes(way.stretches));
+            self.sampler.discard_pairs();
+            let until = self.limited_to_stop(until);
+            let plane_path = self.follow_coarsely(&pieces, size, reached_place, until);
+            if let Some((place, _)) = plane_path.last_plane() {
+                reached_place = place.normalised();
+                steps.push(Step::Planes(plane_path.stretches));
             }
-            if here >= until.settled() && !steps.is_empty() {
+            if reached_place >= until.normalised() && !steps.is_empty() {
                 break;
             }
-            let next = self.apart_again(&pieces, size, here, until);
-            let parts = self.shapes[which].parts(numbers[which]);
+            let next = self.next_separation(&pieces, size, reached_place, until);
+            let parts = self.shapes[which].sub_pieces(numbers[which]);
             let covers = parts.into_iter().map(|part| {
-                let next = self.until(next);
-                self.cover(replaced(numbers, which, part), here, next)
+                let next = self.limited_to_stop(next);
+                self.cover_pieces(replaced(numbers, which, part), reached_place, next)
             });
             let covers = covers.collect();
             steps.push(Step::Parts { which, until: next, covers });
-            here = next.settled();
-            if here >= self.until(until).settled() {
+            reached_place = next.normalised();
+            if reached_place >= self.limited_to_stop(until).normalised() {
                 break;
             }
         }
         Cover { steps }
     }
 
-    /// As far as gaps lead, in steps that are not small beside the pieces, or two planes for such a step.
-    fn coarsely(&mut self, pieces: &Pieces, size: f64, from: Place, until: Place) -> Way {
-        let mut way = Way::default();
-        let Some(plane) = pieces.plane(&mut self.looker, from) else { return way };
-        way.note(from.row, plane);
-        while let Some((place, gap)) = way.end() {
-            let here = place.settled();
-            if here >= until.settled() {
+    /// Follows two pieces by gaps, in steps that are not short compared with them, or by two planes for such a step.
+    fn follow_coarsely(
+        &mut self,
+        pieces: &PiecePair,
+        size: f64,
+        from: Place,
+        until: Place,
+    ) -> PlanePath {
+        let mut plane_path = PlanePath::default();
+        let Some(plane) = pieces.plane_at(&mut self.sampler, from) else { return plane_path };
+        plane_path.append_plane(from.row, plane);
+        while let Some((place, gap)) = plane_path.last_plane() {
+            let reached_place = place.normalised();
+            if reached_place >= until.normalised() {
                 break;
             }
-            let least = self.couple.within(here, until, SMALL * size);
-            if let Some((place, plane)) = pieces.leap(&mut self.looker, (here, gap), least, until) {
-                way.leap_to(place.row, plane);
+            let least = self.link_pair.place_within(reached_place, until, MIN_STEP_SHARE * size);
+            if let Some((place, plane)) =
+                pieces.leap_by_gaps(&mut self.sampler, (reached_place, gap), least, until)
+            {
+                plane_path.append_stretch(place.row, plane);
                 continue;
             }
-            let next = self.couple.within(here, until, size);
-            let next = if next.row == here.row { next.share } else { 1.0 };
-            let Some([first, last]) = self.two_planes(pieces, here, next) else { break };
-            way.note(here.row, first);
-            way.note(here.row, last);
+            let next = self.link_pair.place_within(reached_place, until, size);
+            let next = if next.row == reached_place.row { next.share } else { 1.0 };
+            let Some([first, last]) = self.two_planes(pieces, reached_place, next) else { break };
+            plane_path.append_plane(reached_place.row, first);
+            plane_path.append_plane(reached_place.row, last);
         }
-        way
+        plane_path
     }
 
-    /// Planes at a place and at one in the same row that prove what is between them.
-    fn two_planes(&mut self, pieces: &Pieces, from: Place, to: f64) -> Option<[PlaneAt; 2]> {
+    /// Returns planes at a place and at a later one in the same row that prove the time between them. Returns `None` if
+    /// they do not.
+    fn two_planes(&mut self, pieces: &PiecePair, from: Place, to: f64) -> Option<[PlaneAt; 2]> {
         if to <= from.share {
             return None;
         }
         let end = Place { row: from.row, share: to };
-        let first = pieces.plane(&mut self.looker, from)?;
-        let last = pieces.plane(&mut self.looker, end)?;
-        let course = pieces.couple.course(pieces.pieces, from.row, [from.share, to]);
-        let ends = [from.share, to].map(|share| course.instant(share));
-        course.joins([&first, &last], [&ends[0], &ends[1]], &Climbing).then_some([first, last])
+        let first = pieces.plane_at(&mut self.sampler, from)?;
+        let last = pieces.plane_at(&mut self.sampler, end)?;
+        let motion = pieces.link_pair.segment_motion(pieces.pieces, from.row, [from.share, to]);
+        let ends = [from.share, to].map(|share| motion.instant_at(share));
+        motion
+            .proves_between([&first, &last], [&ends[0], &ends[1]], &HillClimbing)
+            .then_some([first, last])
     }
 
-    /// A place at which pieces are apart that are not before, in growing steps; or the end.
-    fn apart_again(&mut self, pieces: &Pieces, size: f64, from: Place, until: Place) -> Place {
+    /// Returns a later place at which pieces are separated again, found in growing steps, or the end.
+    fn next_separation(
+        &mut self,
+        pieces: &PiecePair,
+        size: f64,
+        from: Place,
+        until: Place,
+    ) -> Place {
         let mut step = size;
         loop {
-            let place = self.couple.within(from, until, step);
+            let place = self.link_pair.place_within(from, until, step);
             let later = place > from;
-            if place >= until || later && pieces.plane(&mut self.looker, place).is_some() {
+            if place >= until || later && pieces.plane_at(&mut self.sampler, place).is_some() {
                 return place;
             }
             step *= 2.0;
@@ -241,49 +275,50 @@ impl<'p> Search<'p> {
     }
 }
 
-/// Two solids at a place, of which a point that is inside both is guessed where facets lie above each other.
-struct Flush<'p> {
+/// Guesses of a point inside two solids at a place, from facets that lie above each other.
+struct InteriorGuesses<'p> {
     shapes: [&'p Shape<'p>; 2],
     bodies: TwoBodies<'p, Solid>,
     off: f64,
     guesses: Guesses,
 }
 
-impl<'p> Flush<'p> {
-    /// Of nothing but solids, if no gap is to be kept.
-    fn new(search: &Search<'p>, place: Place) -> Option<Self> {
-        let (couple, shapes) = (search.couple, search.shapes);
+impl<'p> InteriorGuesses<'p> {
+    /// Prepares the guesses of a place. Returns `None` unless both bodies are solids and there is no minimum gap.
+    fn new(search: &PathSearch<'p>, place: Place) -> Option<Self> {
+        let (link_pair, shapes) = (search.link_pair, search.shapes);
         let solids = [shapes[0].solid()?, shapes[1].solid()?];
-        let (bodies, off) = couple.solids(solids, place);
+        let (bodies, off) = link_pair.place_solids(solids, place);
         let guesses = Guesses::default();
-        (couple.keep == 0.0).then_some(Self { shapes, bodies, off, guesses })
+        (link_pair.min_gap == 0.0).then_some(Self { shapes, bodies, off, guesses })
     }
 
-    /// Takes two pieces into account, if they are facets.
-    fn take(&mut self, pieces: [usize; 2]) {
+    /// Considers two pieces, if both are facets.
+    fn add_pieces(&mut self, pieces: [usize; 2]) {
         let [p, q] = [0, 1].map(|k| self.shapes[k].facet(pieces[k]));
         if let (Some((own, f)), Some((other, g))) = (p, q) {
             let TwoBodies { moving_matrix, fixed_matrix, offset, .. } = self.bodies;
             let [f, g] = [f.map(|v| moving_matrix * v), g.map(|v| fixed_matrix * v + offset)];
-            self.guesses.take([own, other], [&f, &g], self.off);
+            self.guesses.add_facets([own, other], [&f, &g], self.off);
         }
     }
 
-    /// A point that is inside both.
-    fn holding(&self) -> Option<How> {
-        let (facets, point) = self.guesses.holding(&self.bodies, self.off)?;
-        let pieces = [0, 1].map(|k| self.shapes[k].piece_of(facets[k]));
+    /// Returns the proof of a point inside both solids, or `None`.
+    fn interior_point(&self) -> Option<How> {
+        let (facets, point) = self.guesses.interior_point(&self.bodies, self.off)?;
+        let pieces = [0, 1].map(|k| self.shapes[k].facet_piece(facets[k]));
         Some(How::Point { pieces, point: point.to_array() })
     }
 }
 
-/// The larger piece of two, of those that hold others.
-fn which_to_part(shapes: [&Shape; 2], pieces: [usize; 2]) -> Option<usize> {
-    let are_own = [0, 1].map(|k| shapes[k].parts(pieces[k]).is_empty());
-    node_to_split(are_own, |k| extent(shapes[k].piece(pieces[k])))
+/// Returns the larger of two pieces, among those that have parts. Returns `None` if none has.
+fn piece_to_split(shapes: [&Shape; 2], pieces: [usize; 2]) -> Option<usize> {
+    let are_own = [0, 1].map(|k| shapes[k].sub_pieces(pieces[k]).is_empty());
+    node_to_split(are_own, |k| piece_extent(shapes[k].piece(pieces[k])))
 }
 
-fn extent(piece: &ConvexPolyhedron) -> f64 {
+/// Returns the maximum distance of a vertex from the first one.
+fn piece_extent(piece: &ConvexPolyhedron) -> f64 {
     let corners = piece.vertices();
     corners.iter().map(|v| v.distance(corners[0])).fold(0.0, f64::max)
 }

@@ -1,197 +1,214 @@
-//! Checks of proofs about paths: nothing of the search is used, all vertices are looked at.
+//! Checks proofs about paths without a search, over all vertices.
 //!
-//! What is checked: covers are those of all pairs, each from where the path begins; planes have their gaps, and prove
-//! what is between them; what is taken apart is so by all of its parts. That bodies meet is checked where they are
-//! then, and that none is inside another one where the path begins, anew.
+//! - There is one cover for each pair, from the start of the path.
+//! - Planes have their gaps and prove all times between them. A piece that is split has all its parts.
+//! - A contact is checked at its place. Containment at the start of the path is decided again.
 
 use glam::DVec3;
 use thiserror::Error;
 
 use super::super::proof::PlaneAt;
 use super::super::solid::inside;
-use super::super::verify::{Broken, chain, is_met};
-use super::couple::Couple;
+use super::super::verify::{PlaneListError, check_planes, proves_contact};
+use super::link_pair::LinkPair;
 use super::mechanism::Place;
 use super::proof::{Cover, How, PathMeeting, PathProof, Step, Stretch};
 use super::shape::Shape;
-use super::{PathCast, nested};
+use super::{PathCast, is_nested_at_start};
 use colltrans_convex::answer::CertificateError;
 
-/// What of a proof about a path is not proven.
+/// The entry of a proof about a path that does not hold.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PathProofError {
-    /// There is not a cover for each pair.
-    #[error("there are {covers} covers for {pairs} pairs")]
+    /// The number of covers differs from that of pairs.
+    #[error("the proof has {covers} covers for {pairs} pairs; it needs one for each pair")]
     Pairs {
-        /// How many there are.
+        /// Number of covers.
         covers: usize,
-        /// How many there have to be.
+        /// Number of pairs.
         pairs: usize,
     },
-    /// A body that is taken as a solid does not exist.
-    #[error("the proof takes a body as a solid that does not exist")]
+    /// A body that is converted to a solid does not exist.
+    #[error("the proof converts a body to a solid that does not exist")]
     Solids,
-    /// A cover is not in order.
+    /// A cover has invalid steps.
     #[error(
-        "the cover of pair {pair} is not in order near row {row}: steps follow each other, planes \
-         have normals of length 1, and what is taken apart has all its parts"
+        "the cover of pair {pair} is invalid near row {row}: each step must continue the previous one, normals \
+         must have length 1, and a split piece must have all its parts"
     )]
     Order {
-        /// Of which pair.
+        /// Index of the pair.
         pair: usize,
-        /// Where.
+        /// Row near which the cover is invalid.
         row: usize,
     },
-    /// A plane has not the gap that is claimed.
+    /// A plane has a smaller gap than claimed.
     #[error("a plane of pair {pair} in row {row} proves a gap of {proven}, not {claimed}")]
     Gap {
-        /// Of which pair.
+        /// Index of the pair.
         pair: usize,
-        /// Where.
+        /// Row of the plane.
         row: usize,
-        /// What is proven.
+        /// Proven gap, in world units.
         proven: f64,
-        /// What is claimed.
+        /// Claimed gap, in world units.
         claimed: f64,
     },
-    /// Two planes do not prove what is between them.
-    #[error("two planes of pair {pair} do not prove what is between them, from row {row} on")]
+    /// Two planes do not prove the time between them.
+    #[error("two planes of pair {pair} do not prove the time between them, from row {row} on")]
     Join {
-        /// Of which pair.
+        /// Index of the pair.
         pair: usize,
-        /// Where.
+        /// Row from which the time is not proven.
         row: usize,
     },
-    /// One body is inside another one where the path begins.
-    #[error("the bodies of pair {pair} are one inside the other where the path begins")]
+    /// One body contains the other one at the start of the path.
+    #[error("one body of pair {pair} is inside the other at the start of the path")]
     Inside {
-        /// Of which pair.
+        /// Index of the pair.
         pair: usize,
     },
-    /// That two bodies meet is not proven.
-    #[error("that the bodies of pair {pair} meet in row {row} is not proven")]
+    /// A contact is not proven.
+    #[error("contact of pair {pair} in row {row} is not proven")]
     Meeting {
-        /// Of which pair.
+        /// Index of the pair.
         pair: usize,
-        /// Where.
+        /// Row of the claimed contact.
         row: usize,
-        /// Why not; nothing if they do too little, or there.
+        /// Reason why the proof fails. `None` if its place is invalid, or if the proof holds but does not suffice.
         reason: Option<CertificateError>,
     },
 }
 
+/// Checks a proof about a path. Returns the time up to which no two bodies meet, and the time at which two do, or
+/// infinity.
 pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], PathProofError> {
     let pairs = cast.pairs.len();
     if proof.covers.len() != pairs {
         return Err(PathProofError::Pairs { covers: proof.covers.len(), pairs });
     }
-    let end = Place::at_row(cast.path.last());
+    let end = Place::at_row(cast.path.last_row());
     let mut reached = end;
     for (pair, cover) in proof.covers.iter().enumerate() {
-        let couple = cast.couple(pair);
+        let link_pair = cast.link_pair(pair);
         let shapes = cast.shapes_of(pair);
-        let walk = Walk { couple: &couple, shapes, pair };
-        let up_to = walk.cover(cover, [0, 0], Place::START, end)?;
-        if cover.is_of_the_beginning() && nested(cast, pair).unwrap_or(true) {
+        let check = CoverCheck { link_pair: &link_pair, shapes, pair };
+        let up_to = check.check_cover(cover, [0, 0], Place::START, end)?;
+        if cover.proves_start() && is_nested_at_start(cast, pair).unwrap_or(true) {
             return Err(PathProofError::Inside { pair });
         }
-        reached = reached.min_of(up_to);
+        reached = reached.earlier_of(up_to);
     }
-    let lower = cast.path.time(reached)[0];
+    let lower = cast.path.time_bounds(reached)[0];
     let Some(meeting) = &proof.meeting else {
         return Ok([lower, f64::INFINITY]);
     };
     let PathMeeting { pair, place, .. } = *meeting;
     let fails = |reason| PathProofError::Meeting { pair, row: place.row, reason };
-    if pair >= pairs || !cast.path.has(place) || place < reached {
+    if pair >= pairs || !cast.path.contains(place) || place < reached {
         return Err(fails(None));
     }
-    meets(cast, meeting)?;
-    Ok([lower, cast.path.time(place)[1]])
+    check_contact(cast, meeting)?;
+    Ok([lower, cast.path.time_bounds(place)[1]])
 }
 
-fn meets(cast: &PathCast, meeting: &PathMeeting) -> Result<(), PathProofError> {
+/// Checks that two bodies meet at the claimed place.
+fn check_contact(cast: &PathCast, meeting: &PathMeeting) -> Result<(), PathProofError> {
     let PathMeeting { pair, place, how } = meeting;
-    let (couple, shapes) = (cast.couple(*pair), cast.shapes_of(*pair));
+    let (link_pair, shapes) = (cast.link_pair(*pair), cast.shapes_of(*pair));
     let fails = |reason| PathProofError::Meeting { pair: *pair, row: place.row, reason };
     let are_own = |pieces: &[usize; 2]| {
-        (0..2).all(|k| pieces[k] < shapes[k].count() && shapes[k].parts(pieces[k]).is_empty())
+        (0..2).all(|k| {
+            pieces[k] < shapes[k].piece_count() && shapes[k].sub_pieces(pieces[k]).is_empty()
+        })
     };
     let holds = match how {
-        How::Inside => *place == Place::START && nested(cast, *pair).unwrap_or(false),
+        How::Inside => *place == Place::START && is_nested_at_start(cast, *pair).unwrap_or(false),
         How::Point { pieces, point } => {
-            are_own(pieces) && is_inside(&couple, shapes, *place, *point)
+            are_own(pieces) && is_point_inside_both(&link_pair, shapes, *place, *point)
         }
         How::Pieces { pieces, met } if are_own(pieces) => {
             let bodies = [shapes[0].piece(pieces[0]), shapes[1].piece(pieces[1])];
-            let course = couple.course(bodies, place.row, [place.share; 2]);
-            is_met(&course, place.share, met).map_err(|reason| fails(Some(reason)))?
+            let motion = link_pair.segment_motion(bodies, place.row, [place.share; 2]);
+            proves_contact(&motion, place.share, met).map_err(|reason| fails(Some(reason)))?
         }
         How::Pieces { .. } => false,
     };
     if holds { Ok(()) } else { Err(fails(None)) }
 }
 
-/// Whether a point in the second one's frame is inside both solids at a place.
-fn is_inside(couple: &Couple, shapes: [&Shape; 2], place: Place, point: [f64; 3]) -> bool {
+/// Checks whether a point in the frame of the second solid is inside both solids at a place.
+fn is_point_inside_both(
+    link_pair: &LinkPair,
+    shapes: [&Shape; 2],
+    place: Place,
+    point: [f64; 3],
+) -> bool {
     let [Some(p), Some(q)] = shapes.map(Shape::solid) else { return false };
-    let (bodies, off) = couple.solids([p, q], place);
-    couple.keep == 0.0 && inside::holds(&bodies, off, DVec3::from_array(point))
+    let (bodies, off) = link_pair.place_solids([p, q], place);
+    link_pair.min_gap == 0.0 && inside::is_inside_both(&bodies, off, DVec3::from_array(point))
 }
 
-/// A pair whose cover is walked through.
-struct Walk<'w> {
-    couple: &'w Couple<'w>,
+/// A pair whose cover is traversed.
+struct CoverCheck<'w> {
+    link_pair: &'w LinkPair<'w>,
     shapes: [&'w Shape<'w>; 2],
     pair: usize,
 }
 
-impl Walk<'_> {
-    /// Up to where a cover of two pieces proves that they do not meet, from some place on; at most so far.
-    fn cover(
+impl CoverCheck<'_> {
+    /// Checks a cover of two pieces. Returns the place up to which it proves that they do not meet, at most `until`.
+    fn check_cover(
         &self,
         cover: &Cover,
         pieces: [usize; 2],
         from: Place,
         until: Place,
     ) -> Result<Place, PathProofError> {
-        let mut here = from;
+        let mut reached_place = from;
         for step in &cover.steps {
             match step {
                 Step::Planes(stretches) => {
-                    if let Some(place) = self.planes(stretches, pieces, here)? {
-                        here = place;
+                    if let Some(place) = self.check_stretches(stretches, pieces, reached_place)? {
+                        reached_place = place;
                     }
                 }
                 Step::Parts { which, until, covers } => {
-                    let is_pair = *which < 2 && self.couple.path.has(*until) && *until >= here;
+                    let is_pair = *which < 2
+                        && self.link_pair.path.contains(*until)
+                        && *until >= reached_place;
                     let parts = if is_pair {
-                        self.shapes[*which].parts(pieces[*which])
+                        self.shapes[*which].sub_pieces(pieces[*which])
                     } else {
                         Vec::new()
                     };
                     if parts.is_empty() || parts.len() != covers.len() {
-                        return Err(self.order(here.row));
+                        return Err(self.order_error(reached_place.row));
                     }
-                    let mut reached = until.settled();
+                    let mut reached = until.normalised();
                     for (part, cover) in parts.into_iter().zip(covers) {
                         let mut below = pieces;
                         below[*which] = part;
-                        reached = reached.min_of(self.cover(cover, below, here, *until)?);
+                        reached = reached.earlier_of(self.check_cover(
+                            cover,
+                            below,
+                            reached_place,
+                            *until,
+                        )?);
                     }
-                    if reached < until.settled() {
+                    if reached < until.normalised() {
                         return Ok(reached);
                     }
-                    here = reached;
+                    reached_place = reached;
                 }
             }
         }
-        Ok(here.min_of(until.settled()))
+        Ok(reached_place.earlier_of(until.normalised()))
     }
 
-    /// Up to where planes prove; nothing, if there are none.
-    fn planes(
+    /// Checks planes of two pieces. Returns the place up to which they prove separation, or `None` if there are none.
+    fn check_stretches(
         &self,
         stretches: &[Stretch],
         pieces: [usize; 2],
@@ -202,50 +219,52 @@ impl Walk<'_> {
         for Stretch { row, planes } in stretches {
             let row = *row;
             let (Some(first), Some(last)) = (planes.first(), planes.last()) else {
-                return Err(self.order(row));
+                return Err(self.order_error(row));
             };
             let place = |plane: &PlaneAt| Place { row, share: plane.time };
-            let is_row = row <= self.couple.path.last() && first.time >= 0.0;
+            let is_row = row <= self.link_pair.path.last_row() && first.time >= 0.0;
             if !is_row || planes.iter().any(|plane| plane.alone) {
-                return Err(self.order(row));
+                return Err(self.order_error(row));
             }
-            if place(last).settled() > Place::at_row(self.couple.path.last()) {
-                return Err(self.order(row));
+            if place(last).normalised() > Place::at_row(self.link_pair.path.last_row()) {
+                return Err(self.order_error(row));
             }
             let follows = match before {
-                None => place(first).settled() == from.settled(),
+                None => place(first).normalised() == from.normalised(),
                 Some((last, gap)) => {
                     place(first) >= last
-                        && self.couple.is_near([last, place(first)], [gap, first.gap])
+                        && self.link_pair.gaps_prove_between([last, place(first)], [gap, first.gap])
                 }
             };
             if !follows {
                 let pair = self.pair;
                 return Err(if before.is_none() {
-                    self.order(row)
+                    self.order_error(row)
                 } else {
                     PathProofError::Join { pair, row }
                 });
             }
-            let course = self.couple.course(bodies, row, [0.0, 1.0]);
-            chain(&course, planes).map_err(|broken| self.broken(broken, row))?;
+            let motion = self.link_pair.segment_motion(bodies, row, [0.0, 1.0]);
+            check_planes(&motion, planes).map_err(|broken| self.plane_list_error(broken, row))?;
             before = Some((place(last), last.gap));
         }
-        Ok(before.map(|(place, _)| place.settled()))
+        Ok(before.map(|(place, _)| place.normalised()))
     }
 
-    fn order(&self, row: usize) -> PathProofError {
+    /// Returns the error for an invalid step in a row.
+    fn order_error(&self, row: usize) -> PathProofError {
         PathProofError::Order { pair: self.pair, row }
     }
 
-    fn broken(&self, broken: Broken, row: usize) -> PathProofError {
+    /// Converts an error about a list of planes.
+    fn plane_list_error(&self, broken: PlaneListError, row: usize) -> PathProofError {
         let pair = self.pair;
         match broken {
-            Broken::Plane { .. } => PathProofError::Order { pair, row },
-            Broken::Gap { proven, claimed, .. } => {
+            PlaneListError::Plane { .. } => PathProofError::Order { pair, row },
+            PlaneListError::Gap { proven, claimed, .. } => {
                 PathProofError::Gap { pair, row, proven, claimed }
             }
-            Broken::Join { .. } => PathProofError::Join { pair, row },
+            PlaneListError::Join { .. } => PathProofError::Join { pair, row },
         }
     }
 }

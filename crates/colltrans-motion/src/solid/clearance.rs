@@ -1,16 +1,19 @@
-//! How far along its motion a solid can go, and what an overlap when it begins may mean.
+//! How far a solid can move along its motion, and the meaning of an overlap at the start.
 //!
-//! With [`StartOverlap::Ignore`] two facets that cross count from the first time on at which they are seen apart; then
-//! as all others, but only for contacts at which they look at each other: what is inside may come out.
+//! With [`StartOverlap::Ignore`], two facets that cross at the start count from the first sampled time on at which they
+//! are separated. All facets count only for contacts at which they face each other, so that a part inside another one
+//! can leave it.
 
 use super::super::answer::{MotionFree, MotionOutcome, MotionSteps};
-use super::super::clearance::{MotionClearance, MotionOverlap, at, true_time};
-use super::super::span::{Span, spans};
-use super::super::{MotionCast, stalled};
-use super::facets::{self, FacetLooker};
-use super::search::Found;
-use super::tree::{Facet, Tree};
-use super::{Mode, searched};
+use super::super::clearance::{
+    MotionClearance, MotionOverlap, nominal_contact_time, sample_in_spans,
+};
+use super::super::span::{Span, split_into_spans};
+use super::super::{MotionCast, step_limit_error};
+use super::facets::{self, FacetSampler};
+use super::search::EarliestContact;
+use super::tree::{Facet, SolidTree};
+use super::{SearchMode, search_span};
 use colltrans_convex::answer::Bounded;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidSteps;
@@ -20,21 +23,23 @@ use colltrans_solid::solve::overlap;
 use colltrans_solid::{SolidCast, SolidOverlap, SolidScene, StartOverlap};
 
 impl MotionCast<'_, Solid> {
-    /// The same with another meaning of an overlap when the motion begins, for [`Self::clearance`].
+    /// Returns the cast with another meaning of an overlap at the start, for [`Self::clearance`].
     #[must_use]
     pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
         Self { start_overlap, ..self }
     }
 
-    /// How far along its motion the body can go, in the meaning of [`Cast::clearance`](colltrans_convex::Cast::clearance): a slide
-    /// has the same answer.
+    /// Computes how far the body can move along its motion, with the meaning of
+    /// [`Cast::clearance`](colltrans_convex::Cast::clearance). A translation has the same answer as there.
     ///
-    /// The proof of its `shrunk` bounds is that of [`Self::certified_first_contact`]. With [`StartOverlap::Ignore`],
-    /// where bodies overlap when the motion begins, there is none: proven is that no two facets meet before which were
-    /// apart then; that those which crossed do not count is an agreement, and when they are apart is found by looks.
+    /// The proof of its `shrunk` bounds is that of [`Self::certified_first_contact`]. Solids that overlap at the start
+    /// have no such proof with [`StartOverlap::Ignore`]. It is then proven that no two facets meet earlier that were
+    /// separated at the start. That facets which crossed do not count is a convention, and the time at which they are
+    /// separated is found by samples.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::first_contact`], and [`QueryError::NotConverged`] if the search took its maximum
+    /// number of steps.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -42,7 +47,7 @@ impl MotionCast<'_, Solid> {
     /// use colltrans::solid::StartOverlap;
     /// use colltrans::{ConvexPolyhedron, Pose};
     ///
-    /// // A plate that is pressed 1/8 into a table is turned out of it about its edge.
+    /// A plate that is pressed 1/8 into a table is turned out of it about its edge.
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let plate = ConvexPolyhedron::cuboid(DVec3::new(0.0, 0.0, -0.125), DVec3::new(1.0, 2.0, 1.0))?;
     /// let out = Motion::turn(Pose::IDENTITY, DVec3::new(-1.0, 0.0, 0.0), DVec3::NEG_Y, 1.0)?;
@@ -54,75 +59,81 @@ impl MotionCast<'_, Solid> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn clearance(&self) -> Result<MotionClearance<()>, QueryError> {
-        let start = self.start()?;
+        let start = self.start_cast()?;
         let scene = start.asked_of_something()?;
         let place = overlap::find(&scene, &mut SolidSteps::default());
         if let Some(place) = place
             && self.start_overlap == StartOverlap::Refuse
         {
             let found = start.overlap_at(place, SolidSteps::default());
-            return Ok(MotionClearance::Overlapping(of_solids(&found)));
+            return Ok(MotionClearance::Overlapping(convert_overlap(&found)));
         }
-        let mode = if place.is_some() { Mode::Ignoring } else { Mode::Plain };
+        let mode = if place.is_some() {
+            SearchMode::IgnoringStartOverlaps
+        } else {
+            SearchMode::FirstContact
+        };
         let (tolerance, mut steps) = (self.tolerance(), MotionSteps::default());
-        let trees = self.trees(tolerance);
-        for span in spans(trees.each_ref(), self.motions(), self.keep) {
-            let (found, _) = searched(&span, mode, &mut steps);
+        let trees = self.shrunk_trees(tolerance);
+        for span in split_into_spans(trees.each_ref(), self.motions(), self.min_gap) {
+            let (found, _) = search_span(&span, mode, &mut steps);
             let Some(mut found) = found else { continue };
-            if mode == Mode::Plain {
-                found = Self::confirmed(&span, found, &mut steps);
+            if mode == SearchMode::FirstContact {
+                found = Self::with_earlier_contact(&span, found, &mut steps);
             }
-            let time = self.true_time(&span, &found);
-            return match self.contact(&span, &found, steps, |_| ()) {
+            let time = self.blocking_time(&span, &found);
+            return match self.contact_outcome(&span, &found, steps, |_| ()) {
                 MotionOutcome::Contact(shrunk) | MotionOutcome::Grazing(shrunk) => {
                     Ok(MotionClearance::blocked(time, tolerance, shrunk))
                 }
-                MotionOutcome::Undecided(undecided) => Err(stalled(&undecided)),
+                MotionOutcome::Undecided(undecided) => Err(step_limit_error(&undecided)),
                 MotionOutcome::Free(_) | MotionOutcome::Overlapping(_) => continue,
             };
         }
         Ok(MotionClearance::Free(MotionFree { proof: (), steps }))
     }
 
-    /// What overlaps when the motion begins, with the least tolerance: what [`MotionClearance::Overlapping`] tells, and
-    /// what an answer with [`StartOverlap::Ignore`] has ignored.
+    /// Returns the overlap at the start and the least tolerance that removes it. [`MotionClearance::Overlapping`]
+    /// reports it, and [`StartOverlap::Ignore`] ignores it. Returns `None` if the solids do not overlap at the start.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::first_contact`].
     pub fn start_overlap(&self) -> Result<Option<MotionOverlap>, QueryError> {
-        Ok(self.start()?.start_overlap().as_ref().map(of_solids))
+        Ok(self.start_cast()?.start_overlap().as_ref().map(convert_overlap))
     }
 
-    /// When the two facets that stop the body meet as they are.
-    fn true_time(&self, span: &Span<Tree>, found: &Found) -> Bounded {
+    /// Computes when the two blocking facets meet in their nominal position.
+    fn blocking_time(&self, span: &Span<SolidTree>, found: &EarliestContact) -> Bounded {
         let upper = found.met.map_or(f64::INFINITY, |(time, ..)| time);
         let facets = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
-        let part = span.part(facets.each_ref(), [span.from, span.to]);
-        let instant = part.instant(found.lower);
-        let [f, g] = facets::corners(&instant);
+        let part = span.part_span(facets.each_ref(), [span.from, span.to]);
+        let instant = part.instant_at(found.lower);
+        let [f, g] = facets::placed_corners(&instant);
         let near = triangle::nearest(&f, &g, instant.bodies.noise().point());
-        // How far shrinking has moved the two points that meet from each other.
-        let bare = [0, 1].map(|k| {
+        // Change of the distance of the two points of contact due to the offset.
+        let nominal = [0, 1].map(|k| {
             let solid = self.bodies()[k];
             let triangle = solid.triangles()[found.triangles[k] as usize];
             Facet::new(triangle.map(|v| solid.vertices()[v as usize]))
         });
         let moved = |k: usize| {
-            let [a, b] = [&bare[k], &facets[k]];
+            let [a, b] = [&nominal[k], &facets[k]];
             triangle::mean(&a.corners, near.weights[k])
                 - triangle::mean(&b.corners, near.weights[k])
         };
         let [p, q] =
             [instant.bodies.moving_matrix * moved(0), instant.bodies.fixed_matrix * moved(1)];
-        let much = near.normal.dot(p - q).max(0.0);
-        let mut looker = FacetLooker::default();
-        let all = spans(facets.each_ref(), self.motions(), self.keep);
-        let rate = at(&all, found.lower, &mut looker).map_or(0.0, |look| look.rate);
-        let bare = spans(bare.each_ref(), self.motions(), self.keep);
-        true_time(&bare, &mut looker, [much, rate], [found.lower, upper])
+        let added_gap = near.normal.dot(p - q).max(0.0);
+        let mut sampler = FacetSampler::default();
+        let all = split_into_spans(facets.each_ref(), self.motions(), self.min_gap);
+        let rate =
+            sample_in_spans(&all, found.lower, &mut sampler).map_or(0.0, |sample| sample.rate);
+        let nominal = split_into_spans(nominal.each_ref(), self.motions(), self.min_gap);
+        nominal_contact_time(&nominal, &mut sampler, [added_gap, rate], [found.lower, upper])
     }
 }
 
-fn of_solids(SolidOverlap { place, least_tolerance, .. }: &SolidOverlap) -> MotionOverlap {
+/// Converts an overlap of solids.
+fn convert_overlap(SolidOverlap { place, least_tolerance, .. }: &SolidOverlap) -> MotionOverlap {
     MotionOverlap { least_tolerance: *least_tolerance, place: Some(*place) }
 }

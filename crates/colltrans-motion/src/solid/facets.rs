@@ -1,114 +1,119 @@
-//! Two facets on their way: how far apart, and that they cross.
+//! Two facets in motion: their distance, and proofs that they cross.
 //!
-//! A distance is that of two triangles in closed form ([`triangle`]), whose plane is a guess as any other: a look
-//! takes of it what it proves. That they *cross* is an edge of one that passes through the other: five volumes
-//! have signs, and keep them wherever the points are that computed ones stand for. Points of two facets are off by
-//! less than `e` each, noise and motion together; for vectors `x, y, z` between them the volume then is by less
-//! than `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z| + e)) + 48 u |x||y||z|` in the maximum norm.
+//! - *Distance*: that of two triangles in closed form ([`triangle`]). Its plane is only a guess; a sample claims the
+//!   gap that the plane proves.
+//! - *Crossing*: an edge of one facet passes through the other. The signs of five volumes prove it if they hold for all
+//!   positions within the error of computed points.
+//! - *Error of a volume*: points of both facets have errors below `e`, from rounding and motion. The volume of vectors
+//!   `x, y, z` between them has an error below `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z| + e)) + 48 u
+//!   |x||y||z|` in the maximum norm.
 
 use glam::DVec3;
 
 use super::super::answer::MotionSteps;
-use super::super::bend::Looking;
-use super::super::course::Course;
-use super::super::look::{Look, Looker, closing};
-use super::super::search::{Advanced, End, advance};
+use super::super::curvature::VertexScan;
+use super::super::relative_motion::RelativeMotion;
+use super::super::sample::{Sample, Sampler, closing_speed};
+use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::super::span::{Instant, Span};
 use super::proof::FacetsMet;
 use super::tree::Facet;
 use colltrans_convex::answer::are_weights;
 use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP, LENGTH};
 
-/// Looks at two facets.
+/// Samples distances of two facets.
 #[derive(Debug, Clone, Default)]
-pub(super) struct FacetLooker {
+pub(super) struct FacetSampler {
     pub(super) steps: MotionSteps,
 }
 
-/// The corners of both facets in the setting frame.
-pub(super) fn corners<M>(at: &Instant<'_, M, Facet>) -> [Corners; 2] {
+/// Returns the corners of both facets in the setting frame.
+pub(super) fn placed_corners<M>(at: &Instant<'_, M, Facet>) -> [Corners; 2] {
     let bodies = &at.bodies;
     let [f, g] = [bodies.moving.corners, bodies.fixed.corners];
     [f.map(|v| bodies.moving_matrix * v), g.map(|v| bodies.fixed_matrix * v + bodies.offset)]
 }
 
-impl Looker<Facet> for FacetLooker {
+impl Sampler<Facet> for FacetSampler {
     type Met = FacetsMet;
-    type Supports = Looking;
-    const SUPPORTS: Looking = Looking;
+    type SupportSearch = VertexScan;
+    const SUPPORT_SEARCH: VertexScan = VertexScan;
 
-    fn look<'a, C>(&mut self, course: &C, time: f64) -> Look<'a, C::Moved, Facet>
+    fn sample<'a, C>(&mut self, motion: &C, time: f64) -> Sample<'a, C::Moved, Facet>
     where
-        C: Course<'a, Body = Facet>,
+        C: RelativeMotion<'a, Body = Facet>,
     {
         self.steps.looks += 1;
-        let at = course.instant(time);
+        let at = motion.instant_at(time);
         let noise = at.bodies.noise().point();
-        let [f, g] = corners(&at);
+        let [f, g] = placed_corners(&at);
         let found = triangle::nearest(&f, &g, noise);
-        let gap = found.gap - GAP * noise - course.keep() - course.error();
+        let gap = found.gap - GAP * noise - motion.min_gap() - motion.position_error();
         let [p, q] = [at.bodies.moving.corners, at.bodies.fixed.corners];
         let points = [triangle::mean(&p, found.weights[0]), triangle::mean(&q, found.weights[1])];
-        let (normal, floor) = (found.normal, 4.0 * noise + course.error());
-        let rate = if gap > 0.0 { closing(course, &at, points, normal) } else { 0.0 };
-        Look { at, normal, gap, rate, points, floor }
+        let (normal, floor) = (found.normal, 4.0 * noise + motion.position_error());
+        let rate = if gap > 0.0 { closing_speed(motion, &at, points, normal) } else { 0.0 };
+        Sample { at, normal, gap, rate, points, floor }
     }
 
-    fn met<'a, C>(&mut self, course: &C, time: f64) -> Option<FacetsMet>
+    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<FacetsMet>
     where
-        C: Course<'a, Body = Facet>,
+        C: RelativeMotion<'a, Body = Facet>,
     {
         self.steps.looks += 1;
-        let at = course.instant(time);
-        if course.keep() > 0.0 {
-            let [f, g] = corners(&at);
+        let at = motion.instant_at(time);
+        if motion.min_gap() > 0.0 {
+            let [f, g] = placed_corners(&at);
             let weights = triangle::nearest(&f, &g, at.bodies.noise().point()).weights;
             let met = FacetsMet::Near { weights: weights.map(|w| w.to_array()) };
-            return holds(course, &at, met).then_some(met);
+            return is_contact_proven(motion, &at, met).then_some(met);
         }
         let edges = [true, false].into_iter().flat_map(|moving| (0..3).map(move |k| (moving, k)));
         edges
             .map(|(moving, edge)| FacetsMet::Crossing { moving, edge })
-            .find(|met| holds(course, &at, *met))
+            .find(|met| is_contact_proven(motion, &at, *met))
     }
 }
 
-/// Whether two facets meet at a time, for certain.
-pub(super) fn holds<'a, C: Course<'a, Body = Facet>>(
-    course: &C,
+/// Checks whether two facets are proven to meet at an instant, by the given proof.
+pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
+    motion: &C,
     at: &Instant<'a, C::Moved, Facet>,
     met: FacetsMet,
 ) -> bool {
-    let (noise, [f, g]) = (at.bodies.noise().point(), corners(at));
+    let (noise, [f, g]) = (at.bodies.noise().point(), placed_corners(at));
     match met {
         FacetsMet::Crossing { moving, edge } => {
             let (own, other) = if moving { (f, g) } else { (g, f) };
-            let (k, off) = (edge as usize, noise + course.error());
-            k < 3 && course.keep() == 0.0 && pierces(own[k], own[(k + 1) % 3], other, off)
+            let (k, off) = (edge as usize, noise + motion.position_error());
+            k < 3
+                && motion.min_gap() == 0.0
+                && segment_crosses_triangle(own[k], own[(k + 1) % 3], other, off)
         }
         FacetsMet::Near { weights } => {
             let length = triangle::length(&f, &g, weights.map(DVec3::from_array));
             weights.iter().all(|weights| are_weights(&weights[..]))
-                && length + LENGTH * noise + course.error() <= course.keep()
+                && length + LENGTH * noise + motion.position_error() <= motion.min_gap()
         }
-        // It is more than two facets that tell.
+        // These proofs are about whole solids, not about two facets.
         FacetsMet::Inside { .. } | FacetsMet::Contained { .. } => false,
     }
 }
 
-/// Whether a segment passes through a triangle, wherever its points are to within `e`.
-fn pierces(p: DVec3, q: DVec3, [a, b, c]: Corners, e: f64) -> bool {
-    let [below, above] = [p, q].map(|end| sign([b - a, c - a, end - a], e));
+/// Checks whether a segment passes through a triangle for all positions of its points within `e`.
+fn segment_crosses_triangle(p: DVec3, q: DVec3, [a, b, c]: Corners, e: f64) -> bool {
+    let [below, above] = [p, q].map(|end| volume_sign([b - a, c - a, end - a], e));
     if below == 0 || below + above != 0 {
         return false;
     }
-    let way = q - p;
-    let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| sign([way, u - p, v - p], e));
+    let relative_velocity = q - p;
+    let turns =
+        [(a, b), (b, c), (c, a)].map(|(u, v)| volume_sign([relative_velocity, u - p, v - p], e));
     turns[0] != 0 && turns == [turns[0]; 3]
 }
 
-/// The sign of the volume of three vectors between such points, 0 if it is not certain.
-fn sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
+/// Returns the sign of the volume of three vectors between points with the error `e`; 0 if it is not certain.
+fn volume_sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
     let [l, m, n] = [x, y, z].map(|v| v.abs().max_element());
     let value = x.cross(y).dot(z);
     let pairs = l * m + m * n + n * l;
@@ -117,93 +122,102 @@ fn sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
     if value.abs() > error { value.signum() as i32 } else { 0 }
 }
 
-/// So many looks are taken at facets that cross, for a time at which they are apart, and that is halved so often.
-const LOOKS: i32 = 8;
-const HALVINGS: i32 = 40;
+/// Number of intervals in which crossing facets are sampled for a time at which they are separated; and the number of
+/// bisections of that interval.
+const SAMPLES: i32 = 8;
+const BISECTIONS: i32 = 40;
 
-/// After a contact that does not count they are looked at so much later, in parts of the span, each time twice as much.
-const SOON: f64 = 1e-9;
-const ROUNDS: i32 = 32;
+/// Time after an ignored contact of the next sample, as a share of the span; doubled at each contact. And the maximum
+/// number of such contacts.
+const FIRST_RETRY_SHARE: f64 = 1e-9;
+const MAX_RETRIES: i32 = 32;
 
-/// Facets that look along their way by no more than this share of it are on edge.
-const ON_EDGE: f64 = 1e-12;
+/// Maximum cosine between normal and direction of motion at which a facet counts as parallel to the motion.
+const MIN_COSINE: f64 = 1e-12;
 
-/// A contact that begins after two facets were apart.
+/// A contact that begins after two facets were separated.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Later {
-    /// They are apart before, back to then.
+pub(super) struct LaterContact {
+    /// Time up to which they are separated, since they were last found to be.
     pub(super) lower: f64,
-    /// When they meet for certain, and why.
+    /// Time of a proven contact and the proof.
     pub(super) met: Option<(f64, FacetsMet)>,
 }
 
-/// The first contact of two facets that begins within a span while they look at each other, of which it is told which
-/// have a side to look to. Facets that are not apart when the span begins are left out until they are, but for those
-/// that may only touch when the motion does.
-pub(super) fn later(
+/// Finds the first contact of two facets that begins within a span while they face each other. `sided` states which
+/// facets have an outer side. Facets that are not separated at the start of the span are ignored until they are. An
+/// exception are facets that may only touch at the start of the motion.
+pub(super) fn find_later_contact(
     span: &Span<Facet>,
     sided: [bool; 2],
-    looker: &mut FacetLooker,
-) -> Option<Later> {
-    let begins = span.from == 0.0 && !looker.look(span, 0.0).is_apart();
-    if begins && looker.met(span, 0.0).is_none() && look_at_each_other(span, 0.0, sided, looker) {
-        return Some(Later { lower: 0.0, met: None });
+    sampler: &mut FacetSampler,
+) -> Option<LaterContact> {
+    let begins = span.from == 0.0 && !sampler.sample(span, 0.0).is_apart();
+    if begins
+        && sampler.prove_contact(span, 0.0).is_none()
+        && face_each_other(span, 0.0, sided, sampler)
+    {
+        return Some(LaterContact { lower: 0.0, met: None });
     }
-    let mut from = apart_from(span, span.from, looker)?;
-    for k in 0..ROUNDS {
-        let part = span.within([from, span.to]);
-        let Advanced { planes, end } = advance(&part, looker);
+    let mut from = find_separation_from(span, span.from, sampler)?;
+    for k in 0..MAX_RETRIES {
+        let part = span.restricted_to([from, span.to]);
+        let SpanResult { planes, end } = prove_span(&part, sampler);
         let lower = planes.last().map_or(from, |plane| plane.time);
         let met = match end {
-            End::Free => return None,
-            End::Met(time, met) => Some((time, met)),
-            End::Blurred | End::Stalled => None,
+            SpanEnd::Free => return None,
+            SpanEnd::Met(time, met) => Some((time, met)),
+            SpanEnd::Indeterminate | SpanEnd::Stalled => None,
         };
-        if look_at_each_other(span, lower, sided, looker) {
-            return Some(Later { lower, met });
+        if face_each_other(span, lower, sided, sampler) {
+            return Some(LaterContact { lower, met });
         }
-        let more = (span.to - span.from) * SOON * 2.0_f64.powi(k);
+        let more = (span.to - span.from) * FIRST_RETRY_SHARE * 2.0_f64.powi(k);
         let after = met.map_or(lower, |(time, _)| time) + more;
-        from = apart_from(span, after, looker)?;
+        from = find_separation_from(span, after, sampler)?;
     }
     None
 }
 
-/// The first time seen, from one on, at which two facets are apart.
-fn apart_from(span: &Span<Facet>, from: f64, looker: &mut FacetLooker) -> Option<f64> {
+/// Returns the first sampled time, from `from` on, at which two facets are separated. Returns `None` if there is none.
+fn find_separation_from(span: &Span<Facet>, from: f64, sampler: &mut FacetSampler) -> Option<f64> {
     if from > span.to {
         return None;
     }
-    let time = |k: i32| from + (span.to - from) * (f64::from(k) / f64::from(LOOKS));
-    let mut is_apart = |time: f64| looker.look(span, time).is_apart();
-    let first = (0..=LOOKS).find(|k| is_apart(time(*k)))?;
+    let time = |k: i32| from + (span.to - from) * (f64::from(k) / f64::from(SAMPLES));
+    let mut is_apart = |time: f64| sampler.sample(span, time).is_apart();
+    let first = (0..=SAMPLES).find(|k| is_apart(time(*k)))?;
     if first == 0 {
         return Some(from);
     }
     let [mut low, mut high] = [time(first - 1), time(first).min(span.to)];
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTIONS {
         let middle = low + 0.5 * (high - low);
         *(if is_apart(middle) { &mut high } else { &mut low }) = middle;
     }
     Some(high)
 }
 
-/// Whether facets that meet do so from outside of both, as those of a cast; those without a side always do.
-fn look_at_each_other(
+/// Checks whether each facet moves towards the outer side of the other one, as in a cast. Facets without a side always
+/// pass.
+fn face_each_other(
     span: &Span<Facet>,
     time: f64,
     sided: [bool; 2],
-    looker: &mut FacetLooker,
+    sampler: &mut FacetSampler,
 ) -> bool {
-    let at = span.instant(time);
-    let [f, g] = corners(&at);
-    looker.steps.looks += 1;
+    let at = span.instant_at(time);
+    let [f, g] = placed_corners(&at);
+    sampler.steps.looks += 1;
     let weights = triangle::nearest(&f, &g, at.bodies.noise().point()).weights;
     let bodies = [at.bodies.moving.corners, at.bodies.fixed.corners];
-    let speed = |k: usize| span.velocity(&at, k, triangle::mean(&bodies[k], weights[k]));
-    // How the moving facet goes, seen from the fixed one.
-    let way = speed(0) - speed(1);
+    let speed = |k: usize| span.point_velocity(&at, k, triangle::mean(&bodies[k], weights[k]));
+    // Velocity of the moving facet relative to the fixed one.
+    let relative_velocity = speed(0) - speed(1);
     let normal = |[a, b, c]: Corners| (b - a).cross(c - a);
-    let looks = |n: DVec3, way: DVec3| n.dot(way) > ON_EDGE * n.length() * way.length();
-    (!sided[0] || looks(normal(f), way)) && (!sided[1] || looks(normal(g), -way))
+    let is_towards = |n: DVec3, relative_velocity: DVec3| {
+        n.dot(relative_velocity) > MIN_COSINE * n.length() * relative_velocity.length()
+    };
+    (!sided[0] || is_towards(normal(f), relative_velocity))
+        && (!sided[1] || is_towards(normal(g), -relative_velocity))
 }

@@ -1,67 +1,69 @@
-//! That two solids meet at one time, for certain: two facets do, of all that no plane parts then, or a point is inside both.
+//! Proves that two solids meet at one time: two facets cross, or a point is inside both.
 //!
-//! Facets that have passed each other are apart again, as those of a face that has sunk into another: it is all pairs
-//! that tell. So are those of a solid and a point or a segment that has gone in as a whole.
+//! All pairs of facets that no plane separates at this time are tested. This is necessary because two facets that have
+//! passed each other are separated again, for example those of a face that has sunk into another one. The same holds
+//! for a point or a segment that is entirely inside a solid.
 
-use super::super::look::Looker;
-use super::super::soon::Seen;
-use super::facets::{FacetLooker, corners};
-use super::inside::{Contained, Guesses, contained};
+use super::super::crossing_time::ContactState;
+use super::super::sample::Sampler;
+use super::facets::{FacetSampler, placed_corners};
+use super::inside::{Contained, Guesses, find_contained_point};
 use super::proof::FacetsMet;
-use super::search::{parted, split};
-use super::tree::Below;
-use super::window::{Frame, Part, Plane};
+use super::search::{find_separating_plane, split_larger_node};
+use super::tree::NodeContent;
+use super::window::{PlaneName, SpanFrame, TreePart};
 
-/// Looks through both trees.
-pub(super) fn seen(
-    frame: &Frame,
+/// Searches both trees for a proof that the solids meet at a time.
+pub(super) fn contact_state_at(
+    frame: &SpanFrame,
     time: f64,
-    looker: &mut FacetLooker,
-) -> Seen<([u32; 2], FacetsMet)> {
+    sampler: &mut FacetSampler,
+) -> ContactState<([u32; 2], FacetsMet)> {
     let trees = [frame.span.body(0), frame.span.body(1)];
-    let snap = frame.snap(time);
-    let mut all = Seen::Apart;
+    let snap = frame.snapshot_at(time);
+    let mut state = ContactState::Apart;
     let (mut stack, mut guesses) = (vec![[0, 0]], Guesses::default());
-    let bodies = frame.span.instant(time).bodies;
+    let bodies = frame.span.instant_at(time).bodies;
     let off = bodies.noise().point() + frame.span.error;
     while let Some(at) = stack.pop() {
-        let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
+        let parts = [0, 1].map(|k| TreePart::at_node(trees[k], at[k]));
         let window = frame.window([&snap, &snap], parts.each_ref());
-        let facets = parts.each_ref().map(Part::facet);
-        let is_parted =
-            parted(&window, facets.map(|facet| facet.is_some()), Plane::Middles).is_some();
+        let facets = parts.each_ref().map(TreePart::facet);
+        let is_separated =
+            find_separating_plane(&window, facets.map(|facet| facet.is_some()), PlaneName::Middles)
+                .is_some();
         let nodes = [0, 1].map(|k| trees[k].node(at[k]));
-        if let ([Some(f), Some(g)], [Below::Facet(s), Below::Facet(t)]) =
-            (facets, nodes.map(|node| node.below))
+        if let ([Some(f), Some(g)], [NodeContent::Facet(s), NodeContent::Facet(t)]) =
+            (facets, nodes.map(|node| node.content))
         {
-            let span = frame.span.part([f, g], [frame.span.from, frame.span.to]);
-            let [own, other] = corners(&span.instant(time));
-            guesses.take([s, t], [&own, &other], off);
-            if is_parted {
+            let span = frame.span.part_span([f, g], [frame.span.from, frame.span.to]);
+            let [own, other] = placed_corners(&span.instant_at(time));
+            guesses.add_facets([s, t], [&own, &other], off);
+            if is_separated {
                 continue;
             }
-            if let Some(met) = looker.met(&span, time) {
-                return Seen::Met(([s, t], met));
+            if let Some(met) = sampler.prove_contact(&span, time) {
+                return ContactState::Met(([s, t], met));
             }
-            if !looker.look(&span, time).is_apart() {
-                all = Seen::Open;
+            if !sampler.sample(&span, time).is_apart() {
+                state = ContactState::Undecided;
             }
-        } else if let Some((_, pairs)) = split(at, nodes).filter(|_| !is_parted) {
+        } else if let Some((_, pairs)) = split_larger_node(at, nodes).filter(|_| !is_separated) {
             stack.extend(pairs);
         }
     }
-    if frame.span.keep > 0.0 {
-        return all;
+    if frame.span.min_gap > 0.0 {
+        return state;
     }
-    match contained(&bodies, off) {
-        Contained::Met(met) => return Seen::Met(([0, 0], met)),
-        Contained::Barely => return Seen::Open,
+    match find_contained_point(&bodies, off) {
+        Contained::Met(met) => return ContactState::Met(([0, 0], met)),
+        Contained::Barely => return ContactState::Undecided,
         Contained::None => {}
     }
-    if let Seen::Open = all
-        && let Some((pair, point)) = guesses.holding(&bodies, off)
+    if let ContactState::Undecided = state
+        && let Some((pair, point)) = guesses.interior_point(&bodies, off)
     {
-        return Seen::Met((pair, FacetsMet::Inside { point: point.to_array() }));
+        return ContactState::Met((pair, FacetsMet::Inside { point: point.to_array() }));
     }
-    all
+    state
 }

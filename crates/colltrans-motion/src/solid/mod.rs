@@ -1,12 +1,13 @@
-//! Solids that turn: when do two of them first touch?
+//! Motions of solids: the time at which two of them first meet.
 //!
-//! Both are shrunk by half a tolerance, as for casts, so that what fits may turn in what holds it. Whether they
-//! overlap when the motion begins is decided exactly, insides and all; from then on surfaces have to meet before
-//! insides do. Which facets meet first is asked of both trees of boxes and of time.
+//! Both solids are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
+//! it. An overlap at the start, including containment, is decided exactly. Afterwards the surfaces must meet before one
+//! solid can contain the other. The search looks for the first contact of facets in both bounding volume trees and in
+//! time.
 //!
-//! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
-//! one plane), `facets` (two facets, as convex bodies), `inside` (a point inside both), `proof` (entries of a cover),
-//! `search`, `meeting` (what meets at a time), `verify`, `clearance`.
+//! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and one
+//! plane), `facets` (two facets as convex bodies), `inside` (a point inside both solids), `proof` (entries of a cover),
+//! `search`, `meeting` (proves contact at a time), `verify`, `clearance`.
 
 mod clearance;
 mod facets;
@@ -20,20 +21,20 @@ mod window;
 
 use glam::DVec3;
 
-use self::facets::FacetLooker;
-use self::meeting::seen;
-use self::proof::Written;
+use self::facets::FacetSampler;
+use self::meeting::contact_state_at;
+use self::proof::RecordedProof;
 pub use self::proof::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
-use self::search::{Found, Mode, Search};
+use self::search::{EarliestContact, SearchMode, TreeSearch};
 #[cfg(feature = "json")]
 pub use self::tree::Parts;
-use self::tree::Tree;
-use self::window::Frame;
+use self::tree::SolidTree;
+use self::window::SpanFrame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
-use super::soon::soon;
-use super::span::{Span, spans};
+use super::crossing_time::find_crossing_time;
+use super::span::{Span, split_into_spans};
 use super::verify::MotionProofError;
-use super::{MotionCast, Moving, check_fine, usual_tolerance};
+use super::{MotionCast, Moving, check_accuracy, default_tolerance};
 use colltrans_convex::body::Features;
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
@@ -46,19 +47,20 @@ use colltrans_solid::solve::nearest::{Spot, points_of, triangle};
 use colltrans_solid::solve::overlap;
 use colltrans_solid::solve::scene::Scene;
 
-/// How often a proof up to a contact is tried, each time a little shorter.
-const MOST_CUTS: i32 = 40;
+/// Maximum number of attempts to prove the time up to a contact, each with a slightly earlier end.
+const MAX_PROOF_ATTEMPTS: i32 = 40;
 
-/// Solids that turn. Answers are as of convex bodies, of both bodies shrunk by half the tolerance.
+/// Queries of solids in motion. Their answers are those of convex bodies, for both solids shrunk by half of the
+/// tolerance.
 impl<'a> MotionCast<'a, Solid> {
-    /// Between bodies of either kind, as solids: a solid and a convex polyhedron, say.
+    /// Builds the cast of two bodies as solids. Each of them is a solid or a convex polyhedron.
     ///
-    /// A point or a segment is accepted. Its contact with a closed solid has an upper bound: a time at which a point of it
-    /// is inside ([`FacetsMet::Contained`]), or at which a segment passes through a facet. A point that passes
-    /// through an open shell has none, and its contact is [`MotionOutcome::Grazing`].
+    /// A point or a segment is accepted. Its contact with a closed solid has an upper bound: a time at which one of its
+    /// points is inside ([`FacetsMet::Contained`]), or at which a segment passes through a facet. The contact of a
+    /// point that passes through an open shell has no upper bound, and is [`MotionOutcome::Grazing`].
     ///
     /// # Errors
-    /// A convex body whose facets [`Solid::from_mesh`] refuses.
+    /// Returns an error for a convex body whose facets [`Solid::from_mesh`] rejects.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -87,162 +89,173 @@ impl<'a> MotionCast<'a, Solid> {
         )
     }
 
-    /// The same with a gap to be kept, in world units: what counts is when the bodies, shrunk, are no farther apart.
+    /// Returns the cast with a minimum gap, in world units. The queries then find when the distance of the shrunk
+    /// solids falls to the gap.
     ///
     /// # Errors
-    /// A gap that is negative, not finite or out of range.
+    /// Returns [`QueryError::Keep`] if the gap is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
         check_min_gap(gap)?;
-        Ok(Self { keep: gap, ..self })
+        Ok(Self { min_gap: gap, ..self })
     }
 
-    /// The same with both bodies shrunk by half of this length. Without it they are by what rounding can do to a fit:
-    /// what touches may part, slide and turn, and is stopped where it is pushed.
+    /// Returns the cast with a tolerance: both solids are shrunk by half of this length. The default tolerance covers
+    /// the rounding errors of a fit. With it, solids in contact may separate, slide and rotate, and are stopped where
+    /// they would be pushed together.
     ///
     /// # Errors
-    /// A length that is negative or not finite, or that leaves nothing of a closed body.
+    /// Returns an error if the length is negative or not finite, or if it leaves nothing of a closed solid.
     pub fn tolerating(self, tolerance: f64) -> Result<Self, QueryError> {
         let cast = Self { tolerance: Some(tolerance), ..self };
-        cast.start().map(|_| cast)
+        cast.start_cast().map(|_| cast)
     }
 
-    /// The tolerance that is used, as a length.
+    /// Returns the tolerance in use, as a length in world units.
     pub fn tolerance(&self) -> f64 {
-        self.tolerance.unwrap_or_else(|| usual_tolerance(self.bodies(), self.motions()))
+        self.tolerance.unwrap_or_else(|| default_tolerance(self.bodies(), self.motions()))
     }
 
-    /// When do the bodies first meet? No proof is made: see [`Self::certified_first_contact`].
+    /// Finds the first time at which the solids meet, without a proof. For a proof, see
+    /// [`Self::certified_first_contact`].
     ///
     /// # Errors
-    /// A body so thin that the default tolerance leaves nothing of it.
+    /// Returns an error if the default tolerance leaves nothing of a thin solid.
     pub fn first_contact(&self) -> Result<MotionOutcome<()>, QueryError> {
         let tolerance = self.tolerance();
-        let (start, mut steps) = (self.start()?, MotionSteps::default());
+        let (start, mut steps) = (self.start_cast()?, MotionSteps::default());
         if overlap::find(&start.asked_of_something()?, &mut SolidSteps::default()).is_some() {
-            return Ok(MotionOutcome::Overlapping(self.overlapping((), steps)));
+            return Ok(MotionOutcome::Overlapping(self.overlap_contact((), steps)));
         }
-        let trees = self.trees(tolerance);
-        for span in spans(trees.each_ref(), self.motions(), self.keep) {
-            let (found, _) = searched(&span, Mode::Plain, &mut steps);
+        let trees = self.shrunk_trees(tolerance);
+        for span in split_into_spans(trees.each_ref(), self.motions(), self.min_gap) {
+            let (found, _) = search_span(&span, SearchMode::FirstContact, &mut steps);
             if let Some(found) = found {
-                let found = Self::confirmed(&span, found, &mut steps);
-                return Ok(self.contact(&span, &found, steps, |_| ()));
+                let found = Self::with_earlier_contact(&span, found, &mut steps);
+                return Ok(self.contact_outcome(&span, &found, steps, |_| ()));
             }
         }
         Ok(MotionOutcome::Free(MotionFree { proof: (), steps }))
     }
 
-    /// The same with its proof, which [`Self::verify`] checks without a search. A contact takes a search more: from
-    /// the start to it.
+    /// Finds the first time at which the solids meet, with a proof that [`Self::verify`] checks without a search. A
+    /// contact takes an additional search, from the start of its span to the contact.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::first_contact`].
     pub fn certified_first_contact(&self) -> Result<MotionOutcome<SolidMotionProof>, QueryError> {
         let tolerance = self.tolerance();
-        let cast = self.start()?;
+        let cast = self.start_cast()?;
         let start = cast.prove_start(&cast.asked_of_something()?, &mut SolidSteps::default());
         let mut proof = SolidMotionProof { tolerance, start, spans: Vec::new(), meeting: None };
         let mut steps = MotionSteps::default();
         if matches!(proof.start, StartProof::Overlapping(_)) {
-            return Ok(MotionOutcome::Overlapping(self.overlapping(proof, steps)));
+            return Ok(MotionOutcome::Overlapping(self.overlap_contact(proof, steps)));
         }
-        let trees = self.trees(tolerance);
-        for span in spans(trees.each_ref(), self.motions(), self.keep) {
-            let (found, written) = searched(&span, Mode::Writing, &mut steps);
+        let trees = self.shrunk_trees(tolerance);
+        for span in split_into_spans(trees.each_ref(), self.motions(), self.min_gap) {
+            let (found, recorded) = search_span(&span, SearchMode::Recording, &mut steps);
             let Some(found) = found else {
-                proof.spans.push(SpanProof::new(span.to, written));
+                proof.spans.push(SpanProof::new(span.to, recorded));
                 continue;
             };
-            let mut found = Self::confirmed(&span, found, &mut steps);
-            let (lower, written) = up_to(&span, found.lower, &mut steps);
+            let mut found = Self::with_earlier_contact(&span, found, &mut steps);
+            let (lower, recorded) = prove_until(&span, found.lower, &mut steps);
             found.lower = lower;
-            proof.spans.push(SpanProof::new(lower, written));
-            return Ok(
-                self.contact(&span, &found, steps, |meeting| SolidMotionProof { meeting, ..proof })
-            );
+            proof.spans.push(SpanProof::new(lower, recorded));
+            return Ok(self.contact_outcome(&span, &found, steps, |meeting| SolidMotionProof {
+                meeting,
+                ..proof
+            }));
         }
         Ok(MotionOutcome::Free(MotionFree { proof, steps }))
     }
 
-    /// Checks a proof without a search. Returns up to which time the bodies, shrunk, are proven not to meet, and when
-    /// they are proven to, infinity if that is not claimed.
+    /// Checks a proof without a search. Returns the time up to which the shrunk solids are proven not to meet, and the
+    /// time at which they are proven to meet. The latter is infinite if the proof claims no contact.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns the first entry of the proof that does not hold.
     pub fn verify(&self, proof: &SolidMotionProof) -> Result<[f64; 2], MotionProofError> {
         verify::verify(self, proof)
     }
 
-    /// The bodies where they start; of no direction.
-    fn start(&self) -> Result<Cast<'a, Solid>, QueryError> {
+    /// Returns a cast of the solids at their start poses, with an arbitrary direction.
+    fn start_cast(&self) -> Result<Cast<'a, Solid>, QueryError> {
         let bodies = self.bodies();
         if self.tolerance.is_none() {
-            check_fine(bodies, self.tolerance())?;
+            check_accuracy(bodies, self.tolerance())?;
         }
         let [p, q] = self.motions().map(|motion| motion.pieces()[0].start);
-        let options = SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.keep);
+        let options =
+            SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.min_gap);
         Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)
     }
 
-    /// The facets and trees that a proof is about.
+    /// Returns the facets and the trees that the entries of a proof refer to.
     #[cfg(feature = "json")]
     #[doc(hidden)]
     pub fn parts(&self) -> [Parts; 2] {
-        self.trees(self.tolerance()).map(|tree| Parts::of(&tree))
+        self.shrunk_trees(self.tolerance()).map(|tree| Parts::from_tree(&tree))
     }
 
-    /// The tolerance, if one was given.
+    /// Returns the tolerance that was set; `None` for the default.
     #[cfg(feature = "json")]
     #[doc(hidden)]
     pub const fn given_tolerance(&self) -> Option<f64> {
         self.tolerance
     }
 
-    fn trees(&self, tolerance: f64) -> [Tree<'a>; 2] {
-        self.bodies().map(|solid| Tree::new(solid, 0.5 * tolerance))
+    /// Builds the trees of both solids, shrunk by half of the tolerance.
+    fn shrunk_trees(&self, tolerance: f64) -> [SolidTree<'a>; 2] {
+        self.bodies().map(|solid| SolidTree::new(solid, 0.5 * tolerance))
     }
 
-    /// The same with two facets that meet for certain, if there are some earlier than those found.
-    fn confirmed(span: &Span<Tree>, mut found: Found, steps: &mut MotionSteps) -> Found {
+    /// Replaces the contact of a search result by an earlier proven contact, if there is one.
+    fn with_earlier_contact(
+        span: &Span<SolidTree>,
+        mut found: EarliestContact,
+        steps: &mut MotionSteps,
+    ) -> EarliestContact {
         let known = found.met.map(|(time, ..)| time);
-        let (frame, mut looker) = (Frame::new(span), FacetLooker::default());
-        let seen = |time| seen(&frame, time, &mut looker);
-        let earlier = soon(found.lower, known, span.to.next_up(), seen);
+        let (frame, mut sampler) = (SpanFrame::new(span), FacetSampler::default());
+        let state = |time| contact_state_at(&frame, time, &mut sampler);
+        let earlier = find_crossing_time(found.lower, known, span.to.next_up(), state);
         if let Some((time, (pair, how))) = earlier {
             found.met = Some((time, pair, how));
         }
-        *steps += looker.steps;
+        *steps += sampler.steps;
         found
     }
 
-    /// The bodies at a time, as they are.
-    fn scene(&self, span: &Span<Tree>, time: f64) -> Option<Scene<'a>> {
-        let bodies = span.instant(time).bodies.holding(self.bodies());
+    /// Returns the frame of the nominal solids at a time. Returns `None` if it is out of range.
+    fn nominal_frame(&self, span: &Span<SolidTree>, time: f64) -> Option<Scene<'a>> {
+        let bodies = span.instant_at(time).bodies.holding(self.bodies());
         let setting = Setting::of(bodies, DVec3::Z).ok()?;
-        Some(Scene::new(&setting, [0.0; 2], self.keep))
+        Some(Scene::new(&setting, [0.0; 2], self.min_gap))
     }
 
-    /// What is to be said where the bodies meet, or may.
-    fn contact<P>(
+    /// Builds the outcome for solids that meet, or may meet.
+    fn contact_outcome<P>(
         &self,
-        span: &Span<Tree>,
-        found: &Found,
+        span: &Span<SolidTree>,
+        found: &EarliestContact,
         steps: MotionSteps,
         proof: impl FnOnce(Option<FacetsMeeting>) -> P,
     ) -> MotionOutcome<P> {
         let meeting =
             found.met.map(|(time, triangles, met)| FacetsMeeting { time, triangles, met });
         let (lower, upper) = (found.lower, meeting.map_or(f64::INFINITY, |meeting| meeting.time));
-        let bodies = span.instant(lower).bodies;
+        let bodies = span.instant_at(lower).bodies;
         let [p, q] = [bodies.moving_matrix, bodies.fixed_matrix];
         let poses =
             [0, 1].map(|k| colltrans_convex::Pose::checked([p, q][k], bodies.translations[k]));
-        // What is proven does not hang on it. The facets are those of the shrunk bodies, and so is the normal.
+        // The bounds do not depend on the rest. The facets are those of the shrunk solids, and so is the normal.
         let [f, g] = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
-        let at = span.part([&f, &g], [span.from, span.to]).instant(lower);
-        let [f, g] = facets::corners(&at);
+        let at = span.part_span([&f, &g], [span.from, span.to]).instant_at(lower);
+        let [f, g] = facets::placed_corners(&at);
         let nearest = triangle::nearest(&f, &g, at.bodies.noise().point());
-        let (spot, scene) = (Spot { triangles: found.triangles, nearest }, self.scene(span, lower));
+        let (spot, scene) =
+            (Spot { triangles: found.triangles, nearest }, self.nominal_frame(span, lower));
         let points = scene.as_ref().map(|scene| {
             points_of(scene, spot.triangles, nearest.weights)
                 .map(|point| point + bodies.translations[0])
@@ -264,32 +277,41 @@ impl<'a> MotionCast<'a, Solid> {
         }
     }
 
-    /// What is said of bodies that overlap when the motion begins.
-    fn overlapping<P>(&self, proof: P, steps: MotionSteps) -> MotionContact<P> {
+    /// Builds the report of solids that overlap at the start.
+    fn overlap_contact<P>(&self, proof: P, steps: MotionSteps) -> MotionContact<P> {
         let poses = self.motions().map(|motion| motion.pieces()[0].start);
         let (points, normal, features) = (None, None, None);
         MotionContact { lower: 0.0, upper: 0.0, poses, points, normal, features, proof, steps }
     }
 }
 
-/// Searches a span.
-fn searched(span: &Span<Tree>, mode: Mode, steps: &mut MotionSteps) -> (Option<Found>, Written) {
-    let mut search = Search::new(Frame::new(span), mode);
-    search.run();
+/// Searches a span. Returns the earliest contact, if any, and the entries of its proof in [`Mode::Writing`].
+fn search_span(
+    span: &Span<SolidTree>,
+    mode: SearchMode,
+    steps: &mut MotionSteps,
+) -> (Option<EarliestContact>, RecordedProof) {
+    let mut search = TreeSearch::new(SpanFrame::new(span), mode);
+    search.process_entries();
     *steps += search.steps;
-    (search.found, search.written.unwrap_or_default())
+    (search.found, search.recorded.unwrap_or_default())
 }
 
-/// What proves a span up to a time, or to a little before where that cannot be written down.
-fn up_to(span: &Span<Tree>, mut until: f64, steps: &mut MotionSteps) -> (f64, Written) {
-    for k in 0..MOST_CUTS {
+/// Proves that nothing meets in a span up to a time. Returns the proof with the time that it reaches, which may be
+/// slightly earlier.
+fn prove_until(
+    span: &Span<SolidTree>,
+    mut until: f64,
+    steps: &mut MotionSteps,
+) -> (f64, RecordedProof) {
+    for k in 0..MAX_PROOF_ATTEMPTS {
         if until <= span.from {
             break;
         }
-        let (found, written) = searched(&span.until(until), Mode::Writing, steps);
-        let Some(found) = found else { return (until, written) };
+        let (found, recorded) = search_span(&span.ending_at(until), SearchMode::Recording, steps);
+        let Some(found) = found else { return (until, recorded) };
         let less = if found.lower < until { 0.0 } else { f64::EPSILON * 2.0_f64.powi(k) };
         until = (found.lower - less).max(span.from);
     }
-    (span.from, Written::default())
+    (span.from, RecordedProof::default())
 }

@@ -1,14 +1,14 @@
-//! What a proof about solids that turn is, and its entries, as a search writes them down.
+//! Proofs about solids in motion, and their entries as a search records them.
 //!
-//! A [`MotionCover`] lists in preorder what became of each pair of parts in its interval, from both bodies in the
-//! whole span on: split, in time or one of the parts, or parted throughout, by a plane that has a name or by a
-//! list of planes of its own. Read to its end it covers all pairs of facets at all times.
+//! A [`MotionCover`] lists in preorder how each pair of parts is treated in its interval, starting with both bodies in
+//! the whole span. The time or one of the parts is split, or the parts are separated throughout, by a named plane or by
+//! a list of planes. The complete list covers all pairs of facets at all times.
 
 use super::super::proof::PlaneAt;
-use super::window::Plane;
+use super::window::PlaneName;
 use colltrans_solid::cast::StartProof;
 
-/// What proves an answer about solids that turn.
+/// Proof of an answer about solids in motion.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -16,18 +16,18 @@ use colltrans_solid::cast::StartProof;
     serde(deny_unknown_fields)
 )]
 pub struct SolidMotionProof {
-    /// The tolerance: both bodies are shrunk by half of it.
+    /// Tolerance, in world units. Both solids are shrunk by half of it.
     pub tolerance: f64,
-    /// Whether they overlap when the motion begins.
+    /// Proof whether the solids overlap at the start of the motion.
     pub start: StartProof,
-    /// For each span of time in which both bodies spin evenly, up to that in which they meet.
+    /// A proof for each span in which both bodies rotate at a constant rate, up to the one with the contact.
     pub spans: Vec<SpanProof>,
-    /// That they meet at a time.
+    /// Proof that the solids meet at a time.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub meeting: Option<FacetsMeeting>,
 }
 
-/// Why no facets meet from the beginning of a span up to a time.
+/// Proof that no facets meet from the start of a span up to a time.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -35,15 +35,15 @@ pub struct SolidMotionProof {
     serde(deny_unknown_fields)
 )]
 pub struct SpanProof {
-    /// That time.
+    /// End of the proven interval.
     pub until: f64,
-    /// All pairs of facets at all times.
+    /// Entries for all pairs of facets at all times.
     pub cover: MotionCover,
-    /// The planes of those facets that it has no letter for, each joined to the next one.
+    /// Planes for each entry that has a list, each joined to the next one.
     pub lists: Vec<Vec<PlaneAt>>,
 }
 
-/// That two facets meet at a time.
+/// Proof that two facets meet at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -51,15 +51,15 @@ pub struct SpanProof {
     serde(deny_unknown_fields)
 )]
 pub struct FacetsMeeting {
-    /// When.
+    /// Time of the contact.
     pub time: f64,
-    /// Which ones, by their positions in [`Solid::triangles`](colltrans_solid::Solid::triangles).
+    /// Indices of the facets in [`Solid::triangles`](colltrans_solid::Solid::triangles).
     pub triangles: [u32; 2],
-    /// Why.
+    /// Proof for this time.
     pub met: FacetsMet,
 }
 
-/// What proves that two facets meet, or the solids that they are of.
+/// Proof that two facets, or their solids, meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -67,36 +67,43 @@ pub struct FacetsMeeting {
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum FacetsMet {
-    /// An edge of one passes through the other, by more than computed places may be off.
+    /// An edge of one facet passes through the other one, by more than the error of computed places.
     Crossing {
-        /// Whether the edge is one of the moving body's facet.
+        /// Whether the edge belongs to the facet of the moving body.
         moving: bool,
-        /// Which one, from this corner to the next: 0, 1 or 2.
+        /// Index of the edge, from this corner to the next one: 0, 1 or 2.
         edge: u8,
     },
-    /// Two points are no farther apart than the gap to be kept.
+    /// Two points are not farther apart than the minimum gap.
     Near {
-        /// The weights of the corners of either facet.
+        /// Weights of the corners of both facets.
         weights: [[f64; 3]; 2],
     },
     /// A point is inside both solids.
     Inside {
-        /// Where, in the frame of the fixed body.
+        /// The point, in the frame of the fixed body.
         point: [f64; 3],
     },
     /// A point of a facet of one body is inside the other body.
     Contained {
-        /// Whether the facet is the moving body's.
+        /// Whether the facet belongs to the moving body.
         moving: bool,
-        /// The weights of its corners.
+        /// Weights of the corners of the facet.
         weights: [f64; 3],
     },
 }
 
-/// What became of each pair of parts in its interval, in preorder. As text a letter each: `T` its time was halved,
-/// `P` or `Q` the moving or the fixed part was split; parted by the plane across the way between the middles `m`,
-/// an axis `a b c` of the moving or `x y z` of the fixed body, the moving `p` or the fixed `q` facet, or an edge of
-/// each `1` to `9`; by a list of planes `L`.
+/// The treatment of each pair of parts in its interval, in preorder. As text it has one letter for each entry:
+///
+/// | letter | entry |
+/// |---|---|
+/// | `T` | the interval is halved |
+/// | `P`, `Q` | the moving or the fixed part is split |
+/// | `m` | separated by the plane perpendicular to the line between the middles |
+/// | `a b c`, `x y z` | separated along an axis of the moving or the fixed body |
+/// | `p`, `q` | separated by the plane of the moving or the fixed facet |
+/// | `1` to `9` | separated by the plane parallel to an edge of each facet |
+/// | `L` | separated by a list of planes |
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -106,70 +113,71 @@ pub enum FacetsMet {
 pub struct MotionCover(pub(super) Vec<Entry>);
 
 impl MotionCover {
-    /// Entries, splits included.
+    /// Returns the number of entries, splits included.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// Checks whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }
 
-/// What became of a pair of parts in an interval.
+/// The treatment of a pair of parts in an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Entry {
-    /// Its time is halved.
+    /// The interval is halved.
     Halved,
     /// The moving (0) or the fixed (1) part is split in two.
     Split(u8),
-    /// A plane parts them throughout.
-    Parted(Plane),
-    /// Two facets, parted by a list of planes.
-    Listed,
+    /// One plane separates the parts throughout.
+    Separated(PlaneName),
+    /// A list of planes separates two facets.
+    PlaneList,
 }
 
-/// A proof, as it is written down: entries in preorder, and the lists of planes that they speak of.
+/// A recorded proof: entries in preorder, and the lists of planes that they refer to.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Written {
+pub(super) struct RecordedProof {
     pub(super) entries: Vec<Entry>,
     pub(super) lists: Vec<Vec<PlaneAt>>,
 }
 
 impl SpanProof {
-    pub(super) fn new(until: f64, Written { entries, lists }: Written) -> Self {
+    /// Builds the proof of a span from the recorded entries.
+    pub(super) fn new(until: f64, RecordedProof { entries, lists }: RecordedProof) -> Self {
         Self { until, cover: MotionCover(entries), lists }
     }
 }
 
-/// The letters of all entries.
+/// The letter of each entry.
 const LETTERS: [(char, Entry); 22] = {
-    use Entry::{Halved, Listed, Parted, Split};
-    use Plane::{Across, Axis, Edges, Middles};
+    use Entry::{Halved, PlaneList, Separated, Split};
+    use PlaneName::{Axis, Edges, FacetNormal, Middles};
     [
         ('T', Halved),
         ('P', Split(0)),
         ('Q', Split(1)),
-        ('L', Listed),
-        ('m', Parted(Middles)),
-        ('a', Parted(Axis(0, 0))),
-        ('b', Parted(Axis(0, 1))),
-        ('c', Parted(Axis(0, 2))),
-        ('x', Parted(Axis(1, 0))),
-        ('y', Parted(Axis(1, 1))),
-        ('z', Parted(Axis(1, 2))),
-        ('p', Parted(Across(0))),
-        ('q', Parted(Across(1))),
-        ('1', Parted(Edges(0, 0))),
-        ('2', Parted(Edges(0, 1))),
-        ('3', Parted(Edges(0, 2))),
-        ('4', Parted(Edges(1, 0))),
-        ('5', Parted(Edges(1, 1))),
-        ('6', Parted(Edges(1, 2))),
-        ('7', Parted(Edges(2, 0))),
-        ('8', Parted(Edges(2, 1))),
-        ('9', Parted(Edges(2, 2))),
+        ('L', PlaneList),
+        ('m', Separated(Middles)),
+        ('a', Separated(Axis(0, 0))),
+        ('b', Separated(Axis(0, 1))),
+        ('c', Separated(Axis(0, 2))),
+        ('x', Separated(Axis(1, 0))),
+        ('y', Separated(Axis(1, 1))),
+        ('z', Separated(Axis(1, 2))),
+        ('p', Separated(FacetNormal(0))),
+        ('q', Separated(FacetNormal(1))),
+        ('1', Separated(Edges(0, 0))),
+        ('2', Separated(Edges(0, 1))),
+        ('3', Separated(Edges(0, 2))),
+        ('4', Separated(Edges(1, 0))),
+        ('5', Separated(Edges(1, 1))),
+        ('6', Separated(Edges(1, 2))),
+        ('7', Separated(Edges(2, 0))),
+        ('8', Separated(Edges(2, 1))),
+        ('9', Separated(Edges(2, 2))),
     ]
 };
 
@@ -188,13 +196,15 @@ impl TryFrom<String> for MotionCover {
     fn try_from(text: String) -> Result<Self, String> {
         let entry = |letter: char| {
             let known = LETTERS.iter().find(|(known, _)| *known == letter);
-            known.map(|(_, entry)| *entry).ok_or_else(|| format!("no entry is written {letter:?}"))
+            known
+                .map(|(_, entry)| *entry)
+                .ok_or_else(|| format!("{letter:?} is not a letter of a cover"))
         };
         text.chars().map(entry).collect::<Result<_, _>>().map(Self)
     }
 }
 
-/// The time at which an interval is halved.
-pub(super) fn middle(from: f64, to: f64) -> f64 {
+/// Returns the time at which an interval is halved.
+pub(super) fn interval_middle(from: f64, to: f64) -> f64 {
     from + 0.5 * (to - from)
 }

@@ -1,38 +1,40 @@
-//! Down both trees and through time, earlier times first.
+//! Searches both trees and time for the first contact of two solids, earlier times first.
 //!
-//! What is open is a stack of pairs of parts, each in an interval. A pair that no plane parts throughout is split:
-//! its time, where the parts move farther than they are large or turn much; else the larger part. Two facets
-//! that are left are asked as two convex bodies are.
+//! The open entries are a stack of pairs of parts, each with an interval. A pair that no plane separates throughout its
+//! interval is split. Its time is halved if the parts rotate far or move farther than their size; otherwise the larger
+//! part is split. Two remaining facets are searched like two convex bodies.
 //!
-//! Invariant. Every pair of facets is parted up to the end of the span, or up to the earliest contact found so far,
-//! but for what is open. What lies later than that is not looked at.
+//! Invariant: every pair of facets is separated up to the end of the span, or up to the earliest contact found so far,
+//! except for the open entries. Later times are not searched.
 
 use super::super::answer::MotionSteps;
-use super::super::search::{Advanced, End, advance};
-use super::facets::{FacetLooker, Later, later};
-use super::proof::{Entry, FacetsMet, Written, middle};
-use super::tree::{Below, Node, Tree};
-use super::window::{Frame, Part, Plane, Snap, Window};
+use super::super::search::{SpanEnd, SpanResult, prove_span};
+use super::facets::{FacetSampler, LaterContact, find_later_contact};
+use super::proof::{Entry, FacetsMet, RecordedProof, interval_middle};
+use super::tree::{BoxNode, NodeContent, SolidTree};
+use super::window::{PlaneName, Snapshot, SpanFrame, TreePart, Window};
 use colltrans_kernel::descent::{node_to_split, replaced};
 
-/// Longer arcs are halved at once.
-const TURN: f64 = 0.7;
+/// Angle in radians above which an interval is halved.
+const MAX_TURN: f64 = 0.7;
 
-/// Time is halved while parts move by more than so many times their size; facets by more.
-const WAYS: f64 = 4.0;
-const FACET_WAYS: f64 = 8.0;
+/// Maximum distance that two parts move in an interval, as a multiple of their size; and that of two facets. Longer
+/// intervals are halved.
+const MAX_TRAVEL_RATIO: f64 = 4.0;
+const MAX_FACET_TRAVEL_RATIO: f64 = 8.0;
 
-/// Intervals that are shorter are not halved: what is open there is asked facet by facet.
-const SHORTEST: f64 = 1e-9;
+/// Length of an interval below which it is not halved. Its facets are searched in pairs.
+const MIN_INTERVAL: f64 = 1e-9;
 
-/// The planes that are tried, in this order: those of facets where there are some.
-const PLANES: [Plane; 3] = [Plane::Middles, Plane::Across(0), Plane::Across(1)];
-const AXES: [Plane; 6] = {
-    use Plane::Axis;
+/// Planes in the order in which they are tried. Those of facets are tried only for facets.
+const PLANES: [PlaneName; 3] =
+    [PlaneName::Middles, PlaneName::FacetNormal(0), PlaneName::FacetNormal(1)];
+const AXES: [PlaneName; 6] = {
+    use PlaneName::Axis;
     [Axis(1, 0), Axis(1, 1), Axis(1, 2), Axis(0, 0), Axis(0, 1), Axis(0, 2)]
 };
-const EDGES: [Plane; 9] = {
-    use Plane::Edges;
+const EDGES: [PlaneName; 9] = {
+    use PlaneName::Edges;
     [
         Edges(0, 0),
         Edges(0, 1),
@@ -48,173 +50,187 @@ const EDGES: [Plane; 9] = {
 
 /// The earliest contact found.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
-    /// All facets are apart before.
+pub(super) struct EarliestContact {
+    /// Time up to which all facets are separated.
     pub(super) lower: f64,
-    /// Those that are not from then on.
+    /// Facets that are not separated from then on.
     pub(super) triangles: [u32; 2],
-    /// Whether it is there that the search of two facets took its maximum number of steps.
+    /// Whether the search between these two facets took its maximum number of steps.
     pub(super) is_open: bool,
-    /// When some are seen to meet, and why.
+    /// Time of a proven contact, its facets and the proof.
     pub(super) met: Option<(f64, [u32; 2], FacetsMet)>,
 }
 
-/// What a search is for.
+/// Purpose of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Mode {
-    /// The first contact.
-    Plain,
-    /// The same, and what is proven is written down.
-    Writing,
-    /// The first contact of facets that look at each other, without those that have crossed from the start on.
-    Ignoring,
+pub(super) enum SearchMode {
+    /// Finds the first contact.
+    FirstContact,
+    /// Finds the first contact and records the proof.
+    Recording,
+    /// Finds the first contact of facets that face each other, except for facets that cross from the start on.
+    IgnoringStartOverlaps,
 }
 
-/// A pair of parts in an interval, which nothing is known of yet.
+/// A pair of parts in an interval that is not yet searched.
 #[derive(Debug, Clone, Copy)]
-struct Open {
+struct OpenEntry {
     parts: [u32; 2],
-    /// Where its ends are among the snaps, and how many of these are to be kept for what is open.
+    /// Indices of both ends among the snapshots.
     ends: [u32; 2],
-    snaps: u32,
+    /// Number of snapshots that later entries need.
+    snapshots: u32,
 }
 
-/// A search through a span under way.
-pub(super) struct Search<'s, 'a> {
-    frame: Frame<'s, 'a>,
-    trees: [&'a Tree<'a>; 2],
-    snaps: Vec<Snap>,
-    stack: Vec<Open>,
-    /// What parted the last pair.
-    last: Plane,
-    ignores: bool,
-    pub(super) found: Option<Found>,
-    pub(super) written: Option<Written>,
+/// A search in a span.
+pub(super) struct TreeSearch<'s, 'a> {
+    frame: SpanFrame<'s, 'a>,
+    trees: [&'a SolidTree<'a>; 2],
+    snapshots: Vec<Snapshot>,
+    stack: Vec<OpenEntry>,
+    /// Plane that separated the last pair.
+    last_plane: PlaneName,
+    ignores_start_overlaps: bool,
+    pub(super) found: Option<EarliestContact>,
+    pub(super) recorded: Option<RecordedProof>,
     pub(super) steps: MotionSteps,
 }
 
-impl<'s, 'a> Search<'s, 'a> {
-    pub(super) fn new(frame: Frame<'s, 'a>, mode: Mode) -> Self {
+impl<'s, 'a> TreeSearch<'s, 'a> {
+    /// Starts a search of a span.
+    pub(super) fn new(frame: SpanFrame<'s, 'a>, mode: SearchMode) -> Self {
         let trees = [frame.span.body(0), frame.span.body(1)];
-        let snaps = vec![frame.snap(frame.span.from), frame.snap(frame.span.to)];
+        let snapshots = vec![frame.snapshot_at(frame.span.from), frame.snapshot_at(frame.span.to)];
         Self {
             frame,
             trees,
-            snaps,
+            snapshots,
             stack: Vec::new(),
-            last: Plane::Middles,
+            last_plane: PlaneName::Middles,
             found: None,
-            ignores: mode == Mode::Ignoring,
-            written: (mode == Mode::Writing).then(Written::default),
+            ignores_start_overlaps: mode == SearchMode::IgnoringStartOverlaps,
+            recorded: (mode == SearchMode::Recording).then(RecordedProof::default),
             steps: MotionSteps::default(),
         }
     }
 
-    pub(super) fn run(&mut self) {
-        self.stack.push(Open { parts: [0, 0], ends: [0, 1], snaps: 2 });
+    /// Processes open entries until none is left.
+    pub(super) fn process_entries(&mut self) {
+        self.stack.push(OpenEntry { parts: [0, 0], ends: [0, 1], snapshots: 2 });
         while let Some(open) = self.stack.pop() {
-            self.snaps.truncate(open.snaps as usize);
-            self.visit(open);
+            self.snapshots.truncate(open.snapshots as usize);
+            self.process_entry(open);
         }
     }
 
-    fn visit(&mut self, Open { parts: at, ends: [from, mut to], .. }: Open) {
-        if let Some(Found { lower, .. }) = self.found {
-            if self.time(from) >= lower {
+    /// Separates a pair, splits it, or searches its facets.
+    fn process_entry(&mut self, OpenEntry { parts: at, ends: [from, mut to], .. }: OpenEntry) {
+        if let Some(EarliestContact { lower, .. }) = self.found {
+            if self.snapshot_time(from) >= lower {
                 return;
             }
-            if self.time(to) > lower {
-                self.snaps.push(self.frame.snap(lower));
-                to = self.snaps.len() as u32 - 1;
+            if self.snapshot_time(to) > lower {
+                self.snapshots.push(self.frame.snapshot_at(lower));
+                to = self.snapshots.len() as u32 - 1;
             }
         }
         self.steps.nodes += 1;
-        let parts = [0, 1].map(|k| Part::of(self.trees[k], at[k]));
-        let ends = [&self.snaps[from as usize], &self.snaps[to as usize]];
+        let parts = [0, 1].map(|k| TreePart::at_node(self.trees[k], at[k]));
+        let ends = [&self.snapshots[from as usize], &self.snapshots[to as usize]];
         let window = self.frame.window(ends, parts.each_ref());
         let facets = parts.each_ref().map(|part| part.facet().is_some());
-        if let Some(plane) = parted(&window, facets, self.last) {
-            self.last = plane;
-            self.write(Entry::Parted(plane));
+        if let Some(plane) = find_separating_plane(&window, facets, self.last_plane) {
+            self.last_plane = plane;
+            self.record_entry(Entry::Separated(plane));
             return;
         }
         let nodes = [0, 1].map(|k| self.trees[k].node(at[k]));
         let sizes = nodes.map(|node| node.half.length());
-        let way = window.way() / sizes[0].max(sizes[1]);
-        let turns = window.turn() > TURN;
-        let is_long = ends[1].time - ends[0].time >= SHORTEST;
-        let below = nodes.map(|node| node.below);
-        if let [Below::Facet(s), Below::Facet(t)] = below {
-            if is_long && (turns || way > FACET_WAYS) {
-                self.halve(at, [from, to]);
+        let travel_ratio = window.travel_bound() / sizes[0].max(sizes[1]);
+        let turns = window.max_rotation_angle() > MAX_TURN;
+        let is_long = ends[1].time - ends[0].time >= MIN_INTERVAL;
+        let content = nodes.map(|node| node.content);
+        if let [NodeContent::Facet(s), NodeContent::Facet(t)] = content {
+            if is_long && (turns || travel_ratio > MAX_FACET_TRAVEL_RATIO) {
+                self.halve_interval(at, [from, to]);
             } else {
-                self.ask([s, t], [from, to], parts.each_ref());
+                self.search_facets([s, t], [from, to], parts.each_ref());
             }
-        } else if is_long && (turns || way > WAYS) {
-            self.halve(at, [from, to]);
-        } else if let Some((which, [first, second])) = split(at, nodes) {
-            self.write(Entry::Split(which));
-            let (ends, snaps) = ([from, to], self.snaps.len() as u32);
-            let open = |parts| Open { parts, ends, snaps };
+        } else if is_long && (turns || travel_ratio > MAX_TRAVEL_RATIO) {
+            self.halve_interval(at, [from, to]);
+        } else if let Some((which, [first, second])) = split_larger_node(at, nodes) {
+            self.record_entry(Entry::Split(which));
+            let (ends, snapshots) = ([from, to], self.snapshots.len() as u32);
+            let open = |parts| OpenEntry { parts, ends, snapshots };
             self.stack.extend([open(second), open(first)]);
         }
     }
 
-    fn time(&self, snap: u32) -> f64 {
-        self.snaps[snap as usize].time
+    /// Returns the time of a snapshot.
+    fn snapshot_time(&self, snap: u32) -> f64 {
+        self.snapshots[snap as usize].time
     }
 
-    fn write(&mut self, entry: Entry) {
-        if let Some(written) = &mut self.written {
-            written.entries.push(entry);
+    /// Appends an entry to the proof, if one is recorded.
+    fn record_entry(&mut self, entry: Entry) {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.entries.push(entry);
         }
     }
 
-    fn halve(&mut self, parts: [u32; 2], [from, to]: [u32; 2]) {
-        self.write(Entry::Halved);
-        let [a, b] = [self.time(from), self.time(to)];
-        self.snaps.push(self.frame.snap(middle(a, b)));
-        let snaps = self.snaps.len() as u32;
-        let half = |ends| Open { parts, ends, snaps };
-        self.stack.extend([half([snaps - 1, to]), half([from, snaps - 1])]);
+    /// Splits an open entry at the middle of its interval.
+    fn halve_interval(&mut self, parts: [u32; 2], [from, to]: [u32; 2]) {
+        self.record_entry(Entry::Halved);
+        let [a, b] = [self.snapshot_time(from), self.snapshot_time(to)];
+        self.snapshots.push(self.frame.snapshot_at(interval_middle(a, b)));
+        let snapshots = self.snapshots.len() as u32;
+        let half = |ends| OpenEntry { parts, ends, snapshots };
+        self.stack.extend([half([snapshots - 1, to]), half([from, snapshots - 1])]);
     }
 
-    /// Two facets in an interval, as two convex bodies.
-    fn ask(&mut self, triangles: [u32; 2], ends: [u32; 2], parts: [&Part; 2]) {
-        let [Some(f), Some(g)] = parts.map(Part::facet) else { return };
-        let times = ends.map(|k| self.time(k));
-        let span = self.frame.span.part([f, g], times);
-        let mut looker = FacetLooker::default();
+    /// Searches two facets in an interval like two convex bodies.
+    fn search_facets(&mut self, triangles: [u32; 2], ends: [u32; 2], parts: [&TreePart; 2]) {
+        let [Some(f), Some(g)] = parts.map(TreePart::facet) else { return };
+        let times = ends.map(|k| self.snapshot_time(k));
+        let span = self.frame.span.part_span([f, g], times);
+        let mut sampler = FacetSampler::default();
         self.steps.leaves += 1;
-        if self.ignores {
+        if self.ignores_start_overlaps {
             let sided = [0, 1].map(|k| !self.trees[k].solid.is_open(triangles[k] as usize));
-            if let Some(Later { lower, met }) = later(&span, sided, &mut looker) {
+            if let Some(LaterContact { lower, met }) =
+                find_later_contact(&span, sided, &mut sampler)
+            {
                 let met = met.map(|(time, met)| (time, triangles, met));
-                self.take(Found { lower, triangles, is_open: false, met });
+                self.store_contact(EarliestContact { lower, triangles, is_open: false, met });
             }
-            self.steps += looker.steps;
+            self.steps += sampler.steps;
             return;
         }
-        let Advanced { planes, end } = advance(&span, &mut looker);
-        self.steps += looker.steps;
+        let SpanResult { planes, end } = prove_span(&span, &mut sampler);
+        self.steps += sampler.steps;
         let lower = planes.last().map_or(times[0], |plane| plane.time);
         match end {
-            End::Free => {
-                self.write(Entry::Listed);
-                if let Some(written) = &mut self.written {
-                    written.lists.push(planes);
+            SpanEnd::Free => {
+                self.record_entry(Entry::PlaneList);
+                if let Some(recorded) = &mut self.recorded {
+                    recorded.lists.push(planes);
                 }
             }
-            End::Met(time, met) => {
+            SpanEnd::Met(time, met) => {
                 let met = Some((time, triangles, met));
-                self.take(Found { lower, triangles, is_open: false, met });
+                self.store_contact(EarliestContact { lower, triangles, is_open: false, met });
             }
-            End::Blurred => self.take(Found { lower, triangles, is_open: false, met: None }),
-            End::Stalled => self.take(Found { lower, triangles, is_open: true, met: None }),
+            SpanEnd::Indeterminate => {
+                self.store_contact(EarliestContact { lower, triangles, is_open: false, met: None })
+            }
+            SpanEnd::Stalled => {
+                self.store_contact(EarliestContact { lower, triangles, is_open: true, met: None })
+            }
         }
     }
 
-    fn take(&mut self, new: Found) {
+    /// Stores a contact. The earlier lower bound and the earlier proven contact remain.
+    fn store_contact(&mut self, new: EarliestContact) {
         let Some(before) = &mut self.found else {
             self.found = Some(new);
             return;
@@ -230,23 +246,28 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
-/// Which of two nodes is split, the larger one that is no facet, and the pairs that come of it.
-pub(super) fn split(at: [u32; 2], nodes: [&Node; 2]) -> Option<(u8, [[u32; 2]; 2])> {
-    let are_facets = nodes.map(|node| matches!(node.below, Below::Facet(_)));
+/// Returns which of two nodes is split, the larger one that is not a facet, and the resulting pairs. Returns `None` for
+/// two facets.
+pub(super) fn split_larger_node(at: [u32; 2], nodes: [&BoxNode; 2]) -> Option<(u8, [[u32; 2]; 2])> {
+    let are_facets = nodes.map(|node| matches!(node.content, NodeContent::Facet(_)));
     let which = node_to_split(are_facets, |k| nodes[k].half.length())?;
-    let Below::Nodes(first) = nodes[which].below else { return None };
+    let NodeContent::Children(first) = nodes[which].content else { return None };
     Some((which as u8, [first, first + 1].map(|part| replaced(at, which, part))))
 }
 
-/// The plane that parts two parts throughout an interval, of which it is told whether they are facets: that which
-/// parted the last two first.
-pub(super) fn parted(window: &Window, facets: [bool; 2], last: Plane) -> Option<Plane> {
-    if window.is_parted_by(last) {
-        return Some(last);
+/// Returns a plane that separates two parts throughout an interval, or `None`. The plane that separated the last pair
+/// is tried first. `facets` states which parts are facets.
+pub(super) fn find_separating_plane(
+    window: &Window,
+    facets: [bool; 2],
+    last_plane: PlaneName,
+) -> Option<PlaneName> {
+    if window.is_separated_by(last_plane) {
+        return Some(last_plane);
     }
-    let holds = |plane: &Plane| *plane != last && window.is_parted_by(*plane);
+    let holds = |plane: &PlaneName| *plane != last_plane && window.is_separated_by(*plane);
     let both = facets == [true; 2];
-    let first: &[Plane] = match facets {
+    let first: &[PlaneName] = match facets {
         [false, false] => &PLANES[..1],
         [true, false] => &PLANES[..2],
         [true, true] => &PLANES[..3],

@@ -1,8 +1,8 @@
-//! A solid as a search through time sees it: shrunk, with boxes down to each facet.
+//! A shrunk solid with a binary tree of boxes down to single facets.
 //!
-//! The tree is the solid's own ([`tree`](colltrans_solid::body::tree)), its leaves of a few facets halved down to
-//! one. Boxes hold the vertices as they are shrunk, exactly but for the roundings of middle and extent, by which
-//! extents are larger.
+//! The tree is that of the solid ([`tree`](colltrans_solid::body::tree)). Its leaves, which hold a few facets, are
+//! halved down to one facet. Boxes contain the shrunk vertices exactly, because the rounding errors of middle and half
+//! extents are added to the half extents.
 
 use std::borrow::Cow;
 
@@ -11,32 +11,32 @@ use glam::DVec3;
 use colltrans_convex::body::{Aabb, Hull};
 use colltrans_solid::body::{Solid, displace};
 
-/// Extents are larger by this share of them and of the middle.
-const ROUNDED: f64 = 4.0 * f64::EPSILON;
+/// Relative error of middle and half extents, which is added to the half extents.
+const EXTENT_ERROR: f64 = 4.0 * f64::EPSILON;
 
-/// A solid, shrunk.
+/// A shrunk solid and its tree.
 #[derive(Debug, Clone)]
-pub(crate) struct Tree<'a> {
+pub(crate) struct SolidTree<'a> {
     pub(super) solid: &'a Solid,
     vertices: Cow<'a, [DVec3]>,
     reach: f64,
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode>,
 }
 
-/// A box in the body's frame around some facets.
+/// A box around some facets, in the frame of the body.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct BoxNode {
     pub(super) middle: DVec3,
     pub(super) half: DVec3,
-    pub(super) below: Below,
+    pub(super) content: NodeContent,
 }
 
-/// What a node holds.
+/// Content of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Below {
-    /// Two nodes, the first of them at this place.
-    Nodes(u32),
-    /// One facet, by its position in [`Solid::triangles`].
+pub(super) enum NodeContent {
+    /// Two children; the index of the first.
+    Children(u32),
+    /// One facet, by its index in [`Solid::triangles`].
     Facet(u32),
 }
 
@@ -48,6 +48,7 @@ pub(crate) struct Facet {
 }
 
 impl Facet {
+    /// Builds a facet from its corners.
     pub(super) fn new(corners: [DVec3; 3]) -> Self {
         let square = corners.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
         Self { corners, reach: square.sqrt().next_up() }
@@ -66,7 +67,7 @@ impl Hull for Facet {
     }
 }
 
-impl Hull for Tree<'_> {
+impl Hull for SolidTree<'_> {
     fn corners(&self) -> &[DVec3] {
         &self.vertices
     }
@@ -76,8 +77,8 @@ impl Hull for Tree<'_> {
     }
 }
 
-impl<'a> Tree<'a> {
-    /// Of a solid that is shrunk by so much.
+impl<'a> SolidTree<'a> {
+    /// Builds the tree of a solid, shrunk by `amount` in world units.
     pub(super) fn new(solid: &'a Solid, amount: f64) -> Self {
         let vertices = if amount == 0.0 || !solid.has_offset() {
             Cow::Borrowed(solid.vertices())
@@ -88,22 +89,23 @@ impl<'a> Tree<'a> {
         };
         let reach = vertices.iter().map(|v| v.length()).fold(0.0, f64::max).next_up();
         let mut tree = Self { solid, vertices, reach, nodes: Vec::new() };
-        tree.nodes = tree.grown();
+        tree.nodes = tree.build_nodes();
         tree
     }
 
-    pub(super) fn node(&self, at: u32) -> &Node {
+    /// Returns a node by its index.
+    pub(super) fn node(&self, at: u32) -> &BoxNode {
         &self.nodes[at as usize]
     }
 
-    /// All nodes in preorder: the facet that one is, or -1 of one that has parts.
+    /// Returns all nodes in preorder: the index of the facet for a leaf, -1 for an inner node.
     #[cfg(feature = "json")]
     fn preorder(&self) -> Vec<i64> {
         let (mut all, mut open) = (Vec::with_capacity(self.nodes.len()), vec![0]);
         while let Some(at) = open.pop() {
-            match self.node(at).below {
-                Below::Facet(triangle) => all.push(i64::from(triangle)),
-                Below::Nodes(first) => {
+            match self.node(at).content {
+                NodeContent::Facet(triangle) => all.push(i64::from(triangle)),
+                NodeContent::Children(first) => {
                     all.push(-1);
                     open.extend([first + 1, first]);
                 }
@@ -112,69 +114,76 @@ impl<'a> Tree<'a> {
         all
     }
 
+    /// Returns a facet by its index, shrunk.
     pub(super) fn facet(&self, triangle: u32) -> Facet {
         let corners = self.solid.triangles()[triangle as usize].map(|v| self.vertices[v as usize]);
         Facet::new(corners)
     }
 
-    fn grown(&self) -> Vec<Node> {
+    /// Builds the nodes and their boxes.
+    fn build_nodes(&self) -> Vec<BoxNode> {
         let own = self.solid.nodes();
-        let empty = Node { middle: DVec3::ZERO, half: DVec3::ZERO, below: Below::Nodes(0) };
+        let empty =
+            BoxNode { middle: DVec3::ZERO, half: DVec3::ZERO, content: NodeContent::Children(0) };
         let mut nodes = vec![empty];
-        // Nodes to be filled, with a node of the solid or some of its facets.
-        let mut open = vec![(0, Part::Node(0))];
+        // Nodes that have no content yet, with the node of the solid or the facets that they are built from.
+        let mut open = vec![(0, NodeSource::Node(0))];
         while let Some((at, part)) = open.pop() {
             let parts = match part {
-                Part::Node(k) if own[k].is_leaf() => Part::facets(own[k].facets()),
-                Part::Node(k) => {
+                NodeSource::Node(k) if own[k].is_leaf() => NodeSource::split_range(own[k].facets()),
+                NodeSource::Node(k) => {
                     let first = k + own[k].skip as usize;
-                    Some([Part::Node(first), Part::Node(first + 1)])
+                    Some([NodeSource::Node(first), NodeSource::Node(first + 1)])
                 }
-                Part::Facets(first, end) => Part::facets(first..end),
+                NodeSource::Facets(first, end) => NodeSource::split_range(first..end),
             };
             let Some(parts) = parts else {
-                nodes[at].below = Below::Facet(part.first(own) as u32);
+                nodes[at].content = NodeContent::Facet(part.first_facet(own) as u32);
                 continue;
             };
             let first = nodes.len();
-            nodes[at].below = Below::Nodes(first as u32);
+            nodes[at].content = NodeContent::Children(first as u32);
             nodes.extend([empty; 2]);
             open.extend([(first, parts[0]), (first + 1, parts[1])]);
         }
-        // Children stand behind their parents.
+        // Children have larger indices than their parents.
         let mut boxes = vec![Aabb::EMPTY; nodes.len()];
         for at in (0..nodes.len()).rev() {
-            boxes[at] = match nodes[at].below {
-                Below::Facet(triangle) => Aabb::of_points(self.facet(triangle).corners),
-                Below::Nodes(first) => boxes[first as usize].join(&boxes[first as usize + 1]),
+            boxes[at] = match nodes[at].content {
+                NodeContent::Facet(triangle) => Aabb::of_points(self.facet(triangle).corners),
+                NodeContent::Children(first) => {
+                    boxes[first as usize].join(&boxes[first as usize + 1])
+                }
             };
             let Aabb { low, high } = boxes[at];
             let middle = low + (high - low) * 0.5;
             let half = (high - middle).max(middle - low);
-            (nodes[at].middle, nodes[at].half) = (middle, half + (half + middle.abs()) * ROUNDED);
+            (nodes[at].middle, nodes[at].half) =
+                (middle, half + (half + middle.abs()) * EXTENT_ERROR);
         }
         nodes
     }
 }
 
-/// What is to become of a node.
+/// Source from which a node is built.
 #[derive(Clone, Copy)]
-enum Part {
+enum NodeSource {
     /// A node of the solid.
     Node(usize),
-    /// Facets from one to before another.
+    /// Facets from the first index to before the second.
     Facets(usize, usize),
 }
 
-impl Part {
-    /// Both halves of some facets, unless it is one.
-    fn facets(range: std::ops::Range<usize>) -> Option<[Self; 2]> {
+impl NodeSource {
+    /// Returns both halves of a range of facets. Returns `None` for a single facet.
+    fn split_range(range: std::ops::Range<usize>) -> Option<[Self; 2]> {
         let middle = range.start + range.len() / 2;
         let halves = [Self::Facets(range.start, middle), Self::Facets(middle, range.end)];
         (range.len() > 1).then_some(halves)
     }
 
-    fn first(self, own: &[colltrans_solid::body::tree::Node]) -> usize {
+    /// Returns the index of the first facet.
+    fn first_facet(self, own: &[colltrans_solid::body::tree::Node]) -> usize {
         match self {
             Self::Node(k) => own[k].facets().start,
             Self::Facets(first, _) => first,
@@ -182,21 +191,22 @@ impl Part {
     }
 }
 
-/// The facets of a solid as the tolerance leaves them, in the order in which a proof counts them, and how it splits them.
+/// The facets of a solid, shrunk by half of the tolerance, in the order of a proof, and the tree by which the proof
+/// splits them.
 #[cfg(feature = "json")]
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parts {
-    /// The number of each in the file.
+    /// Number of each facet in the input file.
     numbers: Vec<colltrans_convex::body::InputFacet>,
     corners: Vec<[[f64; 3]; 3]>,
-    /// The nodes in preorder: the facet that one is, or -1 of one that has two parts.
+    /// Nodes in preorder: the index of the facet for a leaf, -1 for an inner node.
     tree: Vec<i64>,
 }
 
 #[cfg(feature = "json")]
 impl Parts {
-    pub(super) fn of(tree: &Tree) -> Self {
+    pub(super) fn from_tree(tree: &SolidTree) -> Self {
         let numbers = tree.solid.facet_indices().to_vec();
         let count = tree.solid.triangles().len() as u32;
         let corners = (0..count).map(|at| tree.facet(at).corners.map(|v| v.to_array()));

@@ -1,52 +1,53 @@
-//! The faces of `M0`, with what each proves wherever the frames are.
+//! The faces of `M0`, with bounds that hold for all translations.
 //!
-//! The hull of all rounded differences of vertices only proposes. Of each face's plane it is computed from all
-//! vertices of both bodies, nearly without rounding, how low `M0` reaches along its normal.
+//! The hull of all rounded vertex differences only proposes planes. The least coordinate of `M0` along the normal of
+//! each plane is computed from all vertices of both bodies, nearly without rounding.
 
 use glam::DVec3;
 
-use super::star::Star;
+use super::entry_guess::EntryGuessTable;
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::setting::{TwoBodies, VertexPair};
 
 /// The plane of a face.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane {
-    /// Its unit normal, inwards, in the world.
+    /// Inward unit normal, in the world.
     pub(super) normal: DVec3,
-    /// At most `min n.m` over `M0`, for this very normal.
-    pub(super) least: f64,
-    /// How far above that the highest corner of the face is, up to rounding.
-    pub(super) thick: f64,
+    /// Lower bound of `min n.m` over `M0` for this normal.
+    pub(super) min_coordinate: f64,
+    /// Height of the highest corner of the face above `least`, rounded.
+    pub(super) thickness: f64,
     /// The lowest corner.
     pub(super) lowest: VertexPair,
 }
 
-/// A side of a face: where it begins, and the face beyond.
+/// A side of a face: its first corner, and the face beyond it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
     pub(super) corner: u32,
     pub(super) beyond: u32,
 }
 
-/// Planes, sides and corners.
+/// Planes, sides and corners of all faces.
 #[derive(Debug)]
 pub(super) struct Faces {
     pub(super) planes: Vec<Plane>,
-    /// First side of each face, and one entry past the end.
+    /// Index of the first side of each face, with one entry past the end.
     starts: Vec<u32>,
-    /// Face by face, clockwise from outside: counter-clockwise to who looks along a direction that enters it.
+    /// Sides of all faces. They are clockwise as seen from outside, and therefore counter-clockwise as seen along a
+    /// direction that enters the face.
     sides: Vec<Side>,
     pub(super) points: Vec<DVec3>,
-    /// How much nearer to each other points of both inputs may be than the bodies are.
+    /// Maximum reduction of the distance of the bodies by input points outside their faces.
     pub(super) input_excess: f64,
     pairs: Vec<VertexPair>,
-    /// Where to begin.
-    pub(super) star: Star,
+    /// Table of guesses for the start of a walk.
+    pub(super) entry_guess: EntryGuessTable,
 }
 
 impl Faces {
-    /// `None` if `M0` is flat, or beyond the range of coordinates.
+    /// Computes the faces. Returns `None` if `M0` is flat or out of range.
     pub(super) fn new(bodies: &TwoBodies) -> Option<Self> {
         let turned = |body: &ConvexPolyhedron, by| -> Vec<DVec3> {
             body.vertices().iter().map(|v| by * *v).collect()
@@ -73,28 +74,36 @@ impl Faces {
             let height = |corner: &u32| normal.dot(hull.vertices()[*corner as usize]);
             let lowest = hull.face_vertices(face).min_by(|a, b| height(a).total_cmp(&height(b)))?;
             let heights = hull.face_vertices(face).map(|corner| height(&corner));
-            let least = bodies.distance_along(normal);
-            let thick = heights.fold(f64::NEG_INFINITY, f64::max) - least;
-            planes.push(Plane { normal, least, thick, lowest: pairs[lowest as usize] });
+            let min_coordinate = bodies.distance_along(normal);
+            let thickness = heights.fold(f64::NEG_INFINITY, f64::max) - min_coordinate;
+            planes.push(Plane {
+                normal,
+                min_coordinate,
+                thickness,
+                lowest: pairs[lowest as usize],
+            });
         }
-        let star = Star::new(&hull, &planes);
+        let entry_guess = EntryGuessTable::new(&hull, &planes);
         let (points, input_excess) = (hull.vertices().to_vec(), bodies.input_excess());
-        Some(Self { planes, starts, sides, points, input_excess, pairs, star })
+        Some(Self { planes, starts, sides, points, input_excess, pairs, entry_guess })
     }
 
+    /// Returns the sides of a face.
     #[inline]
     pub(super) fn sides(&self, face: u32) -> &[Side] {
         let [start, end] = [face, face + 1].map(|face| self.starts[face as usize] as usize);
         &self.sides[start..end]
     }
 
+    /// Returns the plane of a face.
     #[inline]
     pub(super) fn plane(&self, face: u32) -> &Plane {
         &self.planes[face as usize]
     }
 
+    /// Returns the vertex pair at the start of a side.
     #[inline]
-    pub(super) fn pair(&self, face: u32, side: usize) -> VertexPair {
+    pub(super) fn pair_at_side(&self, face: u32, side: usize) -> VertexPair {
         self.pairs[self.sides(face)[side].corner as usize]
     }
 }

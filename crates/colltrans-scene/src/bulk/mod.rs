@@ -1,19 +1,19 @@
-//! One pair of bodies asked many times while neither turns.
+//! Many casts of one pair of bodies that do not rotate.
 //!
-//! Notation. `M0` is `M` for frames in one place: `M = M0 + offset`, `offset = t_Q - t_P`. While the rotations stay,
-//! `M0` stays, so its faces are made once ([`faces`]) and a cast is a line through a polytope that is known:
-//! [`search`] goes from a guess ([`star`]) over the faces that the line may enter to the one that it does enter, or
-//! over the rim of its shadow; [`approach`] has a map of the shadow for one direction. [`proof`] makes the answer.
-//!
-//! Invariant. The faces only propose: a plane's bound was computed from all vertices of both bodies, the pairs of a
-//! contact are around the line for certain, and what is not certain (ties, touching, grazing) is left to the ordinary
-//! cast. The certificate is that of any cast.
+//! - `M0` is the Minkowski difference `M` without translations: `M = M0 + offset` with `offset = t_Q - t_P`. It is
+//!   constant while the rotations are.
+//! - The faces of `M0` are computed once (`faces`). A cast then intersects a line with a known polytope.
+//! - `search` walks from a guess (`entry_guess`) to the face that the line enters, or to the silhouette. `approach` has
+//!   a map for one direction. `proof` builds the answer.
+//! - Invariant: the faces are only proposals. The bound of a plane is computed from all vertices of both bodies, and
+//!   the vertex pairs of a contact certainly enclose the line. Uncertain cases (ties, touching, grazing) are left to
+//!   the ordinary cast. The certificate is that of an ordinary cast.
 
 mod approach;
+mod entry_guess;
 mod faces;
 mod proof;
 mod search;
-mod star;
 
 use glam::DVec3;
 
@@ -25,29 +25,34 @@ use colltrans_convex::setting::TwoBodies;
 use colltrans_convex::setting::error::QueryError;
 use faces::Faces;
 use proof::Line;
-use search::Sight;
+use search::FaceView;
 
-/// More pairs of vertices than this are no bulk: making the faces of `M` takes as long as thousands of casts.
-const MOST_PAIRS: usize = 1 << 14;
+/// Maximum number of vertex pairs for which the faces are computed. Beyond, computing them takes as long as thousands
+/// of casts.
+const MAX_VERTEX_PAIRS: usize = 1 << 14;
 
-/// After how many casts making the faces has paid: so many, and one for each pair of vertices (measured by `bulk` of
+/// Number of casts, besides one for each vertex pair, after which computing the faces pays off (measured by `bulk` of
 /// the benchmarks).
-const PAYS_AFTER: usize = 500;
+const MIN_CASTS: usize = 500;
 
-/// Two bodies and their rotations, for casts from many places and along many directions.
+/// Two bodies with fixed rotations, for casts from many positions and along many directions.
 ///
-/// The faces of the Minkowski difference are made once, in about the time of some hundred casts
-/// ([`Self::pays_after`]); then a cast of bodies of up to 64 vertices takes a third of the time or less, and one along a
-/// direction that is asked again and again ([`Self::along`]) a sixth. Answers are proven as those of any cast, for what
-/// [`Cast::verify`] checks; a cast that is not one of these bodies with these rotations is answered all the same, by the
-/// ordinary way, as is one whose answer the faces do not make certain: bodies that only touch or graze, a line
-/// through an edge of the difference. So are all casts of flat bodies, of more than 16,384 pairs of vertices,
-/// with [`Solver::Cta`], and such that keep a gap.
+/// The faces of the Minkowski difference are computed once, in about the time of some hundred casts
+/// ([`Self::pays_after`]). A cast of bodies with up to 64 vertices then takes at most a third of the time. A cast along
+/// a direction that is used repeatedly ([`Self::along`]) takes a sixth. Answers have the certificates of ordinary
+/// casts, and [`Cast::verify`] checks them.
 ///
-/// Kinds of outcomes are those of the [`Cast`], and both are between the same true bounds, but the last digits may
-/// differ: they are computed from another triangle of the same face. Of separated bodies the plane, and so the margin
-/// along it, is another of many, as with a [`Tracker`](colltrans_convex::Tracker). The bits depend on nothing but the bodies,
-/// the rotations and the cast: not on other casts, their order, threads or the platform.
+/// These casts are answered by the ordinary search instead:
+/// - casts of other bodies or other rotations,
+/// - casts whose answer the faces do not make certain: bodies that only touch or graze, a line through an edge of the
+///   difference,
+/// - casts of flat bodies, and of bodies with more than 16,384 vertex pairs,
+/// - casts with [`Solver::Cta`] or a minimum gap.
+///
+/// The outcome is of the same kind as that of the [`Cast`], with the same true bounds. The last digits may differ,
+/// because they are computed from another triangle of the same face. For separated bodies the plane and its margin are
+/// different, as with a [`Tracker`](colltrans_convex::Tracker). The bits depend only on the bodies, the rotations and
+/// the cast. They do not depend on other casts, their order, threads or the platform.
 ///
 /// ```
 /// use colltrans::glam::{DQuat, DVec3};
@@ -72,13 +77,13 @@ const PAYS_AFTER: usize = 500;
 /// ```
 #[derive(Debug)]
 pub struct FixedRotations<'a> {
-    /// With their frames in one place.
+    /// The bodies with their rotations, both at the origin.
     bodies: TwoBodies<'a>,
     faces: Option<Faces>,
 }
 
 impl<'a> FixedRotations<'a> {
-    /// Makes the faces. Of where the bodies are only the rotations matter.
+    /// Computes the faces. Only the rotations of the poses matter.
     pub fn new(moving: Placed<'a>, fixed: Placed<'a>) -> Self {
         let still =
             |of: Placed<'a>| Placed { pose: Pose::checked(of.pose.matrix(), DVec3::ZERO), ..of };
@@ -87,65 +92,66 @@ impl<'a> FixedRotations<'a> {
         Self { bodies, faces }
     }
 
-    /// After how many casts making the faces has paid, about; `None` of bodies whose faces are not made.
+    /// Returns about the number of casts after which computing the faces pays off. Returns `None` for bodies whose
+    /// faces are not computed.
     pub fn pays_after(moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Option<usize> {
         let pairs = moving.vertices().len() * fixed.vertices().len();
         let flat = moving.dimension().max(fixed.dimension()) < 3;
-        (pairs <= MOST_PAIRS && !flat).then_some(PAYS_AFTER + pairs)
+        (pairs <= MAX_VERTEX_PAIRS && !flat).then_some(MIN_CASTS + pairs)
     }
 
-    /// With a map for one direction, made in less than a tenth of the time of the faces.
+    /// Returns a map for casts along one direction. It takes less than a tenth of the time of the faces.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
     pub fn along(&self, direction: DVec3) -> Result<Approach<'_, 'a>, QueryError> {
         Approach::new(self, direction)
     }
 
-    /// [`Cast::first_contact`].
+    /// Computes the answer of [`Cast::first_contact`].
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::first_contact`].
     pub fn first_contact(&self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
-        match self.found(cast) {
+        match self.outcome_by_faces(cast) {
             Some(outcome) => Ok(outcome),
             None => cast.first_contact(),
         }
     }
 
-    /// [`Cast::contact_range`].
+    /// Computes the answer of [`Cast::contact_range`].
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::first_contact`].
     pub fn contact_range(&self, cast: &Cast<'a>) -> Result<ContactRange, QueryError> {
         contact_range_by_casts(cast, |cast| self.first_contact(cast))
     }
 
-    /// [`Cast::clearance`].
+    /// Computes the answer of [`Cast::clearance`].
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::first_contact`].
     pub fn clearance(&self, cast: &Cast<'a>) -> Result<Clearance, QueryError> {
         clearance_of(cast, |cast| self.first_contact(cast))
     }
 
-    /// The answer of the faces, if they have one.
+    /// Returns the answer by the faces, or `None` if they do not make it certain.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "moved about, an outcome goes through memory")]
-    fn found(&self, cast: &Cast<'a>) -> Option<Outcome> {
+    fn outcome_by_faces(&self, cast: &Cast<'a>) -> Option<Outcome> {
         let faces = self.faces_for(cast)?;
-        let line = Line::of(cast);
-        Sight::new(faces, &line).found(&line)
+        let line = Line::from_cast(cast);
+        FaceView::new(faces, &line).outcome_by_faces(&line)
     }
 
-    /// The faces, if the cast is one of these bodies so turned that faces can answer.
+    /// Returns the faces if the cast is one of these bodies and rotations, with options that the faces support.
     #[inline]
     fn faces_for(&self, cast: &Cast<'a>) -> Option<&Faces> {
-        let (asked, known) = (&cast.setting.bodies, &self.bodies);
-        let same = std::ptr::eq(asked.moving, known.moving)
-            && std::ptr::eq(asked.fixed, known.fixed)
-            && asked.moving_matrix == known.moving_matrix
-            && asked.fixed_matrix == known.fixed_matrix;
+        let (requested, stored) = (&cast.setting.bodies, &self.bodies);
+        let same = std::ptr::eq(requested.moving, stored.moving)
+            && std::ptr::eq(requested.fixed, stored.fixed)
+            && requested.moving_matrix == stored.moving_matrix
+            && requested.fixed_matrix == stored.fixed_matrix;
         let plain = cast.options.keep == 0.0 && cast.options.solver != Solver::Cta;
         self.faces.as_ref().filter(|_| same && plain)
     }

@@ -1,112 +1,119 @@
-//! The faces of `M0` as a line sees them, and the walk over them to where it enters.
+//! Walks over the faces of `M0` to the one that a line enters.
 //!
-//! Notation. A face is *entered* if its normal, inwards, has a component along the direction. The shadows of the entered
-//! faces tile the shadow of `M0`; the walk goes from face to face over the side beyond which the line is farthest.
+//! A face is *entered* if its inward normal has a positive component along the direction. The projections of the
+//! entered faces tile the shadow of `M0`. The walk crosses the side beyond which the line is farthest.
 
 use glam::DVec3;
 
 use super::faces::{Faces, Side};
-use super::proof::{Clear, Line, Rim, contact, separated};
+use super::proof::{Line, LineMargins, SilhouettePlane, build_contact, build_separation};
 use colltrans_convex::answer::{Outcome, StartedFrom, Steps};
 use colltrans_kernel::noise::UNIT_VECTOR;
 
-/// A component along the direction beyond what rounding makes of none.
-pub(super) const ENTERED: f64 = 0.25 * UNIT_VECTOR;
+/// Minimum component along the direction that exceeds the rounding error.
+pub(super) const MIN_ENTRY_COMPONENT: f64 = 0.25 * UNIT_VECTOR;
 
-/// Bound on the faces that a walk looks at; few need ten.
-const MOST_FACES: u32 = 256;
+/// Maximum number of faces of a walk. Few walks need ten.
+const MAX_WALK_FACES: u32 = 256;
 
-/// Faces as seen along a direction, relative to a line.
-pub(super) trait Seen {
-    /// A side of a face.
+/// Faces relative to a line, in coordinates of its direction.
+pub(super) trait LineView {
+    /// Type of the side of a face.
     type Side;
-    /// The sides of a face, counter-clockwise.
+    /// Returns the sides of a face, counter-clockwise.
     fn sides(&self, face: u32) -> &[Self::Side];
-    /// Where a side begins: across the direction, and along it last.
-    fn corner(&self, side: &Self::Side) -> DVec3;
-    /// The face beyond a side, if it is entered.
-    fn beyond(&self, side: &Self::Side) -> Option<u32>;
+    /// Returns the start of a side, with the coordinate along the direction last.
+    fn corner_coordinates(&self, side: &Self::Side) -> DVec3;
+    /// Returns the face beyond a side, or `None` if it is not entered.
+    fn face_beyond(&self, side: &Self::Side) -> Option<u32>;
 }
 
-/// What a walk ends with.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Reached {
-    /// The face that the line seems to enter, and whether it does so for certain, and amply.
+pub(super) enum WalkEnd {
+    /// The face that the line seems to enter; and whether it certainly does, with a sufficient margin.
     Face { face: u32, certain: bool },
-    /// A side of a face beyond which it passes, and no face is entered.
-    Rim { face: u32, side: usize },
+    /// A side beyond which the line passes and no face is entered.
+    Silhouette { face: u32, side: usize },
 }
 
-/// Walks from an entered face; how many were looked at, too. `None` if rounding makes it run in a circle.
+/// Walks from an entered face. Returns the end and the number of visited faces. Returns `None` if the walk takes too
+/// many steps, because rounding errors make it cyclic.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "passed through memory its end stalls its reader")]
-pub(super) fn walk(seen: &impl Seen, mut face: u32, clear: &Clear) -> Option<(Reached, u32)> {
-    for looked in 1..=MOST_FACES {
-        let sides = seen.sides(face);
+pub(super) fn walk_faces(
+    view: &impl LineView,
+    mut face: u32,
+    margins: &LineMargins,
+) -> Option<(WalkEnd, u32)> {
+    for visited in 1..=MAX_WALK_FACES {
+        let sides = view.sides(face);
         let (mut side, mut farthest, mut over, mut certain) = (sides.len() - 1, 0.0, None, true);
-        let mut from = seen.corner(&sides[side]).truncate();
+        let mut from = view.corner_coordinates(&sides[side]).truncate();
         for (next, corner) in sides.iter().enumerate() {
-            let to = seen.corner(corner).truncate();
+            let to = view.corner_coordinates(corner).truncate();
             let area = from.perp_dot(to);
-            certain &= clear.is_inside(area, from, to);
+            certain &= margins.is_clearly_inside(area, from, to);
             if area < farthest {
                 (farthest, over) = (area, Some(side));
             }
             (side, from) = (next, to);
         }
-        let Some(side) = over else { return Some((Reached::Face { face, certain }, looked)) };
-        match seen.beyond(&sides[side]) {
+        let Some(side) = over else { return Some((WalkEnd::Face { face, certain }, visited)) };
+        match view.face_beyond(&sides[side]) {
             Some(beyond) => face = beyond,
-            None => return Some((Reached::Rim { face, side }, looked)),
+            None => return Some((WalkEnd::Silhouette { face, side }, visited)),
         }
     }
     None
 }
 
-/// Work done by looking at so many faces.
-pub(super) fn steps(looked: u32) -> Steps {
-    Steps::from_pivots(looked, StartedFrom::Difference)
+/// Returns the work of visiting the given number of faces.
+pub(super) fn walk_steps(visited: u32) -> Steps {
+    Steps::from_pivots(visited, StartedFrom::Difference)
 }
 
-/// All faces, along any direction.
-pub(super) struct Sight<'f> {
+/// All faces, for casts along any direction.
+pub(super) struct FaceView<'f> {
     faces: &'f Faces,
     axes: [DVec3; 3],
-    /// `offset` along the axes.
+    /// Components of `offset` along the axes.
     at: DVec3,
 }
 
-impl<'f> Sight<'f> {
+impl<'f> FaceView<'f> {
     #[inline]
+    /// Prepares the faces for a line.
     pub(super) fn new(faces: &'f Faces, line: &Line) -> Self {
         let axes = line.axes();
-        Self { faces, axes, at: axes_of(&axes, line.setting.offset) }
+        Self { faces, axes, at: coordinates_along(&axes, line.setting.offset) }
     }
 
-    /// What the faces say of the line.
+    /// Returns the outcome of the line, or `None` if the faces do not make it certain.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "moved about, an outcome goes through memory")]
-    pub(super) fn found(&self, line: &Line) -> Option<Outcome> {
+    pub(super) fn outcome_by_faces(&self, line: &Line) -> Option<Outcome> {
         let setting = line.setting;
-        let guess = self.faces.star.guess(setting.offset, setting.direction);
-        match walk(self, self.entered_near(guess)?, &line.clear)? {
-            (Reached::Face { face, certain: true }, looked) => {
-                contact(self.faces, face, (self, face), line, steps(looked)).map(Outcome::Contact)
+        let guess = self.faces.entry_guess.guessed_face(setting.offset, setting.direction);
+        match walk_faces(self, self.nearest_entered_face(guess)?, &line.margins)? {
+            (WalkEnd::Face { face, certain: true }, visited) => {
+                build_contact(self.faces, face, (self, face), line, walk_steps(visited))
+                    .map(Outcome::Contact)
             }
-            (Reached::Face { .. }, _) => None,
-            (Reached::Rim { face, side }, looked) => {
+            (WalkEnd::Face { .. }, _) => None,
+            (WalkEnd::Silhouette { face, side }, visited) => {
                 let beyond = self.faces.sides(face)[side].beyond;
                 let [face, beyond] = [face, beyond].map(|face| self.faces.plane(face));
-                let rim = Rim::new(face, beyond, setting.unit)?;
-                separated(&rim, line, steps(looked)).map(Outcome::Separated)
+                let silhouette = SilhouettePlane::new(face, beyond, setting.unit)?;
+                build_separation(&silhouette, line, walk_steps(visited)).map(Outcome::Separated)
             }
         }
     }
 
-    /// A face that is entered, by a climb from one.
-    fn entered_near(&self, mut face: u32) -> Option<u32> {
+    /// Returns an entered face, found by hill climbing. Returns `None` if rounding errors stop the climb.
+    fn nearest_entered_face(&self, mut face: u32) -> Option<u32> {
         let along = |face: u32| self.faces.plane(face).normal.dot(self.axes[2]);
-        while along(face) <= ENTERED {
+        while along(face) <= MIN_ENTRY_COMPONENT {
             let best = self.faces.sides(face).iter().map(|side| side.beyond);
             let best = best.max_by(|a, b| along(*a).total_cmp(&along(*b)))?;
             if along(best) <= along(face) {
@@ -118,7 +125,7 @@ impl<'f> Sight<'f> {
     }
 }
 
-impl Seen for Sight<'_> {
+impl LineView for FaceView<'_> {
     type Side = Side;
 
     #[inline]
@@ -127,19 +134,19 @@ impl Seen for Sight<'_> {
     }
 
     #[inline]
-    fn corner(&self, side: &Side) -> DVec3 {
-        axes_of(&self.axes, self.faces.points[side.corner as usize]) + self.at
+    fn corner_coordinates(&self, side: &Side) -> DVec3 {
+        coordinates_along(&self.axes, self.faces.points[side.corner as usize]) + self.at
     }
 
     #[inline]
-    fn beyond(&self, side: &Side) -> Option<u32> {
+    fn face_beyond(&self, side: &Side) -> Option<u32> {
         let along = self.faces.plane(side.beyond).normal.dot(self.axes[2]);
-        (along > ENTERED).then_some(side.beyond)
+        (along > MIN_ENTRY_COMPONENT).then_some(side.beyond)
     }
 }
 
-/// The coordinates of a point along axes.
+/// Returns the coordinates of a point along axes.
 #[inline]
-pub(super) fn axes_of(axes: &[DVec3; 3], point: DVec3) -> DVec3 {
+pub(super) fn coordinates_along(axes: &[DVec3; 3], point: DVec3) -> DVec3 {
     DVec3::from_array(axes.each_ref().map(|axis| axis.dot(point)))
 }

@@ -550,8 +550,9 @@ pub(super) fn refused_for_rounding(verdict: &Verdict, size: f64) -> bool {
         |word: &str| words.iter().rposition(|w| *w == word).and_then(|k| number(words.get(k + 1)?));
     let claimed = after("not");
     let proven = after("of").or_else(|| words.iter().rev().skip(1).find_map(|w| number(w)));
-    let said =
-        ["do not prove", "does not hold", "meet at"].iter().any(|part| reason.contains(part));
+    let said = ["do not prove", "does not hold", "meet at", "contact at time"]
+        .iter()
+        .any(|part| reason.contains(part));
     match (claimed, proven) {
         (Some(claimed), Some(proven)) => {
             (claimed - proven).abs() <= ROUNDED * (1.0 + claimed.abs()) + 1e-12 * size

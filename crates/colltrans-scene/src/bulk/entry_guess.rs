@@ -1,33 +1,36 @@
-//! Where a line probably enters `M0`: a guess, from which faces are walked.
+//! Guesses the face where a line enters `M0`, for the start of a walk.
 //!
-//! The inertia ellipsoid of `M0`, as a ball around its centre, is met by the line at a point, whose direction from the
-//! centre is looked up in a table over the sides of a cube: the face through which a ray from the centre along it
-//! leaves. A line that passes the ball, or nearly does, is taken to pass it at nine tenths of its radius, so that the walk
-//! to the rim begins on a face that is entered.
+//! The inertia ellipsoid of `M0` is transformed to the unit ball around its centre. The direction from the centre to
+//! the point where the line enters the ball is looked up in a table over the sides of a cube. The table has the face
+//! through which the ray in this direction leaves. A line that misses the ball, or nearly does, is moved to nine tenths
+//! of its radius. The walk to the silhouette then starts on an entered face.
 
 use glam::{DMat3, DVec3};
 
 use super::faces::Plane;
 use colltrans_convex::body::ConvexPolyhedron;
 
-/// How far from its centre lines pass the ball at most.
-const INNER: f64 = 0.9;
+/// Maximum distance from the centre, relative to the radius, at which a line passes the ball.
+const MAX_PASS_RADIUS: f64 = 0.9;
 
-/// The square of how far back the ball is there, over that of the distance.
-const PAST: f64 = (1.0 - INNER * INNER) / (INNER * INNER);
+/// Square of the step back along the line to the ball at that distance, divided by the square of the distance.
+const STEP_BACK_SQUARE: f64 =
+    (1.0 - MAX_PASS_RADIUS * MAX_PASS_RADIUS) / (MAX_PASS_RADIUS * MAX_PASS_RADIUS);
 
+/// Table of the faces through which rays from the centre leave.
 #[derive(Debug)]
-pub(super) struct Star {
+pub(super) struct EntryGuessTable {
     center: DVec3,
-    /// From `M0` to the ball.
+    /// Transformation from `M0` to the unit ball.
     to_ball: DMat3,
-    /// Cells along a side of the cube.
+    /// Number of cells along a side of the cube.
     side: usize,
-    /// The faces.
+    /// Index of the face of each cell.
     cells: Vec<u32>,
 }
 
-impl Star {
+impl EntryGuessTable {
+    /// Builds the table.
     pub(super) fn new(hull: &ConvexPolyhedron, planes: &[Plane]) -> Self {
         let inertia = hull.inertia();
         let side = ((planes.len() / 6).isqrt() + 1).clamp(2, 12);
@@ -41,10 +44,10 @@ impl Star {
                 _ => DVec3::new(u, v, sign),
             }
         };
-        // Through the face whose plane it meets first.
+        // The ray leaves through the face whose plane it meets first.
         let left = |ray: DVec3| {
             let reciprocal = |plane: &Plane| {
-                let depth = plane.normal.dot(inertia.center) - plane.least;
+                let depth = plane.normal.dot(inertia.center) - plane.min_coordinate;
                 -plane.normal.dot(ray) / depth
             };
             let first = planes.iter().map(reciprocal).enumerate();
@@ -54,25 +57,26 @@ impl Star {
         Self { center: inertia.center, to_ball: inertia.factor.inverse(), side, cells }
     }
 
-    /// For the line `t d - offset`.
+    /// Returns the guess for the line `t d - offset`.
     #[inline]
-    pub(super) fn guess(&self, offset: DVec3, direction: DVec3) -> u32 {
+    pub(super) fn guessed_face(&self, offset: DVec3, direction: DVec3) -> u32 {
         let along = self.to_ball * direction;
         let from = self.to_ball * -(offset + self.center);
         let per = 1.0 / along.length_squared();
         let across = from - along * (from.dot(along) * per);
         let square = across.length_squared();
-        // The way back to the ball, in multiples of the line's.
-        let toward = if square > INNER * INNER {
-            across - along * (square * (PAST * per)).sqrt()
+        // Step back to the ball, in multiples of the direction.
+        let toward = if square > MAX_PASS_RADIUS * MAX_PASS_RADIUS {
+            across - along * (square * (STEP_BACK_SQUARE * per)).sqrt()
         } else {
             across - along * ((1.0 - square) * per).sqrt()
         };
-        self.cells[self.cell(toward)]
+        self.cells[self.cell_of(toward)]
     }
 
     #[inline]
-    fn cell(&self, toward: DVec3) -> usize {
+    /// Returns the cell of a direction from the centre.
+    fn cell_of(&self, toward: DVec3) -> usize {
         let [x, y, z] = toward.abs().to_array();
         let (axis, along, u, v) = if x >= y && x >= z {
             (0, toward.x, toward.y, toward.z)
@@ -83,7 +87,7 @@ impl Star {
         };
         let half = 0.5 * self.side as f64;
         let per = half / along.abs();
-        // What is not a number is 0 as a whole one.
+        // NaN converts to 0.
         let place = |c: f64| ((half + c * per) as usize).min(self.side - 1);
         let which = 2 * axis + usize::from(along < 0.0);
         (which * self.side + place(v)) * self.side + place(u)

@@ -1,0 +1,175 @@
+//! Computes the separating plane or the overlap of two bodies at one time.
+
+use derive_where::derive_where;
+use glam::DVec3;
+
+use super::answer::MotionSteps;
+use super::curvature::{HillClimbing, SupportSearch};
+use super::proof::Met;
+use super::relative_motion::{InstantOf, RelativeMotion};
+use super::span::Instant;
+use colltrans_convex::answer::{Distance, PlaneGap};
+use colltrans_convex::body::{ConvexPolyhedron, Hull};
+use colltrans_convex::pair::{Pair, distance_from};
+use colltrans_convex::setting::{TwoBodies, VertexPair};
+use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearly};
+
+/// Share of the size of the bodies beyond which a distance is computed roughly; and the relative accuracy of such a
+/// distance. The exact distance is needed only near a contact.
+const FAR_SHARE: f64 = 1e-3;
+const ROUGH_ACCURACY: f64 = 0.2;
+
+/// A distance sample: a plane between two bodies at one time.
+#[derive(Debug)]
+#[derive_where(Clone, Copy; M)]
+pub(super) struct Sample<'a, M, B = ConvexPolyhedron> {
+    pub(super) at: Instant<'a, M, B>,
+    pub(super) normal: DVec3,
+    /// Lower bound of the gap of the real motion minus the minimum gap; not positive if separation is not proven.
+    pub(super) gap: f64,
+    /// Closing speed of the gap.
+    pub(super) rate: f64,
+    /// Nearest points, in the frames of the moving and of the fixed body.
+    pub(super) points: [DVec3; 2],
+    /// Largest gap that rounding errors may close.
+    pub(super) floor: f64,
+}
+
+/// A sample of the bodies of a relative motion.
+pub(super) type SampleOf<'a, C> =
+    Sample<'a, <C as RelativeMotion<'a>>::Moved, <C as RelativeMotion<'a>>::Body>;
+
+impl<M, B> Sample<'_, M, B> {
+    pub(super) fn time(&self) -> f64 {
+        self.at.time
+    }
+
+    pub(super) fn is_apart(&self) -> bool {
+        self.gap > 0.0
+    }
+}
+
+/// Samples distances, and proves contacts.
+pub(super) trait Sampler<B: Hull> {
+    /// Proof of a contact.
+    type Met;
+    /// Method that finds support points.
+    type SupportSearch: SupportSearch<B>;
+    const SUPPORT_SEARCH: Self::SupportSearch;
+
+    /// Computes the plane between the bodies at a time.
+    fn sample<'a, C>(&mut self, motion: &C, time: f64) -> Sample<'a, C::Moved, B>
+    where
+        B: 'a,
+        C: RelativeMotion<'a, Body = B>;
+
+    /// Proves that the real bodies meet at a time. Returns `None` if that is not proven.
+    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<Self::Met>
+    where
+        B: 'a,
+        C: RelativeMotion<'a, Body = B>;
+}
+
+/// Samples distances of convex bodies. Stores the nearest pairs of vertices for the next sample.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ConvexSampler {
+    pairs: NearestPairs,
+    pub(super) steps: MotionSteps,
+}
+
+impl Sampler<ConvexPolyhedron> for ConvexSampler {
+    type Met = Met;
+    type SupportSearch = HillClimbing;
+    const SUPPORT_SEARCH: HillClimbing = HillClimbing;
+
+    fn sample<'a, C>(&mut self, motion: &C, time: f64) -> Sample<'a, C::Moved>
+    where
+        C: RelativeMotion<'a, Body = ConvexPolyhedron>,
+    {
+        let at = motion.instant_at(time);
+        let [min_gap, error] = [motion.min_gap(), motion.position_error()];
+        let difference = Difference::new(&at.bodies);
+        let beyond = min_gap.max(0.0) + FAR_SHARE * difference.bodies.scale();
+        let found = nearly(&difference, &self.pairs, ROUGH_ACCURACY, beyond);
+        self.steps.looks += 1;
+        self.steps.supports += found.supports;
+        let pairs = found.pairs();
+        if !pairs.is_empty() {
+            self.pairs = pairs;
+        }
+        let plane = found.plane(&difference).map(|plane| plane.gap);
+        let (plane, points) = match plane {
+            Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => (Some(plane), found.points()),
+            _ if min_gap < 0.0 => self.least_overlap_plane(&difference),
+            _ => (None, found.points()),
+        };
+        let floor = 4.0 * difference.noise.point() + error + difference.bodies.input_excess();
+        let (normal, gap) =
+            plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
+        let gap = gap - min_gap - error;
+        let (pairs, weights) = &points;
+        let points = at.bodies.weighted(pairs, weights);
+        let rate = if gap > 0.0 { closing_speed(motion, &at, points, normal) } else { 0.0 };
+        Sample { at, normal, gap, rate, points, floor }
+    }
+
+    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<Met>
+    where
+        C: RelativeMotion<'a, Body = ConvexPolyhedron>,
+    {
+        let pair = Pair { bodies: motion.instant_at(time).bodies };
+        let [min_gap, error] = [motion.min_gap(), motion.position_error()];
+        self.steps.looks += 1;
+        if min_gap > error {
+            let near = pair.distance().ok()?.near;
+            return (near.distance + error <= min_gap).then_some(Met::Near(near));
+        }
+        let enough = min_proving_depth(min_gap, error);
+        let depth = pair.depth_until(enough).ok()?;
+        (depth.lower > enough).then(|| Met::Deep(Box::new(depth)))
+    }
+}
+
+/// Returns the depth beyond which bodies with the position error `error` meet, for a minimum gap `keep` (negative: a
+/// tolerated depth).
+pub(super) fn min_proving_depth(min_gap: f64, error: f64) -> f64 {
+    error - min_gap.min(0.0)
+}
+
+impl ConvexSampler {
+    /// Computes the distance of two sampled bodies. Returns `None` if the search does not converge.
+    pub(super) fn distance(&mut self, bodies: TwoBodies) -> Option<Distance> {
+        distance_from(&Pair { bodies }, &mut self.pairs).ok()
+    }
+
+    /// Discards the nearest pairs, before other bodies are sampled.
+    pub(super) fn discard_pairs(&mut self) {
+        self.pairs = NearestPairs::default();
+    }
+
+    /// Computes the plane of least overlap, with the negative depth as its gap, and a vertex pair in it.
+    fn least_overlap_plane(&mut self, difference: &Difference) -> (Option<PlaneGap>, MeanPair) {
+        let pair = Pair { bodies: *difference.bodies };
+        let plane = pair.depth().ok().map(|depth| {
+            self.steps.supports += depth.steps.supports;
+            PlaneGap { normal: -depth.direction, gap: -depth.upper }
+        });
+        let there =
+            plane.map_or_else(VertexPair::default, |plane| difference.support_pair(plane.normal));
+        (plane, ([there; 3], [1.0, 0.0, 0.0]))
+    }
+}
+
+/// A mean of vertex pairs: the pairs and their weights.
+type MeanPair = ([VertexPair; 3], [f64; 3]);
+
+/// Computes the closing speed, along a normal, of two points given in the frames of their bodies.
+pub(super) fn closing_speed<'a, C: RelativeMotion<'a>>(
+    motion: &C,
+    at: &InstantOf<'a, C>,
+    points: [DVec3; 2],
+    normal: DVec3,
+) -> f64 {
+    let velocity = |which: usize| motion.point_velocity(at, which, points[which]);
+    normal.dot(velocity(0) - velocity(1))
+}

@@ -155,7 +155,7 @@ impl<'a> Among<'a> {
             if let Closeness::Farther = self.closeness_of(one, length).map_err(of_one)? {
                 match self.prove_apart(one, length).map_err(of_one)? {
                     Some(apart) if claimed_distance(&apart) > length => {
-                        proof.apart.push((one.id, apart))
+                        proof.apart.push((one.id, apart));
                     }
                     _ => proof.undecided.push(one.id),
                 }

@@ -221,10 +221,10 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
                 self.store_contact(EarliestContact { lower, triangles, is_open: false, met });
             }
             SpanEnd::Indeterminate => {
-                self.store_contact(EarliestContact { lower, triangles, is_open: false, met: None })
+                self.store_contact(EarliestContact { lower, triangles, is_open: false, met: None });
             }
             SpanEnd::Stalled => {
-                self.store_contact(EarliestContact { lower, triangles, is_open: true, met: None })
+                self.store_contact(EarliestContact { lower, triangles, is_open: true, met: None });
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Motions that turn: closed forms, samples on the way, proofs and changed ones, work.
+//! Motions with rotation: closed forms, samples of the motion, proofs and modified proofs, counts of work.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -15,8 +15,8 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::ring_sphere;
 use glam::{DQuat, DVec3};
 
-/// A motion of some kind, by up to an angle, through about where the other body is.
-fn any_motion(random: &mut Random, most: f64) -> Motion {
+/// Returns a random motion that rotates by at most `most` and passes near the origin.
+fn random_motion(random: &mut Random, most: f64) -> Motion {
     let from = random.direction() * random.range(2.5, 5.0);
     let pose = Pose::new(random.rotation(), from).expect("a pose");
     let to = random.vector() * 1.5;
@@ -39,19 +39,23 @@ fn any_motion(random: &mut Random, most: f64) -> Motion {
     .expect("a motion")
 }
 
-/// How deep the bodies are in each other at a time, for certain; and that they are not apart.
-fn overlap(cast: [(&ConvexPolyhedron, &Motion); 2], time: f64) -> f64 {
+/// Returns a lower bound of the depth of the bodies at a time; negative if they are separated.
+fn overlap_lower_bound(cast: [(&ConvexPolyhedron, &Motion); 2], time: f64) -> f64 {
     let [(p, along), (q, other)] = cast;
     let [a, b] = [along, other].map(|motion| motion.at(time).expect("a pose"));
     Pair::new(p.at(a), q.at(b)).expect("a pair").depth().expect("a depth").lower
 }
 
-/// The answer, after all checks that can be made of it.
-fn judged(bodies: [&ConvexPolyhedron; 2], motions: [&Motion; 2], keep: f64) -> MotionOutcome {
+/// Computes the first contact and checks it: its proof, and samples of the motion up to its bounds.
+fn checked_outcome(
+    bodies: [&ConvexPolyhedron; 2],
+    motions: [&Motion; 2],
+    keep: f64,
+) -> MotionOutcome {
     let cast = MotionCast::new(bodies[0].along(motions[0]), bodies[1].along(motions[1]));
     let cast = cast.and_then(|cast| cast.keeping(keep)).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
-    let proof = proof(&outcome);
+    let proof = proof_of(&outcome);
     let [lower, upper] = cast.verify(proof).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
     let both = [(bodies[0], motions[0]), (bodies[1], motions[1])];
     match &outcome {
@@ -71,16 +75,16 @@ fn judged(bodies: [&ConvexPolyhedron; 2], motions: [&Motion; 2], keep: f64) -> M
             let distance = pair.distance().expect("a distance");
             assert!(distance.upper > keep * (1.0 - 1e-12) - 1e-12, "{time}: {outcome:?}");
         } else {
-            assert!(overlap(both, time) < 1e-12, "{time}: {outcome:?}");
+            assert!(overlap_lower_bound(both, time) < 1e-12, "{time}: {outcome:?}");
         }
     }
     if keep == 0.0 && upper <= 1.0 {
-        assert!(overlap(both, upper) > 0.0, "{outcome:?}");
+        assert!(overlap_lower_bound(both, upper) > 0.0, "{outcome:?}");
     }
     outcome
 }
 
-fn proof(outcome: &MotionOutcome) -> &MotionProof {
+fn proof_of(outcome: &MotionOutcome) -> &MotionProof {
     match outcome {
         MotionOutcome::Contact(contact)
         | MotionOutcome::Grazing(contact)
@@ -90,7 +94,7 @@ fn proof(outcome: &MotionOutcome) -> &MotionProof {
     }
 }
 
-fn contact(outcome: MotionOutcome) -> MotionContact {
+fn expect_contact(outcome: MotionOutcome) -> MotionContact {
     match outcome {
         MotionOutcome::Contact(contact) => contact,
         other => panic!("no contact: {other:?}"),
@@ -98,18 +102,18 @@ fn contact(outcome: MotionOutcome) -> MotionContact {
 }
 
 #[test]
-fn random_motions_are_right() {
+fn random_motions_match_samples_and_verify() {
     let (mut contacts, mut free, mut looks, mut widths) = (0, 0, Vec::new(), Vec::new());
     for seed in 0..400 {
         let mut random = Random::new(seed);
         let n = random.pick(&[4, 8, 16, 32, 128]);
         let [p, q] = [hull(n, &mut random), hull(n, &mut random)];
         let most = random.pick(&[1.0, 6.0, 6.0, 100.0]);
-        let along = any_motion(&mut random, most);
+        let along = random_motion(&mut random, most);
         let still = Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
-        let other = if random.one_in(3) { any_motion(&mut random, most) } else { still };
+        let other = if random.one_in(3) { random_motion(&mut random, most) } else { still };
         let keep = if random.one_in(4) { random.pick(&[1e-9, 0.01, 0.3]) } else { 0.0 };
-        match judged([&p, &q], [&along, &other], keep) {
+        match checked_outcome([&p, &q], [&along, &other], keep) {
             MotionOutcome::Contact(contact) => {
                 contacts += 1;
                 looks.push(contact.steps.looks);
@@ -126,17 +130,15 @@ fn random_motions_are_right() {
 }
 
 #[test]
-fn a_door_in_its_frame() {
-    // The door turns about z at the origin; a post's edge is at the angle at which its corner is hit.
+fn swinging_door_meets_wall_at_closed_form_time() {
     let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.125, 0.0), DVec3::new(1.0, 0.125, 2.0));
     let door = door.expect("a box");
     let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
-    // The far face y = 0.125 reaches the half plane x < 0.5 in the plane y = 0.5 with its corner on it: sin
-    // a.
     let wall = ConvexPolyhedron::cuboid(DVec3::new(-9.0, 0.5, -1.0), DVec3::new(9.0, 1.0, 3.0));
     let still = Motion::still(Pose::IDENTITY);
-    let found = contact(judged([&door, &wall.expect("a box")], [&swing, &still], 0.0));
-    // The corner (1, 1/8) is at the height sin a + cos a / 8 = 1/2.
+    let found =
+        expect_contact(checked_outcome([&door, &wall.expect("a box")], [&swing, &still], 0.0));
+    // The corner (1, 1/8) of the door reaches the plane y = 1/2 at sin a + cos a / 8 = 1/2.
     let (r, phase) = ((1.0_f64 + 1.0 / 64.0).sqrt(), 0.125_f64.atan());
     let expected = ((0.5 / r).asin() - phase) / PI;
     assert!(found.lower <= expected && expected <= found.upper);
@@ -144,7 +146,7 @@ fn a_door_in_its_frame() {
 }
 
 #[test]
-fn a_slide_is_the_linear_cast() {
+fn translation_matches_linear_cast() {
     let mut random = Random::new(5);
     let mut contacts = 0;
     for _ in 0..200 {
@@ -154,7 +156,7 @@ fn a_slide_is_the_linear_cast() {
         let cast = Cast::new(p.at(pose), q.at(Pose::IDENTITY), by).expect("a cast");
         let slide = Motion::slide(pose, by).expect("a motion");
         let motions = [&slide, &Motion::still(Pose::IDENTITY)];
-        let outcome = judged([&p, &q], motions, 0.0);
+        let outcome = checked_outcome([&p, &q], motions, 0.0);
         match (cast.first_contact().expect("an answer"), outcome) {
             (Outcome::Contact(linear), MotionOutcome::Contact(found)) => {
                 contacts += 1;
@@ -172,7 +174,7 @@ fn a_slide_is_the_linear_cast() {
 }
 
 #[test]
-fn a_pin_beside_a_wall_turns_by_one_plane() {
+fn pin_rotating_next_to_wall_takes_at_most_four_samples() {
     let rim = |k: usize| DQuat::from_rotation_z(TAU * k as f64 / 48.0) * DVec3::X;
     let corners: Vec<DVec3> =
         (0..48).flat_map(|k| [rim(k) + DVec3::Z, rim(k) - DVec3::Z]).collect();
@@ -181,7 +183,7 @@ fn a_pin_beside_a_wall_turns_by_one_plane() {
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
     for gap in [1e-2, 1e-6, 1e-9, 1e-12] {
         let still = Motion::still(at(2.0 + gap, 0.0, 0.0));
-        let MotionOutcome::Free(free) = judged([&pin, &wall], [&turn, &still], 0.0) else {
+        let MotionOutcome::Free(free) = checked_outcome([&pin, &wall], [&turn, &still], 0.0) else {
             panic!("not free at {gap}");
         };
         assert!(free.steps.looks <= 4, "{} looks at {gap}", free.steps.looks);
@@ -189,7 +191,7 @@ fn a_pin_beside_a_wall_turns_by_one_plane() {
 }
 
 #[test]
-fn blades_past_a_tip() {
+fn rotating_blade_clears_tip_with_gap_and_meets_it_with_overlap() {
     let blade = cuboid([1.0, 0.05, 0.2]);
     let tip = ConvexPolyhedron::from_points(&[
         DVec3::new(0.0, 0.0, 0.0),
@@ -203,37 +205,40 @@ fn blades_past_a_tip() {
     for gap in [1e-1, 1e-3, 1e-6, 1e-9] {
         let pose = Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::Y * (reach + gap));
         let motion = Motion::still(pose.expect("a pose"));
-        let outcome = judged([&blade, &tip], [&turn, &motion], 0.0);
+        let outcome = checked_outcome([&blade, &tip], [&turn, &motion], 0.0);
         let MotionOutcome::Free(free) = outcome else { panic!("{gap}: {outcome:?}") };
         println!("{gap:e}: {} looks", free.steps.looks);
     }
     for depth in [1e-1, 1e-3, 1e-6, 1e-9] {
         let pose = Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::Y * (reach - depth));
-        let found =
-            contact(judged([&blade, &tip], [&turn, &Motion::still(pose.expect("a pose"))], 0.0));
+        let found = expect_contact(checked_outcome(
+            [&blade, &tip],
+            [&turn, &Motion::still(pose.expect("a pose"))],
+            0.0,
+        ));
         assert!(found.steps.looks < 100, "{} looks", found.steps.looks);
         println!("{depth:e}: {} looks, width {:e}", found.steps.looks, found.upper - found.lower);
     }
 }
 
 #[test]
-fn the_start_is_told() {
+fn bodies_overlapping_at_start_report_overlap() {
     let cube = cuboid([0.5; 3]);
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
     let near = Motion::still(at(0.75, 0.0, 0.0));
-    let outcome = judged([&cube, &cube], [&turn, &near], 0.0);
+    let outcome = checked_outcome([&cube, &cube], [&turn, &near], 0.0);
     assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{outcome:?}");
 }
 
 #[test]
-fn what_rests_may_turn_leave_and_not_sink() {
+fn resting_part_with_tolerance_may_rotate_and_leave_but_not_sink() {
     let (part, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
     let still = Motion::still(at(0.0, 0.0, -1.5));
-    let asked = |motion: &Motion, depth: f64| {
+    let query = |motion: &Motion, depth: f64| {
         let cast = MotionCast::new(part.along(motion), table.along(&still)).expect("a cast");
         let cast = cast.tolerating(depth).expect("a depth");
         let outcome = cast.first_contact().expect("an answer");
-        cast.verify(proof(&outcome)).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
+        cast.verify(proof_of(&outcome)).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
         outcome
     };
     let here = Pose::IDENTITY;
@@ -243,19 +248,20 @@ fn what_rests_may_turn_leave_and_not_sink() {
     let sinking = Motion::slide(here, DVec3::NEG_Z).expect("a motion");
     for depth in [1e-12, 1e-9, 1e-3] {
         for motion in [&turning, &leaving, &tipping] {
-            let outcome = asked(motion, depth);
+            let outcome = query(motion, depth);
             let MotionOutcome::Free(free) = &outcome else { panic!("{depth}: {outcome:?}") };
             assert!(free.steps.looks < 40, "{} looks at {depth}", free.steps.looks);
         }
-        let found = contact(asked(&sinking, depth));
+        let found = expect_contact(query(&sinking, depth));
         assert!(found.lower <= depth && depth <= found.upper && found.upper < depth + 1e-12);
     }
     for motion in [&turning, &leaving, &tipping, &sinking] {
-        assert!(matches!(asked(motion, 0.0), MotionOutcome::Grazing(found) if found.lower == 0.0));
+        assert!(matches!(query(motion, 0.0), MotionOutcome::Grazing(found) if found.lower == 0.0));
     }
 }
 
-/// By the least of all ways out: along normals of faces and across pairs of edges. Negative where bodies are apart.
+/// Returns the penetration depth by all candidate axes: face normals and cross products of edges. Negative if the bodies
+/// are separated.
 fn depth_by_all_axes(bodies: [(&ConvexPolyhedron, Pose); 2]) -> f64 {
     let placed = bodies.map(|(body, pose)| {
         let vertices: Vec<DVec3> =
@@ -280,8 +286,8 @@ fn depth_by_all_axes(bodies: [(&ConvexPolyhedron, Pose); 2]) -> f64 {
 }
 
 #[test]
-fn the_shallowest_way_out_may_change() {
-    // A block stands 1/10 deep in a table, 9/10 of it above it; it is drawn off and sinks meanwhile.
+fn direction_of_least_depth_may_change_within_tolerance() {
+    // A block is 1/10 deep in a table. It moves sideways off the table and sinks at the same time.
     let (block, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
     let still = Motion::still(at(-4.6, 0.0, -1.4));
     for (by, free) in [([0.85, 0.0, -0.1], true), ([0.8, 0.0, -0.3], false)] {
@@ -298,7 +304,7 @@ fn the_shallowest_way_out_may_change() {
             let is_free = matches!(outcome, MotionOutcome::Free(_));
             assert!(is_free == free && outcome.steps().looks < 40, "{outcome:?}");
             if !free {
-                let found = contact(outcome);
+                let found = expect_contact(outcome);
                 assert!(
                     (found.lower - 1.0 / 3.0).abs() < 1e-3 && found.upper - found.lower < 1e-11
                 );
@@ -308,7 +314,7 @@ fn the_shallowest_way_out_may_change() {
 }
 
 #[test]
-fn depths_that_are_tolerated_are_reached_when_it_is_said() {
+fn tolerated_depth_is_first_exceeded_within_bounds() {
     let (mut counts, mut looks) = ([0; 4], Vec::new());
     for seed in 0..cases(400) {
         let mut random = Random::new(seed);
@@ -318,7 +324,7 @@ fn depths_that_are_tolerated_are_reached_when_it_is_said() {
         };
         let [p, q] = [body(&mut random), body(&mut random)];
         let most = random.pick(&[0.5, 3.0]);
-        let along = any_motion(&mut random, most);
+        let along = random_motion(&mut random, most);
         let still = Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
         let depth = 10.0_f64.powf(random.range(-4.0, 0.0));
         let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
@@ -335,7 +341,7 @@ fn depths_that_are_tolerated_are_reached_when_it_is_said() {
             MotionOutcome::Free(_) => (1, [1.0, f64::INFINITY]),
             MotionOutcome::Overlapping(_) => (2, [0.0; 2]),
             MotionOutcome::Grazing(found) => {
-                // It is one: they come as deep as that, to rounding.
+                // The depth reaches the tolerance up to rounding.
                 assert!((deep(found.lower) - depth).abs() < 1e-9, "{seed}: {outcome:?}");
                 (3, [found.lower, f64::INFINITY])
             }
@@ -351,9 +357,9 @@ fn depths_that_are_tolerated_are_reached_when_it_is_said() {
     assert!(counts[0] > 20 && counts[1] > 20 && counts[3] == 0, "{counts:?}");
 }
 
-/// Far from a contact bodies are looked at to a share of their distance.
+/// Far from a contact, distances are computed to a relative accuracy only.
 #[test]
-fn looks_are_few_and_cheap() {
+fn contacts_take_few_samples_and_support_points() {
     let mesh = ring_sphere(60, 33);
     let of = |axes: DVec3| {
         let points: Vec<DVec3> = mesh.vertices.iter().map(|v| *v * axes).collect();
@@ -363,8 +369,8 @@ fn looks_are_few_and_cheap() {
     let (mut contacts, mut looks, mut supports) = (0, 0, 0);
     for seed in 0..200 {
         let mut random = Random::new(seed);
-        let along = any_motion(&mut random, 6.0);
-        let there = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
+        let along = random_motion(&mut random, 6.0);
+        let pose = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
         let cast = MotionCast::new(p.along(&along), q.at(there)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         if let MotionOutcome::Contact(found) = &outcome {
@@ -378,10 +384,10 @@ fn looks_are_few_and_cheap() {
 }
 
 #[test]
-fn motions_that_are_too_long_are_told() {
+fn too_long_motions_return_coarse_error() {
     let cube = cuboid([1.0; 3]);
     let solid = Solid::from_convex(&cube).expect("a solid");
-    let there = Motion::still(at(3.0, 0.0, 0.0));
+    let pose = Motion::still(at(3.0, 0.0, 0.0));
     for far in [1e20, 1e50, 1e60] {
         let slide = Motion::slide(Pose::IDENTITY, DVec3::X * far).expect("a motion");
         let cast = MotionCast::new(cube.along(&slide), cube.along(&there)).expect("a cast");
@@ -391,7 +397,7 @@ fn motions_that_are_too_long_are_told() {
         }
         let found = cast.clearance().map(|_| ());
         assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
-        // Away from each other they never meet, however far.
+        // Bodies that move apart never meet, at any distance.
         let away = Motion::slide(at(1e60, 0.0, 0.0), DVec3::X * 1e40).expect("a motion");
         let cast = MotionCast::new(cube.along(&away), cube.along(&there)).expect("a cast");
         assert!(matches!(cast.first_contact(), Ok(MotionOutcome::Free(_))));
@@ -399,7 +405,7 @@ fn motions_that_are_too_long_are_told() {
 }
 
 #[test]
-fn both_carried_by_one_motion_stay_as_they_are() {
+fn bodies_with_common_motion_are_free_if_apart_at_start() {
     let mut random = Random::new(17);
     for _ in 0..50 {
         let [p, q] = [hull(12, &mut random), hull(12, &mut random)];
@@ -408,44 +414,48 @@ fn both_carried_by_one_motion_stay_as_they_are() {
         let apart = Pair::new(p.at(a), q.at(b)).expect("a pair").distance().expect("a distance");
         let (point, axis) = (random.vector() * 3.0, random.direction());
         let both = [a, b].map(|pose| Motion::screw(pose, point, axis, 3.0, 1.0).expect("a motion"));
-        let outcome = judged([&p, &q], [&both[0], &both[1]], 0.0);
+        let outcome = checked_outcome([&p, &q], [&both[0], &both[1]], 0.0);
         assert_eq!(matches!(outcome, MotionOutcome::Free(_)), apart.lower > 0.0, "{outcome:?}");
     }
 }
 
 #[test]
-fn far_from_the_origin_costs_nothing() {
+fn bounds_are_equal_far_from_origin() {
     let cube = cuboid([0.5; 3]);
     let found = |far: DVec3| {
         let pose = Pose::from_translation(far + DVec3::X * 3.0).expect("a pose");
         let motion = Motion::thrown(pose, pose.translation(), DVec3::X * -3.0, DVec3::Z * 2.0);
         let still = Motion::still(Pose::from_translation(far).expect("a pose"));
-        let found = contact(judged([&cube, &cube], [&motion.expect("a motion"), &still], 0.0));
+        let found = expect_contact(checked_outcome(
+            [&cube, &cube],
+            [&motion.expect("a motion"), &still],
+            0.0,
+        ));
         [found.lower, found.upper]
     };
     assert_eq!(found(DVec3::ZERO), found(DVec3::splat(2.0_f64.powi(30))));
 }
 
 #[test]
-fn changed_proofs_are_refused() {
+fn modified_proof_is_rejected_or_equivalent() {
     let mut random = Random::new(23);
     let mut refused = 0;
     for _ in 0..60 {
         let [p, q] = [hull(10, &mut random), hull(10, &mut random)];
-        let along = any_motion(&mut random, 4.0);
+        let along = random_motion(&mut random, 4.0);
         let still = Motion::still(Pose::IDENTITY);
         let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
-        let told = proof(&outcome).clone();
-        if told.spans.iter().all(Vec::is_empty) {
+        let original = proof_of(&outcome).clone();
+        if original.spans.iter().all(Vec::is_empty) {
             continue;
         }
         let mut check = |change: &dyn Fn(&mut MotionProof)| {
-            let mut changed = told.clone();
+            let mut changed = original.clone();
             change(&mut changed);
-            if changed != told {
+            if changed != original {
                 let result = cast.verify(&changed);
-                assert!(result.is_err() || result == cast.verify(&told), "{changed:?}");
+                assert!(result.is_err() || result == cast.verify(&original), "{changed:?}");
                 refused += u32::from(result.is_err());
             }
         };
@@ -468,13 +478,13 @@ fn changed_proofs_are_refused() {
     let (along, still) = (Motion::still(at(3.0, 0.0, 0.0)), Motion::still(Pose::IDENTITY));
     let cast = MotionCast::new(cube.along(&along), cube.along(&still)).expect("a cast");
     let found = cast.first_contact().expect("an answer");
-    let mut turned = proof(&found).clone();
+    let mut turned = proof_of(&found).clone();
     turned.spans.push(turned.spans[0].clone());
     assert!(matches!(cast.verify(&turned), Err(MotionProofError::Plane { span: 1, .. })));
 }
 
 #[test]
-fn all_families_turn() {
+fn rotations_of_all_families_have_verified_proofs() {
     let mut contacts = 0;
     for (family, _) in FAMILIES {
         for seed in 0..6 {
@@ -490,7 +500,7 @@ fn all_families_turn() {
             let cast = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&still));
             let cast = cast.expect("a cast");
             let outcome = cast.first_contact().unwrap_or_else(|e| panic!("{family} {seed}: {e}"));
-            let checked = cast.verify(proof(&outcome));
+            let checked = cast.verify(proof_of(&outcome));
             assert!(checked.is_ok(), "{family} {seed}: {checked:?}");
             contacts += u32::from(matches!(outcome, MotionOutcome::Contact(_)));
         }
@@ -498,9 +508,9 @@ fn all_families_turn() {
     println!("{contacts}");
 }
 
-/// Of bodies with coordinates that are hardly above those which count as 0, the error of a place is more than the gap.
+/// For bodies with tiny coordinates, the error of a computed place exceeds the gap.
 #[test]
-fn bodies_overlap_at_the_start_whatever_gap_was_to_be_kept() {
+fn start_overlap_is_reported_for_any_minimum_gap() {
     let cube = |half: f64| {
         ConvexPolyhedron::cuboid(DVec3::splat(-half), DVec3::splat(half)).expect("a cube")
     };
@@ -521,13 +531,13 @@ fn bodies_overlap_at_the_start_whatever_gap_was_to_be_kept() {
     }
 }
 
-/// Nothing is smaller than two points: that places are off by rounding does not make the question one too many.
+/// Two points have no size, so rounding errors of places do not make the query too coarse.
 #[test]
-fn two_points_that_pass_through_each_other_graze() {
+fn two_points_passing_through_each_other_graze() {
     let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point");
     let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
     for x in [0.0, 1.0, 3.7] {
-        let there = Pose::from_translation(DVec3::X * x).expect("a pose");
+        let pose = Pose::from_translation(DVec3::X * x).expect("a pose");
         let cast = MotionCast::new(point.along(&motion), point.at(there)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         let MotionOutcome::Grazing(contact) = &outcome else { panic!("{outcome:?}") };

@@ -1,5 +1,5 @@
-//! How far along a motion: a slide has the answer of the linear cast, with tolerances and overlaps at the start; closed
-//! forms of what turns.
+//! Clearance of motions: translations against linear casts, with tolerances and overlaps at the start; closed forms of
+//! rotations.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,68 +12,75 @@ use colltrans_testkit::shapes::block;
 use colltrans_testkit::solids::{pin, washer};
 use glam::{DMat3, DVec3};
 
-/// A pose on one of a few places of a grid, turned by quarter turns.
-fn tied(random: &mut Random) -> Pose {
+/// Returns a random pose on a coarse grid, rotated by quarter turns.
+fn grid_pose(random: &mut Random) -> Pose {
     let quarter = DMat3::from_cols(DVec3::Y, DVec3::NEG_X, DVec3::Z);
     let turn = (0..random.index(4)).fold(DMat3::IDENTITY, |turn, _| quarter * turn);
     let place = [(); 3].map(|()| random.pick(&[-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0]));
     Pose::from_matrix(turn, place.into()).expect("a pose")
 }
 
-fn way(random: &mut Random) -> DVec3 {
+/// Returns a random displacement on a coarse grid.
+fn grid_displacement(random: &mut Random) -> DVec3 {
     loop {
-        let way = DVec3::from_array([(); 3].map(|()| random.pick(&[-4.0, 0.0, 0.0, 2.0, 5.0])));
-        if way != DVec3::ZERO {
-            return way;
+        let grid_displacement =
+            DVec3::from_array([(); 3].map(|()| random.pick(&[-4.0, 0.0, 0.0, 2.0, 5.0])));
+        if grid_displacement != DVec3::ZERO {
+            return grid_displacement;
         }
     }
 }
 
-/// What the tests know of an answer: the bounds of the time in the true place and of the shrunk bodies, or why there are
-/// none.
+/// Summary of an answer: the bounds of the times of the nominal and of the shrunk bodies, or the reason why there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Told {
+enum ClearanceSummary {
     Blocked([f64; 2], [f64; 2]),
     Free,
     Overlapping,
 }
 
-fn told<P>(clearance: &MotionClearance<P>) -> Told {
+fn summary<P>(clearance: &MotionClearance<P>) -> ClearanceSummary {
     match clearance {
         MotionClearance::Blocked { time, contact } => {
             let MotionStop { time: place, shrunk, .. } = &**contact;
             assert!(*time <= place.lower && *time <= shrunk.lower && *time >= 0.0);
             assert!(place.lower <= place.value && place.value <= place.upper, "{place:?}");
-            Told::Blocked(place.bounds(), [shrunk.lower, shrunk.upper])
+            ClearanceSummary::Blocked(place.bounds(), [shrunk.lower, shrunk.upper])
         }
-        MotionClearance::Free(_) => Told::Free,
-        MotionClearance::Overlapping(_) => Told::Overlapping,
+        MotionClearance::Free(_) => ClearanceSummary::Free,
+        MotionClearance::Overlapping(_) => ClearanceSummary::Overlapping,
     }
 }
 
-/// Whether two answers are one, to within so much. What comes at the very end, or later, is free.
-fn agree(a: Told, b: Told, off: f64) -> bool {
-    let late = |told: Told| matches!(told, Told::Blocked(_, [lower, _]) if lower > 1.0 - off);
+/// Checks whether two answers agree within a margin. A contact at the very end agrees with a free motion.
+fn are_consistent(a: ClearanceSummary, b: ClearanceSummary, off: f64) -> bool {
+    let late = |summary: ClearanceSummary| matches!(summary, ClearanceSummary::Blocked(_, [lower, _]) if lower > 1.0 - off);
     let meet = |x: [f64; 2], y: [f64; 2]| x[0] <= y[1] + off && y[0] <= x[1] + off;
     match (a, b) {
-        (Told::Blocked(a, b), Told::Blocked(c, d)) => meet(a, c) && meet(b, d),
-        _ => a == b || (late(a) && b == Told::Free) || (late(b) && a == Told::Free),
+        (ClearanceSummary::Blocked(a, b), ClearanceSummary::Blocked(c, d)) => {
+            meet(a, c) && meet(b, d)
+        }
+        _ => {
+            a == b
+                || (late(a) && b == ClearanceSummary::Free)
+                || (late(b) && a == ClearanceSummary::Free)
+        }
     }
 }
 
-/// The linear cast's answer.
-fn linear(cast: &Cast<Solid>) -> Told {
+/// Returns the summary of a linear cast.
+fn linear_summary(cast: &Cast<Solid>) -> ClearanceSummary {
     match cast.clearance().expect("an answer") {
         Clearance::Blocked { contact, .. } => {
             let place = contact.translation.bounds().map(|t| t.max(0.0));
-            Told::Blocked(place, contact.shrunk_distance.bounds())
+            ClearanceSummary::Blocked(place, contact.shrunk_distance.bounds())
         }
-        Clearance::Free(_) => Told::Free,
-        Clearance::Overlapping(_) => Told::Overlapping,
+        Clearance::Free(_) => ClearanceSummary::Free,
+        Clearance::Overlapping(_) => ClearanceSummary::Overlapping,
     }
 }
 
-/// A polygon in the plane z = 0, counter-clockwise, drawn up: one shell, whose corners all have a way inwards.
+/// Extrudes a counter-clockwise polygon in the plane z = 0 along z.
 fn extruded(outline: &[[f64; 2]], height: f64) -> Solid {
     let at = |z: f64| outline.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
     let vertices: Vec<DVec3> = at(0.0).chain(at(height)).collect();
@@ -99,12 +106,16 @@ fn bodies() -> [Solid; 4] {
     [extruded(&ell, 1.0), extruded(&fork, 2.0), solid(&block([-0.5; 3], [1.0; 3])), ring]
 }
 
-/// Asks a slide as a motion and as a cast, with a tolerance and a meaning of overlaps, and counts how they end: stopped,
-/// free, overlapping; after an overlap that is ignored stopped, and stopped by what is not proven to meet.
+/// Compares translations as motions with casts, with tolerances and meanings of overlaps. Returns the numbers of outcomes:
+/// blocked, free, overlapping, blocked after an ignored overlap, and blocked without a proven contact.
 ///
-/// Of the last the cast knows that it is free, where edges pass along edges, or facets along vertices that shrinking has
-/// left in their place: a motion stops too soon there, and says that it proves no more.
-fn slides(poses: fn(&mut Random) -> Pose, by: fn(&mut Random) -> DVec3, off: f64) -> [u32; 5] {
+/// In the last case the cast may be free, if edges pass along edges, or facets along vertices that shrinking leaves in
+/// place. The motion then stops too early, without an upper bound.
+fn compare_translations_with_casts(
+    poses: fn(&mut Random) -> Pose,
+    by: fn(&mut Random) -> DVec3,
+    off: f64,
+) -> [u32; 5] {
     let (mut counts, bodies) = ([0; 5], bodies());
     for seed in 0..600 {
         let mut random = Random::new(seed);
@@ -113,7 +124,7 @@ fn slides(poses: fn(&mut Random) -> Pose, by: fn(&mut Random) -> DVec3, off: f64
         let [slide, rest] = [Motion::slide(a, by).expect("a motion"), Motion::still(b)];
         let mut cast = MotionCast::new(p.along(&slide), q.along(&rest)).expect("a cast");
         let ignores = random.one_in(2);
-        // By powers of two faces that are not turned are moved exactly: those along the way stay so.
+        // Powers of two offset axis-aligned faces exactly, so faces parallel to the motion remain parallel.
         if ignores || random.one_in(2) {
             let tolerance = random.pick(&[0.5_f64.powi(30), 0.5_f64.powi(7), 0.125]);
             cast = cast.tolerating(tolerance).expect("a tolerance");
@@ -122,13 +133,13 @@ fn slides(poses: fn(&mut Random) -> Pose, by: fn(&mut Random) -> DVec3, off: f64
         let straight = Cast::new(p.at(a), q.at(b), by).expect("a cast");
         let straight = straight.with_tolerance(cast.tolerance()).expect("a tolerance");
         let overlaps = straight.overlaps();
-        let straight = linear(&straight.with_start_overlap(start));
+        let straight = linear_summary(&straight.with_start_overlap(start));
         let turning = cast.with_start_overlap(start).clearance().expect("an answer");
-        let turning = told(&turning);
-        if let Told::Blocked(_, [lower, f64::INFINITY]) = turning
-            && !agree(straight, turning, off)
+        let turning = summary_of(&turning);
+        if let ClearanceSummary::Blocked(_, [lower, f64::INFINITY]) = turning
+            && !are_consistent(straight, turning, off)
         {
-            let Told::Blocked(_, [_, upper]) = straight else {
+            let ClearanceSummary::Blocked(_, [_, upper]) = straight else {
                 counts[4] += 1;
                 continue;
             };
@@ -136,35 +147,40 @@ fn slides(poses: fn(&mut Random) -> Pose, by: fn(&mut Random) -> DVec3, off: f64
             counts[4] += 1;
             continue;
         }
-        assert!(agree(straight, turning, off), "{seed} {ignores}: {straight:?} {turning:?}");
+        assert!(
+            are_consistent(straight, turning, off),
+            "{seed} {ignores}: {straight:?} {turning:?}"
+        );
         counts[match turning {
-            Told::Blocked(..) if overlaps => 3,
-            Told::Blocked(..) => 0,
-            Told::Free => 1,
-            Told::Overlapping => 2,
+            ClearanceSummary::Blocked(..) if overlaps => 3,
+            ClearanceSummary::Blocked(..) => 0,
+            ClearanceSummary::Free => 1,
+            ClearanceSummary::Overlapping => 2,
         }] += 1;
     }
     counts
 }
 
 #[test]
-fn a_slide_of_solids_is_the_linear_clearance() {
+fn translated_solids_match_linear_clearance() {
     let any = |random: &mut Random| {
         let far = random.pick(&[0.5, 2.0, 5.0]);
         Pose::new(random.rotation(), random.direction() * far).expect("a pose")
     };
-    let [counts @ .., unproven] = slides(any, |random| random.vector() * 8.0, 1e-9);
+    let [counts @ .., unproven] =
+        compare_translations_with_casts(any, |random| random.vector() * 8.0, 1e-9);
     assert!(counts.iter().all(|count| *count > 15) && unproven == 0, "{counts:?} {unproven}");
 }
 
 #[test]
-fn a_slide_of_solids_that_touch_is_the_linear_clearance() {
-    let [counts @ .., unproven] = slides(tied, way, 1e-9);
+fn translated_solids_in_contact_match_linear_clearance() {
+    let [counts @ .., unproven] =
+        compare_translations_with_casts(grid_pose, grid_displacement, 1e-9);
     assert!(counts.iter().all(|count| *count > 15) && unproven < 20, "{counts:?} {unproven}");
 }
 
 #[test]
-fn a_slide_of_convex_bodies_is_the_linear_clearance() {
+fn translated_convex_bodies_match_linear_clearance() {
     let mut counts = [0; 3];
     let boxes = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([-1.0; 3], [1.0; 3])];
     for seed in 0..600 {
@@ -173,7 +189,7 @@ fn a_slide_of_convex_bodies_is_the_linear_clearance() {
         let hulls = [hull(12, &mut random), hull(8, &mut random)];
         let [p, q] = if is_tied { boxes.each_ref() } else { hulls.each_ref() };
         let (a, b, by) = if is_tied {
-            (tied(&mut random), tied(&mut random), way(&mut random))
+            (grid_pose(&mut random), grid_pose(&mut random), grid_displacement(&mut random))
         } else {
             let [a, b] = [3.0, 0.5]
                 .map(|far| Pose::new(random.rotation(), random.direction() * far).expect("a pose"));
@@ -186,37 +202,37 @@ fn a_slide_of_convex_bodies_is_the_linear_clearance() {
         let straight = match straight.expect("an answer") {
             Clearance::Blocked { contact, .. } => {
                 let bounds = contact.bounded().bounds().map(|t| t.max(0.0));
-                Told::Blocked(bounds, bounds)
+                ClearanceSummary::Blocked(bounds, bounds)
             }
-            Clearance::Free(_) => Told::Free,
-            Clearance::Overlapping(_) => Told::Overlapping,
+            Clearance::Free(_) => ClearanceSummary::Free,
+            Clearance::Overlapping(_) => ClearanceSummary::Overlapping,
         };
-        let turning = told(&clearance);
-        // Rounding alone is tolerated, closed no faster than by a thousandth of the way.
-        assert!(agree(straight, turning, 1e-9), "{seed}: {straight:?} {turning:?}");
+        let turning = summary_of(&clearance);
+        // The default tolerance covers rounding errors only.
+        assert!(are_consistent(straight, turning, 1e-9), "{seed}: {straight:?} {turning:?}");
         if let MotionClearance::Blocked { contact, .. } = &clearance {
-            let asked = cast.clone().tolerating(contact.tolerance).expect("a tolerance");
-            let [lower, upper] = asked.verify(&contact.shrunk.proof).expect("a proof");
+            let query = cast.clone().tolerating(contact.tolerance).expect("a tolerance");
+            let [lower, upper] = query.verify(&contact.shrunk.proof).expect("a proof");
             assert_eq!([lower, upper], [contact.shrunk.lower, contact.shrunk.upper]);
         }
-        // As solids, and one of each kind, they are answered the same.
+        // The answer is the same for the bodies as solids.
         let rest = Motion::still(b);
         let mixed = MotionCast::between(p.along(&slide), q.along(&rest)).expect("a cast");
-        let mixed = told(&mixed.clearance().expect("an answer"));
-        assert!(agree(mixed, turning, 1e-9), "{seed}: {mixed:?} {turning:?}");
+        let mixed = summary_of(&mixed.clearance().expect("an answer"));
+        assert!(are_consistent(mixed, turning, 1e-9), "{seed}: {mixed:?} {turning:?}");
         counts[match turning {
-            Told::Blocked(..) => 0,
-            Told::Free => 1,
-            Told::Overlapping => 2,
+            ClearanceSummary::Blocked(..) => 0,
+            ClearanceSummary::Free => 1,
+            ClearanceSummary::Overlapping => 2,
         }] += 1;
     }
     assert!(counts.iter().all(|count| *count > 30), "{counts:?}");
 }
 
 #[test]
-fn what_stops_a_door_is_told_in_its_true_place() {
-    // As in `solids_motion.rs`: the corner (1, 1/8) of a door meets the stop's face y = 1/2 at
-    // sin a + cos a / 8 = 1/2; smaller by 0.01 all around, (0.99, 0.115) meets y = 0.51.
+fn door_is_blocked_at_nominal_and_shrunk_closed_form_times() {
+    // As in `solids.rs`, the corner (1, 1/8) of a door meets the face y = 1/2 of the stop at sin a + cos a / 8 = 1/2. Shrunk by
+    // 0.01, the corner (0.99, 0.115) meets y = 0.51.
     let door = solid(&block([0.0, -0.125, 0.0], [1.0, 0.125, 2.0]));
     let frame = solid(
         &block([0.5, 0.5, -0.5], [1.5, 1.0, 2.5])
@@ -226,7 +242,9 @@ fn what_stops_a_door_is_told_in_its_true_place() {
     let rest = Motion::still(Pose::IDENTITY);
     let cast = MotionCast::new(door.along(&swing), frame.along(&rest)).expect("a cast");
     let cast = cast.tolerating(0.02).expect("a tolerance");
-    let Told::Blocked(place, shrunk) = told(&cast.clearance().expect("an answer")) else {
+    let ClearanceSummary::Blocked(place, shrunk) =
+        summary_of(&cast.clearance().expect("an answer"))
+    else {
         panic!("the door is stopped")
     };
     let expected = |x: f64, y: f64, face: f64| {
@@ -246,7 +264,7 @@ fn what_stops_a_door_is_told_in_its_true_place() {
 }
 
 #[test]
-fn what_rests_convex_turns_slides_and_is_stopped() {
+fn resting_brick_may_rotate_and_slide_but_not_sink() {
     let (brick, table) = (cuboid([0.0; 3], [1.0; 3]), cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]));
     let here = Pose::IDENTITY;
     let motions = [
@@ -268,15 +286,16 @@ fn what_rests_convex_turns_slides_and_is_stopped() {
             other @ MotionClearance::Overlapping(_) => panic!("{other:?}"),
         }
     }
-    // It slides, is pushed in at the half, and meets the table there: not where it has lain all the time.
+    // It slides, and is pushed into the table from the middle of the motion on. It is blocked there, not at the start.
     let poses = [here, at(1.0, 0.0, 0.0), at(1.0, 0.0, -1.0)];
     let pushed = Motion::through(&poses).expect("a motion");
     let cast = MotionCast::new(brick.along(&pushed), table.at(here)).expect("a cast");
-    let Told::Blocked(place, _) = told(&cast.clearance().expect("an answer")) else {
+    let ClearanceSummary::Blocked(place, _) = summary_of(&cast.clearance().expect("an answer"))
+    else {
         panic!("it is pushed in")
     };
     assert!((place[0] - 0.5).abs() < 1e-11 && (place[1] - 0.5).abs() < 1e-11, "{place:?}");
-    // Sunk in by more than rounding, by an eighth.
+    // An eighth deep in the table.
     let sunk = Motion::slide(at(0.0, 0.0, -0.125), DVec3::X).expect("a motion");
     let cast = MotionCast::new(brick.along(&sunk), table.at(here)).expect("a cast");
     let MotionClearance::Overlapping(found) = cast.clearance().expect("an answer") else {
@@ -285,7 +304,7 @@ fn what_rests_convex_turns_slides_and_is_stopped() {
     assert!((found.least_tolerance.expect("a depth") - 0.125).abs() < 1e-12, "{found:?}");
     let cast = cast.tolerating(0.126).expect("a tolerance");
     assert!(cast.clearance().expect("an answer").is_free());
-    // Nearer than a gap, by 0.05.
+    // Nearer than the gap by 0.05.
     let above = Motion::slide(at(0.0, 0.0, 0.25), DVec3::X).expect("a motion");
     let cast = MotionCast::new(brick.along(&above), table.at(here)).expect("a cast");
     assert!(cast.clone().keeping(0.25).expect("a gap").clearance().expect("an answer").is_free());
@@ -295,15 +314,15 @@ fn what_rests_convex_turns_slides_and_is_stopped() {
 }
 
 #[test]
-fn what_overlaps_at_the_start_may_be_ignored() {
-    // A blade is pressed 1/8 into a table along the x axis, and is turned out of it about that axis, upwards by 2
-    // radians: free, unless a shelf above is in the way, which its far edge meets.
+fn ignored_start_overlap_still_blocks_later_contacts() {
+    // A blade is pressed 1/8 into a table and rotated out of it about the x axis. It is free unless its far edge meets a shelf
+    // above.
     let blade = solid(&block([-1.0, 0.0, -0.125], [1.0, 2.0, 0.25]));
     let table = block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let shelf = block([-4.0, 0.0, 1.5], [4.0, 3.0, 2.0]);
     let out = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::X, 1.5).expect("a motion");
     let rest = Motion::still(Pose::IDENTITY);
-    let asked = |scene: &Solid| {
+    let query = |scene: &Solid| {
         let cast = MotionCast::new(blade.along(&out), scene.along(&rest)).expect("a cast");
         let MotionClearance::Overlapping(found) = cast.clearance().expect("an answer") else {
             panic!("it overlaps")
@@ -312,14 +331,14 @@ fn what_overlaps_at_the_start_may_be_ignored() {
         let ignored = ignoring.start_overlap().expect("an answer").expect("an overlap");
         assert_eq!(found, ignored);
         assert!((found.least_tolerance.expect("a tolerance") - 0.125).abs() < 1e-9, "{found:?}");
-        told(&ignoring.clearance().expect("an answer"))
+        summary_of(&ignoring.clearance().expect("an answer"))
     };
-    // Its lower edge at y = 0 goes down and on through the table: it crosses that from the start on.
-    assert_eq!(asked(&solid(&table)), Told::Free);
-    let Told::Blocked(place, shrunk) = asked(&solid(&table.joined(&shelf))) else {
+    // Its lower edge at y = 0 moves down through the table, which it crosses from the start on.
+    assert_eq!(query(&solid(&table)), ClearanceSummary::Free);
+    let ClearanceSummary::Blocked(place, shrunk) = query(&solid(&table.joined(&shelf))) else {
         panic!("the shelf is in the way")
     };
-    // The edge (2, 1/4) comes up to z = 3/2.
+    // The edge (2, 1/4) reaches z = 3/2.
     let (r, phase) = (2.0_f64.hypot(0.25), (0.125_f64).atan());
     let expected = ((1.5 / r).asin() - phase) / 1.5;
     for [lower, upper] in [place, shrunk] {
@@ -329,23 +348,24 @@ fn what_overlaps_at_the_start_may_be_ignored() {
 }
 
 #[test]
-fn what_is_inside_may_come_out_and_not_in_again() {
-    // A ball in the wall of a ring, none of whose facets it crosses, leaves it, goes on and meets it again.
+fn body_inside_solid_may_leave_but_not_enter_again() {
+    // A block inside the material of a ring, which crosses no facet, leaves it and meets it again.
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
     let ball = solid(&block([1.75, -0.125, -0.125], [2.0, 0.125, 0.125]));
     let rest = Motion::still(Pose::IDENTITY);
-    // About an axis far away, along y: up out of the upper face, around, and down again.
+    // About the y axis: out of the upper face, around, and down again.
     let over = Motion::turn(Pose::IDENTITY, DVec3::new(0.0, 0.0, 0.0), DVec3::NEG_Y, 2.0 * PI);
     let over = over.expect("a motion");
     let cast = MotionCast::new(ball.along(&over), ring.along(&rest)).expect("a cast");
-    assert_eq!(told(&cast.clearance().expect("an answer")), Told::Overlapping);
+    assert_eq!(summary_of(&cast.clearance().expect("an answer")), ClearanceSummary::Overlapping);
     let outcome = cast.first_contact().expect("an answer");
     assert!(matches!(outcome, MotionOutcome::Overlapping(_)));
     let cast = cast.with_start_overlap(StartOverlap::Ignore);
-    let Told::Blocked(place, _) = told(&cast.clearance().expect("an answer")) else {
+    let ClearanceSummary::Blocked(place, _) = summary_of(&cast.clearance().expect("an answer"))
+    else {
         panic!("it comes back")
     };
-    // Its corner (2, -1/8), seen along y, comes down to z = 1/2 on the other side: at z = r sin(a + p).
+    // Seen along y, its corner (2, -1/8) reaches z = 1/2 on the other side, with z = r sin(a + p).
     let (r, phase) = (2.0_f64.hypot(0.125), (-0.0625_f64).atan());
     let high = [1.75_f64.hypot(0.125), (0.125_f64 / 1.75).atan()];
     let down = |[r, phase]: [f64; 2]| (PI - (0.5 / r).asin() - phase) / (2.0 * PI);
@@ -354,20 +374,20 @@ fn what_is_inside_may_come_out_and_not_in_again() {
 }
 
 #[test]
-fn a_pin_pressed_into_its_hole_is_pulled_out_by_a_screw() {
-    // The pin is larger than the hole by 0.01 all around, and has a head above; it is unscrewed, or screwed in until
-    // the head is on the ring, 0.5 below.
+fn pressed_pin_may_be_pulled_out_but_its_head_blocks() {
+    // The pin is larger than the hole by 0.01 and has a head. It is pulled out, or pushed in until the head meets the ring,
+    // 0.5 below.
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
     let stud = pin(1.01, [-1.0, 1.0], 24).joined(&pin(2.0, [1.0, 1.5], 24));
     let stud = solid(&stud);
     let rest = Motion::still(Pose::IDENTITY);
-    let asked = |rise: f64| {
+    let query = |rise: f64| {
         let screw = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.0, rise);
         let screw = screw.expect("a motion");
         let cast = MotionCast::new(stud.along(&screw), ring.along(&rest)).expect("a cast");
-        told(&cast.with_start_overlap(StartOverlap::Ignore).clearance().expect("an answer"))
+        summary_of(&cast.with_start_overlap(StartOverlap::Ignore).clearance().expect("an answer"))
     };
-    assert_eq!(asked(3.0), Told::Free);
-    let Told::Blocked(place, _) = asked(-2.0) else { panic!("the head stops it") };
+    assert_eq!(query(3.0), ClearanceSummary::Free);
+    let ClearanceSummary::Blocked(place, _) = query(-2.0) else { panic!("the head stops it") };
     assert!((place[0] - 0.25).abs() < 1e-11, "{place:?}");
 }

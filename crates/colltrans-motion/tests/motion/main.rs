@@ -1,4 +1,4 @@
-//! Bodies that turn, or that joints carry, in one program: each program is linked for itself.
+//! Tests of bodies in motion and of bodies that joints carry, as one program, because each program is linked separately.
 
 mod casts;
 mod clearance;

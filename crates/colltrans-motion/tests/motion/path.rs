@@ -1,4 +1,5 @@
-//! Paths of joints: closed forms, samples on the way, a joint that is a motion, solids, proofs and changed ones, work.
+//! Paths of joints: closed forms, samples of the path, one joint against a rotation, solids, proofs and modified proofs,
+//! counts of work.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -15,8 +16,8 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{block, random_hull};
 use glam::{DQuat, DVec3};
 
-/// An arm in a plane: links of length 1 along x, joints about z.
-fn planar(links: usize) -> Mechanism {
+/// Builds a planar arm: links of length 1 along x, joints about z.
+fn planar_arm(links: usize) -> Mechanism {
     let frame = |k: usize| Frame {
         parent: k.checked_sub(1),
         origin: at(if k == 0 { 0.0 } else { 1.0 }, 0.0, 0.0),
@@ -25,7 +26,7 @@ fn planar(links: usize) -> Mechanism {
     Mechanism::new((0..links).map(frame).collect()).expect("an arm")
 }
 
-fn contact(outcome: PathOutcome) -> PathContact {
+fn expect_contact(outcome: PathOutcome) -> PathContact {
     match outcome {
         PathOutcome::Contact(contact) => contact,
         other => panic!("no contact: {other:?}"),
@@ -33,7 +34,7 @@ fn contact(outcome: PathOutcome) -> PathContact {
 }
 
 #[test]
-fn random_arms_are_right() {
+fn random_arms_of_convex_bodies_pass_samples() {
     let (mut contacts, mut free, mut others) = (0, 0, 0);
     for seed in 0..300 {
         let outcome = Arm::random(seed, false).judge(60);
@@ -51,7 +52,7 @@ fn random_arms_are_right() {
 }
 
 #[test]
-fn arms_of_solids_are_right() {
+fn random_arms_of_solids_pass_samples() {
     let (mut contacts, mut free) = (0, 0);
     for seed in 0..60 {
         let outcome = Arm::random(seed, true).judge(20);
@@ -65,7 +66,7 @@ fn arms_of_solids_are_right() {
 }
 
 #[test]
-fn one_joint_is_a_turn() {
+fn path_of_one_joint_matches_rotation() {
     let mut random = Random::new(3);
     let (mut contacts, mut free) = (0, 0);
     for _ in 0..200 {
@@ -77,7 +78,7 @@ fn one_joint_is_a_turn() {
         let (point, axis) = (random.vector() * 2.0, random.direction());
         let angle = random.range(-6.0, 6.0);
         let turn = Motion::turn(pose, point, axis, angle).expect("a motion");
-        // Where it comes by, more or less.
+        // Near the path of the body.
         let by = turn.at(random.unit()).expect("a pose").translation() + random.vector() * 2.0;
         let there = at(by.x, by.y, by.z);
         let cast = MotionCast::new(p.along(&turn), q.at(there)).expect("a cast");
@@ -87,8 +88,8 @@ fn one_joint_is_a_turn() {
         let path = JointPath::evenly(vec![vec![0.0], vec![angle]]).expect("a path");
         let own = pose.translated(-point).expect("a pose");
         let bodies = vec![PathBody::carried(0, p.at(own)), PathBody::standing(q.at(there))];
-        let asked = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
-        let found = asked.first_contact().expect("an answer");
+        let query = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+        let found = query.first_contact().expect("an answer");
         match (cast.first_contact().expect("an answer"), found) {
             (MotionOutcome::Contact(a), PathOutcome::Contact(b)) => {
                 contacts += 1;
@@ -104,9 +105,8 @@ fn one_joint_is_a_turn() {
 }
 
 #[test]
-fn two_links_reach_a_wall_at_a_known_time() {
-    // Both joints turn by a: the tip's far corner (1, 1/8) of the second link is at the height
-    // sin a + sin 2a + cos 2a / 8.
+fn two_links_reach_wall_at_closed_form_time() {
+    // Both joints rotate by a. The corner (1, 1/8) of the second link is at the height sin a + sin 2a + cos 2a / 8.
     let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
     let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
     let height = |a: f64| a.sin() + (2.0 * a).sin() + (2.0 * a).cos() / 8.0;
@@ -115,7 +115,7 @@ fn two_links_reach_a_wall_at_a_known_time() {
         let middle = 0.5 * (low + high);
         if height(middle) < 0.75 { low = middle } else { high = middle }
     }
-    let mechanism = planar(2);
+    let mechanism = planar_arm(2);
     let path = JointPath::new(vec![2.0, 4.0], vec![vec![0.0, 0.0], vec![1.0, 1.0]]);
     let path = path.expect("a path");
     let bodies = vec![
@@ -124,7 +124,7 @@ fn two_links_reach_a_wall_at_a_known_time() {
         PathBody::standing(wall.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 2], [1, 2]]).expect("a cast");
-    let found = contact(cast.first_contact().expect("an answer"));
+    let found = expect_contact(cast.first_contact().expect("an answer"));
     let expected = 2.0 + 2.0 * low;
     assert!(found.lower <= expected + 1e-14 && expected <= found.upper + 1e-14, "{found:?}");
     assert!(found.upper - found.lower < 1e-12, "{:e}", found.upper - found.lower);
@@ -135,15 +135,15 @@ fn two_links_reach_a_wall_at_a_known_time() {
 }
 
 #[test]
-fn a_thin_wire_between_samples_is_found() {
-    // A wire, a thousandth thick, where an arm sweeps by at 90 degrees a row: samples at a hundred times in each row
-    // have the tip on both sides of it and never in it.
+fn thin_wire_between_samples_is_found() {
+    // A thin wire in the path of an arm that rotates by 90 degrees per row. With a hundred samples per row, the tip is on
+    // both sides of the wire and never in it.
     let link = cuboid([0.0, -0.002, -0.002], [1.0, 0.002, 0.002]);
     let angle: f64 = 0.5 * FRAC_PI_2 + 0.5 * FRAC_PI_2 / 100.0;
     let tip = DVec3::new(angle.cos(), angle.sin(), 0.0) * 1.9;
     let wire = cuboid([-0.001, -0.001, -1.0], [0.001, 0.001, 1.0]);
     let arm = Arm {
-        frames: planar(2).frames().to_vec(),
+        frames: planar_arm(2).frames().to_vec(),
         rows: vec![vec![0.0, 0.0], vec![FRAC_PI_2, 0.0]],
         bodies: vec![],
         pairs: vec![],
@@ -162,15 +162,15 @@ fn a_thin_wire_between_samples_is_found() {
         with.gap([0, 1], place).expect("a gap") <= 0.0
     });
     assert_eq!(seen.count(), 0, "sampling misses it");
-    let found = contact(with.judge(100).expect("an answer"));
+    let found = expect_contact(with.judge(100).expect("an answer"));
     assert!(0.5 < found.lower && found.upper < 0.51, "{} {}", found.lower, found.upper);
 }
 
 #[test]
-fn what_is_carried_together_never_meets() {
-    // Two links of an arm that another joint carries, with a joint between them that rests: nothing moves.
+fn links_at_rest_relative_to_each_other_take_two_samples() {
+    // Two links of an arm with a joint between them that rests do not move relative to each other.
     let cube = cuboid([-0.4; 3], [0.4; 3]);
-    let mechanism = planar(3);
+    let mechanism = planar_arm(3);
     let rows = (0..1000).map(|k| vec![f64::from(k) * 0.1, 0.0, f64::from(k)]).collect();
     let path = JointPath::evenly(rows).expect("a path");
     let bodies = vec![
@@ -185,11 +185,11 @@ fn what_is_carried_together_never_meets() {
 }
 
 #[test]
-fn far_paths_take_few_looks() {
-    // A hand that waves, 1,000 rows, 3 away from a wall.
+fn distant_path_takes_few_samples() {
+    // A moving hand at a distance of 3 from a wall, over 1,000 rows.
     let hand = cuboid([0.0, -0.1, -0.1], [1.0, 0.1, 0.1]);
     let wall = cuboid([5.0, -9.0, -9.0], [6.0, 9.0, 9.0]);
-    let mechanism = planar(2);
+    let mechanism = planar_arm(2);
     let rows: Vec<Vec<f64>> =
         (0..1000).map(|k| vec![(f64::from(k) * 0.02).sin(), (f64::from(k) * 0.03).cos()]).collect();
     let bodies = || {
@@ -203,7 +203,7 @@ fn far_paths_take_few_looks() {
     let outcome = cast.first_contact().expect("an answer");
     assert!(matches!(outcome, PathOutcome::Free(_)), "{outcome:?}");
     assert!(outcome.steps().looks < 60, "{} looks", outcome.steps().looks);
-    // Near all the time: two looks a row.
+    // Near the gap all the time: about two samples per row.
     let near = PathCast::new(&mechanism, &path, bodies(), vec![[0, 1]]).expect("a cast");
     let near = near.keeping(2.99).expect("a gap");
     let outcome = near.first_contact().expect("an answer");
@@ -212,8 +212,8 @@ fn far_paths_take_few_looks() {
 }
 
 #[test]
-fn a_hand_in_a_box_is_free_until_it_meets_a_side() {
-    // A closed box with a hollow inside: no convex obstacle says that.
+fn hand_in_hollow_box_is_free_until_it_meets_side() {
+    // A closed box with a cavity.
     let outer = block([-2.0; 3], [2.0; 3]);
     let inner = block([-1.5; 3], [1.5; 3]).reversed();
     let mesh = outer.joined(&inner).triangulated();
@@ -231,10 +231,10 @@ fn a_hand_in_a_box_is_free_until_it_meets_a_side() {
         PathBody::standing(hollow.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
-    let found = contact(cast.first_contact().expect("an answer"));
+    let found = expect_contact(cast.first_contact().expect("an answer"));
     assert!(found.lower <= 1.5 && 1.5 <= found.upper && found.upper - found.lower < 1e-11);
     assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
-    // In the wall itself no surface is near, and yet it overlaps.
+    // Inside the material no surface is near, but the bodies overlap.
     let thick = Solid::from_mesh(
         &block([-2.0; 3], [2.0; 3]).triangulated().vertices,
         &block([-2.0; 3], [2.0; 3]).triangulated().faces,
@@ -251,10 +251,10 @@ fn a_hand_in_a_box_is_free_until_it_meets_a_side() {
 }
 
 #[test]
-fn a_path_of_one_row_is_a_place() {
+fn path_of_one_row_reports_overlap_or_free() {
     let cube = cuboid([-0.4; 3], [0.4; 3]);
-    let mechanism = planar(2);
-    let asked = |angle: f64| {
+    let mechanism = planar_arm(2);
+    let query = |angle: f64| {
         let path = JointPath::evenly(vec![vec![angle, 0.0]]).expect("a path");
         let bodies = vec![
             PathBody::carried(1, cube.at(Pose::IDENTITY)),
@@ -263,12 +263,12 @@ fn a_path_of_one_row_is_a_place() {
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
         cast.first_contact().expect("an answer")
     };
-    assert!(matches!(asked(0.5), PathOutcome::Overlapping(_)));
-    assert!(matches!(asked(FRAC_PI_2), PathOutcome::Free(_)));
+    assert!(matches!(query(0.5), PathOutcome::Overlapping(_)));
+    assert!(matches!(query(FRAC_PI_2), PathOutcome::Free(_)));
 }
 
-/// All planes of a proof.
-fn planes(proof: &mut PathProof) -> Vec<&mut colltrans_motion::PlaneAt> {
+/// Returns all planes of a proof.
+fn planes_mut(proof: &mut PathProof) -> Vec<&mut colltrans_motion::PlaneAt> {
     let steps = proof.covers.iter_mut().flat_map(|cover| &mut cover.steps);
     let stretches = steps.flat_map(|step| match step {
         Step::Planes(stretches) => stretches.iter_mut(),
@@ -278,10 +278,10 @@ fn planes(proof: &mut PathProof) -> Vec<&mut colltrans_motion::PlaneAt> {
 }
 
 #[test]
-fn changed_proofs_are_refused() {
+fn modified_proof_is_rejected() {
     let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
     let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
-    let mechanism = planar(2);
+    let mechanism = planar_arm(2);
     let rows = vec![vec![0.0, 0.0], vec![0.1, 0.05], vec![1.0, 1.0]];
     let path = JointPath::evenly(rows).expect("a path");
     let bodies = vec![
@@ -290,20 +290,20 @@ fn changed_proofs_are_refused() {
         PathBody::standing(wall.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 2], [1, 2]]).expect("a cast");
-    let found = contact(cast.first_contact().expect("an answer"));
+    let found = expect_contact(cast.first_contact().expect("an answer"));
     let proof = &found.proof;
     let count = proof.planes();
     assert!(count > 6, "{count}");
     for k in 0..count {
         let mut larger = proof.clone();
-        planes(&mut larger)[k].gap *= 1.5;
+        planes_mut(&mut larger)[k].gap *= 1.5;
         assert!(matches!(cast.verify(&larger), Err(PathProofError::Gap { .. })), "{k}");
         let mut turned = proof.clone();
-        let plane = &mut *planes(&mut turned)[k];
+        let plane = &mut *planes_mut(&mut turned)[k];
         plane.normal = DQuat::from_rotation_z(1.0) * plane.normal;
         assert!(cast.verify(&turned).is_err(), "{k}");
         let mut later = proof.clone();
-        planes(&mut later)[k].time += 0.01;
+        planes_mut(&mut later)[k].time += 0.01;
         assert!(cast.verify(&later).is_err(), "{k}");
     }
     let mut sooner = proof.clone();
@@ -312,24 +312,24 @@ fn changed_proofs_are_refused() {
     let mut less = proof.clone();
     less.covers.pop();
     assert!(matches!(cast.verify(&less), Err(PathProofError::Pairs { .. })));
-    // Without its steps a cover proves nothing: not wrong, but of no time.
+    // Without its steps, a cover is valid but proves no time.
     let mut empty = proof.clone();
     empty.covers[0].steps.clear();
     assert_eq!(cast.verify(&empty).map(|bounds| bounds[0]), Ok(0.0));
 }
 
 #[test]
-fn planes_that_are_left_out_are_missed() {
+fn proof_with_removed_planes_is_rejected() {
     let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
     let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
-    let mechanism = planar(2);
+    let mechanism = planar_arm(2);
     let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![-6.0, 6.0]]).expect("a path");
     let bodies = vec![
         PathBody::carried(1, link.at(Pose::IDENTITY)),
         PathBody::standing(wall.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
-    let found = contact(cast.first_contact().expect("an answer"));
+    let found = expect_contact(cast.first_contact().expect("an answer"));
     let mut proof = found.proof;
     let Step::Planes(stretches) = &mut proof.covers[0].steps[0] else { panic!("no planes") };
     let planes = &mut stretches[0].planes;
@@ -339,7 +339,7 @@ fn planes_that_are_left_out_are_missed() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn invalid_input_returns_typed_errors() {
     let z = Joint::Turning(DVec3::Z);
     let frame = |parent, joint| Frame { parent, origin: Pose::IDENTITY, joint };
     assert_eq!(Mechanism::new(vec![frame(Some(0), z)]), Err(PathError::Parent { frame: 0 }));
@@ -350,9 +350,9 @@ fn what_is_wrong_is_told() {
     assert!(matches!(twice, Err(PathError::Time { row: 1, .. })));
     let uneven = JointPath::evenly(vec![vec![0.0], vec![]]);
     assert!(matches!(uneven, Err(PathError::Row { row: 1, values: 0, joints: 1 })));
-    let mechanism = planar(2);
+    let mechanism = planar_arm(2);
     let cube = cuboid([-0.4; 3], [0.4; 3]);
-    let asked = |rows: Vec<Vec<f64>>, frame: usize, pair: [usize; 2]| {
+    let query = |rows: Vec<Vec<f64>>, frame: usize, pair: [usize; 2]| {
         let path = JointPath::evenly(rows).expect("a path");
         let bodies = vec![
             PathBody::carried(frame, cube.at(Pose::IDENTITY)),
@@ -361,16 +361,16 @@ fn what_is_wrong_is_told() {
         PathCast::new(&mechanism, &path, bodies, vec![pair]).map(drop)
     };
     let row = vec![vec![0.0, 0.0]];
-    assert!(matches!(asked(vec![vec![0.0]], 0, [0, 1]), Err(PathError::Row { joints: 2, .. })));
-    assert!(matches!(asked(vec![vec![0.0, f64::NAN]], 0, [0, 1]), Err(PathError::Value { .. })));
-    assert!(matches!(asked(vec![vec![0.0, 2e5]], 0, [0, 1]), Err(PathError::Value { .. })));
-    assert!(matches!(asked(row.clone(), 7, [0, 1]), Err(PathError::Frame { frame: 7, .. })));
-    assert!(matches!(asked(row.clone(), 0, [1, 1]), Err(PathError::Pair { .. })));
-    assert_eq!(asked(row, 0, [0, 1]), Ok(()));
+    assert!(matches!(query(vec![vec![0.0]], 0, [0, 1]), Err(PathError::Row { joints: 2, .. })));
+    assert!(matches!(query(vec![vec![0.0, f64::NAN]], 0, [0, 1]), Err(PathError::Value { .. })));
+    assert!(matches!(query(vec![vec![0.0, 2e5]], 0, [0, 1]), Err(PathError::Value { .. })));
+    assert!(matches!(query(row.clone(), 7, [0, 1]), Err(PathError::Frame { frame: 7, .. })));
+    assert!(matches!(query(row.clone(), 0, [1, 1]), Err(PathError::Pair { .. })));
+    assert_eq!(query(row, 0, [0, 1]), Ok(()));
 }
 
 #[test]
-fn a_cube_that_comes_down_flush_on_a_step_is_a_contact() {
+fn cube_lowered_flush_onto_step_reports_contact() {
     let lift = Frame {
         parent: None,
         origin: at(1.0, 5.0, 0.0),
@@ -381,21 +381,21 @@ fn a_cube_that_comes_down_flush_on_a_step_is_a_contact() {
     let pieces = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
     let step = Solid::from_pieces(&pieces.map(|piece| Solid::from_convex(&piece).unwrap()));
     let (step, cube) = (step.unwrap(), cuboid([-0.5; 3], [0.5; 3]));
-    // Down past the upright part, beside it, with sides in one plane, and onto each part.
+    // Lowered onto each part of the step, with sides in one plane.
     for (x, meets) in [(0.5, 0.1875), (0.0, 0.1875), (1.5, 0.4375), (2.0, 0.4375), (2.25, 0.4375)] {
         let bodies = vec![
             PathBody { frame: Some(0), placed: cube.at(at(x - 1.0, 0.0, 0.5)).into() },
             PathBody { frame: None, placed: step.at(Pose::IDENTITY).into() },
         ];
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
-        let found = contact(cast.first_contact().expect("an answer"));
+        let found = expect_contact(cast.first_contact().expect("an answer"));
         assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
         assert!((found.upper - meets).abs() < 1e-9, "{x}: {} {}", found.lower, found.upper);
     }
 }
 
 #[test]
-fn solids_of_one_outline_that_come_down_on_each_other_are_a_contact() {
+fn prisms_with_equal_cross_sections_have_proven_contact() {
     let solid = |low: [f64; 3], high: [f64; 3]| {
         Solid::from_convex(&cuboid(low, high)).expect("a block is a solid")
     };
@@ -403,7 +403,7 @@ fn solids_of_one_outline_that_come_down_on_each_other_are_a_contact() {
         (solid([0.0; 3], [1.0, 1.0, 0.25]), solid([0.0, 0.0, -3.0], [1.0, 1.0, 0.0]));
     let lift =
         Frame { parent: None, origin: at(0.0, 0.0, 1.0), joint: Joint::Sliding(DVec3::NEG_Z) };
-    // Askew, and with its edges on diagonals of the column's face.
+    // Rotated, and with edges on diagonals of the face of the column.
     let post = solid([-0.25, -0.25, 0.0], [0.25, 0.25, 0.5]);
     let turned = |angle: f64, x: f64, y: f64| {
         Pose::new(DQuat::from_rotation_z(angle), DVec3::new(x, y, 0.0)).expect("a pose")
@@ -421,13 +421,13 @@ fn solids_of_one_outline_that_come_down_on_each_other_are_a_contact() {
             PathBody::standing(column.at(Pose::IDENTITY)),
         ];
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
-        let found = contact(cast.first_contact().expect("an answer"));
+        let found = expect_contact(cast.first_contact().expect("an answer"));
         assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
         assert!(found.lower < meets + 1e-11 && found.upper > meets - 1e-15, "{found:?}");
         assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
         let meeting = found.proof.meeting.clone().expect("it is proven");
         let How::Point { pieces, point } = meeting.how else { continue };
-        // A point that is not inside both proves nothing, nor one at another time.
+        // A point that is not inside both is not a proof, nor is one at another time.
         for (axis, far) in [(0, 2.0), (1, -2.0), (2, 1.0), (2, f64::NAN)] {
             let mut elsewhere = point;
             elsewhere[axis] += far;

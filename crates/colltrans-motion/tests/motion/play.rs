@@ -1,4 +1,4 @@
-//! Bodies that turn with little play between them: all have an answer, whose proof holds.
+//! Rotating bodies with little play: every query is decided, and its proof holds.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use colltrans_testkit::oracle::play::{KINDS, Screw, chain, slider};
 use glam::DVec3;
 
 #[test]
-fn screws_with_little_play_have_an_answer() {
+fn screws_with_little_play_are_decided() {
     for (kind, name) in KINDS.into_iter().enumerate() {
         for seed in 0..40 {
             let screw = Screw::random(kind, seed);
@@ -21,7 +21,7 @@ fn screws_with_little_play_have_an_answer() {
 }
 
 #[test]
-fn arms_near_a_touch_have_an_answer() {
+fn arms_near_contact_are_decided() {
     for seed in 0..100 {
         for arm in [chain(seed), slider(seed)] {
             let outcome = arm.judge(20).unwrap_or_else(|wrong| panic!("{seed} {}", wrong.0));
@@ -31,10 +31,10 @@ fn arms_near_a_touch_have_an_answer() {
     }
 }
 
-/// Two cubes that spin as one by 100 turns, one of which slides along the axis past the other with a play of 1e-9: one
-/// plane that both carry along proves all of it.
+/// Two cubes make 100 common turns, and one slides along the axis past the other with a play of 1e-9. One carried plane
+/// proves the whole motion.
 #[test]
-fn a_plane_is_carried_along_while_one_body_slides_along_the_axis() {
+fn one_carried_plane_proves_sliding_along_common_axis() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
     let beside = Pose::from_translation(DVec3::new(1.0 + 1e-9, 0.2, 0.1)).unwrap();
     let screw = |pose, rise| Motion::screw(pose, DVec3::ZERO, DVec3::Z, 100.0 * TAU, rise).unwrap();
@@ -44,15 +44,15 @@ fn a_plane_is_carried_along_while_one_body_slides_along_the_axis() {
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
     assert_eq!(cast.verify(outcome.proof()).unwrap(), [1.0, f64::INFINITY]);
     assert!(outcome.steps().looks <= 3, "{:?}", outcome.steps());
-    // Solids answer the same.
+    // The search between solids has the same outcome.
     let solids = MotionCast::between(cube.along(&moving), cube.along(&fixed)).unwrap();
     let outcome = solids.tolerating(0.0).unwrap().first_contact().unwrap();
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
 }
 
-/// A proof about the bodies as solids counts for the same question alone: not with a gap, a depth, or planes beside it.
+/// A proof about the bodies as solids holds for the same query only: not with a gap, a depth or additional planes.
 #[test]
-fn a_changed_proof_of_solids_is_refused() {
+fn proof_of_solids_is_rejected_for_other_queries() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
     let there = Pose::from_translation(DVec3::X * 1.5).unwrap();
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
@@ -65,9 +65,9 @@ fn a_changed_proof_of_solids_is_refused() {
     proof.solids = Some(Box::new(solids.proof().clone()));
     assert_eq!(cast.verify(&proof).unwrap(), [1.0, f64::INFINITY]);
     let kept = cast.clone().keeping(0.6).unwrap();
-    assert!(kept.verify(&proof).is_err(), "a cover without a gap proves none");
+    assert!(kept.verify(&proof).is_err(), "a cover without a gap does not prove one");
     let deep = cast.clone().tolerating(0.1).unwrap();
-    assert!(deep.verify(&proof).is_err(), "solids say nothing of depths");
+    assert!(deep.verify(&proof).is_err(), "covers of solids do not prove depths");
     let mut changed = proof.clone();
     changed.spans = vec![Vec::new()];
     assert!(cast.verify(&changed).is_err());

@@ -1,5 +1,4 @@
-//! What always holds of motions that turn, and families that are hard: tips that graze, fast spins, faces that are
-//! parallel.
+//! Invariants of motions with rotation, and hard families: grazing tips, fast rotations, parallel faces.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -9,22 +8,22 @@ use colltrans_testkit::bodies::{at_xyz as at, centered as cuboid, hull};
 use colltrans_testkit::random::Random;
 use glam::{DMat3, DQuat, DVec3};
 
-/// The answer, whose proof holds.
-fn answered([p, q]: [&ConvexPolyhedron; 2], [a, b]: [&Motion; 2]) -> MotionOutcome {
+/// Computes the first contact and verifies its proof.
+fn verified_outcome([p, q]: [&ConvexPolyhedron; 2], [a, b]: [&Motion; 2]) -> MotionOutcome {
     let cast = MotionCast::new(p.along(a), q.along(b)).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
     outcome
 }
 
-fn contact(outcome: MotionOutcome) -> MotionContact {
+fn expect_contact(outcome: MotionOutcome) -> MotionContact {
     match outcome {
         MotionOutcome::Contact(contact) => contact,
         other => panic!("no contact: {other:?}"),
     }
 }
 
-/// Bounds of a time: of an answer that is none, from its end on.
+/// Returns the bounds of the contact time. A free motion has a contact after its end.
 fn bounds(outcome: &MotionOutcome) -> [f64; 2] {
     match outcome {
         MotionOutcome::Contact(contact) | MotionOutcome::Grazing(contact) => {
@@ -35,8 +34,8 @@ fn bounds(outcome: &MotionOutcome) -> [f64; 2] {
     }
 }
 
-/// That two answers are about one time, which may be known to be off by so much.
-fn agree(a: &MotionOutcome, b: &MotionOutcome, off: f64) {
+/// Asserts that the bounds of two outcomes overlap within a margin.
+fn assert_consistent(a: &MotionOutcome, b: &MotionOutcome, off: f64) {
     let [x, y] = [a, b].map(bounds);
     assert!(x[0] <= y[1] + off && y[0] <= x[1] + off, "{a:?}, but {b:?}");
 }
@@ -72,11 +71,11 @@ impl Setting {
 
     fn outcome(&self) -> MotionOutcome {
         let [p, q] = &self.bodies;
-        answered([p, q], [&self.screw(self.start), &Motion::still(self.other)])
+        verified_outcome([p, q], [&self.screw(self.start), &Motion::still(self.other)])
     }
 }
 
-/// Settings of a seed, and their answers.
+/// Returns random settings of a seed with their outcomes.
 fn settings(seed: u64, count: usize) -> impl Iterator<Item = (Setting, MotionOutcome)> {
     let mut random = Random::new(seed);
     (0..count).map(move |_| {
@@ -87,40 +86,40 @@ fn settings(seed: u64, count: usize) -> impl Iterator<Item = (Setting, MotionOut
 }
 
 #[test]
-fn bodies_may_be_swapped() {
+fn swapped_bodies_have_same_time() {
     let mut contacts = 0;
     for (setting, outcome) in settings(1, 300) {
         let [p, q] = &setting.bodies;
         let motions = [&Motion::still(setting.other), &setting.screw(setting.start)];
-        agree(&outcome, &answered([q, p], motions), 0.0);
+        assert_consistent(&outcome, &verified_outcome([q, p], motions), 0.0);
         contacts += u32::from(matches!(outcome, MotionOutcome::Contact(_)));
     }
     assert!(contacts > 20, "{contacts}");
 }
 
 #[test]
-fn a_motion_in_pieces_is_the_motion() {
+fn motion_through_poses_has_same_contact_as_screw() {
     for (setting, outcome) in settings(2, 150) {
         let [p, q] = &setting.bodies;
         let screw = setting.screw(setting.start);
-        // Each is less than half a turn, which is the shorter way.
+        // Each piece rotates by less than half a turn, so it is the shorter rotation.
         let poses: Vec<Pose> =
             (0..=4).map(|k| screw.at(0.25 * f64::from(k)).expect("a pose")).collect();
         let pieces = Motion::through(&poses).expect("a motion");
-        let found = answered([p, q], [&pieces, &Motion::still(setting.other)]);
-        // Poses in between are rounded, and what grazes may be touched or not.
-        let is_told = |of: &MotionOutcome| !matches!(of, MotionOutcome::Grazing(_));
+        let found = verified_outcome([p, q], [&pieces, &Motion::still(setting.other)]);
+        // Intermediate poses are rounded, so grazing bodies may or may not touch.
+        let is_decided = |of: &MotionOutcome| !matches!(of, MotionOutcome::Grazing(_));
         let [x, y] = [&outcome, &found].map(bounds);
         let slow = x[1] - x[0] > 1e-11 || y[1] - y[0] > 1e-11;
-        if is_told(&outcome) && is_told(&found) && !slow {
-            agree(&outcome, &found, 1e-10);
+        if is_decided(&outcome) && is_decided(&found) && !slow {
+            assert_consistent(&outcome, &found, 1e-10);
         }
     }
 }
 
-/// One plane, carried along, however narrow the gap.
+/// One carried plane proves the motion, for any gap.
 #[test]
-fn carried_by_one_motion_cubes_stay_apart() {
+fn cubes_with_common_motion_are_free_with_few_samples() {
     let cube = cuboid([0.5; 3]);
     for gap in [1e-3, 1e-6, 1e-8, 1e-10, 1e-12] {
         for turn in [0.0, 0.3] {
@@ -132,17 +131,17 @@ fn carried_by_one_motion_cubes_stay_apart() {
                 let (point, axis) = (DVec3::new(0.5, 0.25, 0.0), DVec3::new(1.0, 2.0, 3.0));
                 Motion::screw(pose, point, axis, 3.0, 2.0).expect("a motion")
             };
-            let outcome = answered([&cube, &cube], [&screw(poses[0]), &screw(poses[1])]);
+            let outcome = verified_outcome([&cube, &cube], [&screw(poses[0]), &screw(poses[1])]);
             let MotionOutcome::Free(free) = outcome else { panic!("{gap:e}: {outcome:?}") };
             assert!(free.steps.looks <= 4, "{} looks at {gap:e}", free.steps.looks);
-            // The same by way of poses, each of which is met to rounding.
+            // The same motion through poses, which are rounded.
             let through = |pose: Pose| {
                 let poses = [0.0, 0.5, 1.0].map(|time| screw(pose).at(time).expect("a pose"));
                 Motion::through(&poses).expect("a motion")
             };
             if gap >= 1e-10 {
                 let [a, b] = poses.map(through);
-                let outcome = answered([&cube, &cube], [&a, &b]);
+                let outcome = verified_outcome([&cube, &cube], [&a, &b]);
                 let MotionOutcome::Free(free) = outcome else { panic!("{gap:e}: {outcome:?}") };
                 assert!(free.steps.looks <= 8, "{} looks at {gap:e}", free.steps.looks);
             }
@@ -150,9 +149,9 @@ fn carried_by_one_motion_cubes_stay_apart() {
     }
 }
 
-/// The face of a slanting cube that comes to an edge of another one, which is a little aside.
+/// A face of an oblique cube meets an edge of another cube, which is slightly displaced.
 #[test]
-fn a_slanting_cube_is_met_to_rounding() {
+fn oblique_cube_face_meets_edge_with_narrow_bounds() {
     let cube = cuboid([0.5; 3]);
     for slant in [0.0, 0.3, 0.7, std::f64::consts::FRAC_PI_4] {
         for aside in [0.0, 0.05, 0.1, 0.3] {
@@ -161,7 +160,7 @@ fn a_slanting_cube_is_met_to_rounding() {
                 let pose = Pose::new(by, DVec3::new(-3.0, aside, 0.0)).expect("a pose");
                 let slide = Motion::slide(pose, DVec3::X * 4.0).expect("a motion");
                 let there = Motion::still(Pose::IDENTITY);
-                let found = contact(answered([&cube, &cube], [&slide, &there]));
+                let found = expect_contact(verified_outcome([&cube, &cube], [&slide, &there]));
                 let width = found.upper - found.lower;
                 assert!(width < 1e-12, "{slant} {aside} {axis}: {} {width:e}", found.lower);
             }
@@ -170,7 +169,7 @@ fn a_slanting_cube_is_met_to_rounding() {
 }
 
 #[test]
-fn carried_by_a_pose_it_is_the_same() {
+fn common_rigid_transformation_preserves_time() {
     let mut random = Random::new(77);
     for (setting, outcome) in settings(3, 150) {
         let [p, q] = &setting.bodies;
@@ -181,23 +180,23 @@ fn carried_by_a_pose_it_is_the_same() {
         let screw =
             Motion::screw(carried(&setting.start), point, axis, setting.angle, setting.rise);
         let still = Motion::still(carried(&setting.other));
-        let found = answered([p, q], [&screw.expect("a motion"), &still]);
+        let found = verified_outcome([p, q], [&screw.expect("a motion"), &still]);
         let [x, y] = [&outcome, &found].map(bounds);
         if x[1] - x[0] < 1e-11 && y[1] - y[0] < 1e-11 {
-            agree(&outcome, &found, 1e-10);
+            assert_consistent(&outcome, &found, 1e-10);
         }
     }
 }
 
 #[test]
-fn whole_turns_more_bring_nothing_earlier() {
+fn additional_full_rotations_preserve_first_contact() {
     let mut contacts = 0;
     for (setting, _) in settings(4, 300) {
         let [p, q] = &setting.bodies;
         let still = Motion::still(setting.other);
         let turn = |angle: f64| {
             let turn = Motion::turn(setting.start, setting.point, setting.axis, angle);
-            answered([p, q], [&turn.expect("a motion"), &still])
+            verified_outcome([p, q], [&turn.expect("a motion"), &still])
         };
         let once = turn(TAU);
         for whole in [2.0, 5.0, 40.0] {
@@ -222,7 +221,7 @@ fn whole_turns_more_bring_nothing_earlier() {
     assert!(contacts > 80, "{contacts}");
 }
 
-/// A blade whose tip is at 1 from the axis, and a wall that it reaches into by a depth.
+/// Builds a blade with its tip at distance 1 from the axis, and a wall that it penetrates by a depth.
 fn tip_and_wall(depth: f64) -> [ConvexPolyhedron; 2] {
     let blade: Vec<DVec3> = [(0.0, -0.05), (0.0, 0.05), (1.0, 0.0)]
         .into_iter()
@@ -234,16 +233,16 @@ fn tip_and_wall(depth: f64) -> [ConvexPolyhedron; 2] {
 }
 
 #[test]
-fn tips_that_graze_are_met_at_their_time() {
+fn grazing_tip_meets_wall_at_closed_form_time() {
     let start = Pose::new(DQuat::from_rotation_z(-1.0), DVec3::ZERO).expect("a pose");
     let swing = Motion::turn(start, DVec3::ZERO, DVec3::Z, 2.0).expect("a motion");
     let still = Motion::still(Pose::IDENTITY);
     for k in 3..=13 {
         let depth = 10.0_f64.powi(-k);
         let [blade, wall] = tip_and_wall(depth);
-        // What rounding has made of it.
+        // The depth of the rounded body.
         let depth = 1.0 - wall.vertices().iter().map(|v| v.x).fold(f64::INFINITY, f64::min);
-        let found = contact(answered([&blade, &wall], [&swing, &still]));
+        let found = expect_contact(verified_outcome([&blade, &wall], [&swing, &still]));
         // cos a = 1 - depth.
         let angle = 2.0 * (0.5 * depth).sqrt().asin();
         let expected = 0.5 * (1.0 - angle);
@@ -255,7 +254,7 @@ fn tips_that_graze_are_met_at_their_time() {
         assert!(found.steps.looks <= 100, "1e-{k}: {} looks", found.steps.looks);
 
         let [blade, wall] = tip_and_wall(-depth);
-        let outcome = answered([&blade, &wall], [&swing, &still]);
+        let outcome = verified_outcome([&blade, &wall], [&swing, &still]);
         let is_free = matches!(outcome, MotionOutcome::Free(_));
         let is_grazing = matches!(outcome, MotionOutcome::Grazing(_));
         assert!(is_free || (k >= 13 && is_grazing), "1e-{k}: {outcome:?}");
@@ -263,53 +262,53 @@ fn tips_that_graze_are_met_at_their_time() {
 }
 
 #[test]
-fn fast_spins_are_met_in_their_first_turn() {
+fn fast_rotation_meets_wall_in_first_turn() {
     let [blade, wall] = tip_and_wall(1e-3);
     let still =
         Motion::still(Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::ZERO).expect("a pose"));
-    // The wall is turned by a quarter: the tip reaches it where the sine is 1 - depth.
+    // The wall is rotated by a quarter turn. The tip reaches it where the sine is 1 - depth.
     let depth = 1.0 - wall.vertices().iter().map(|v| v.x).fold(f64::INFINITY, f64::min);
     let reached = FRAC_PI_2 - 2.0 * (0.5 * depth).sqrt().asin();
     for angle in [2.0, 100.0, 1e4, 1e5] {
         let spin = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a motion");
-        let found = contact(answered([&blade, &wall], [&spin, &still]));
+        let found = expect_contact(verified_outcome([&blade, &wall], [&spin, &still]));
         let expected = reached / angle;
         let off = 1e-13 * expected;
         assert!(found.lower <= expected + off && expected <= found.upper + off, "{found:?}");
         assert!(found.upper - found.lower < 1e-11, "{found:?}");
     }
-    // Past it: a thousand turns, each of which comes as near.
+    // A thousand turns past the wall, each equally near.
     let [blade, wall] = tip_and_wall(-1e-3);
     let spin = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1e3 * TAU).expect("a motion");
-    let outcome = answered([&blade, &wall], [&spin, &still]);
+    let outcome = verified_outcome([&blade, &wall], [&spin, &still]);
     let MotionOutcome::Free(free) = &outcome else { panic!("{outcome:?}") };
     assert!(free.steps.looks <= 40_000, "{} looks", free.steps.looks);
 }
 
 #[test]
-fn faces_that_are_parallel() {
+fn parallel_faces_meet_when_gap_closes() {
     let [part, plate] = [cuboid([0.5, 0.5, 0.25]), cuboid([4.0, 4.0, 0.25])];
     for k in 2..=11 {
         let gap = 10.0_f64.powi(-k);
         let start = at(0.25, 0.5, 0.5 + gap);
-        // Turned and slid in its plane it never comes nearer.
+        // Rotation and translation in the plane keep the gap.
         for way in [DVec3::ZERO, DVec3::new(0.5, -0.25, 0.0)] {
             let turn = Motion::thrown(start, start.translation(), way, DVec3::Z * 5.0);
             let still = Motion::still(Pose::IDENTITY);
-            let outcome = answered([&part, &plate], [&turn.expect("a motion"), &still]);
+            let outcome = verified_outcome([&part, &plate], [&turn.expect("a motion"), &still]);
             let MotionOutcome::Free(free) = &outcome else { panic!("{gap}: {outcome:?}") };
             assert!(free.steps.looks <= 10, "{} looks at {gap}", free.steps.looks);
         }
-        // Screwed down it meets the plate face to face, when the gap is closed.
+        // A screw towards the plate meets it face to face when the gap is closed.
         let down = Motion::screw(start, DVec3::ZERO, DVec3::Z, 4.0, -4.0 * gap).expect("a motion");
         let still = Motion::still(Pose::IDENTITY);
-        let found = contact(answered([&part, &plate], [&down, &still]));
+        let found = expect_contact(verified_outcome([&part, &plate], [&down, &still]));
         let off = 1e-15 / gap;
         assert!(found.lower <= 0.25 + off && 0.25 <= found.upper + off, "{gap}: {found:?}");
         assert!(found.upper - found.lower < 1e-13 / gap, "{gap}: {found:?}");
-        // And tilted by no more than the gap allows, by an edge.
+        // A tilt meets the plate with an edge.
         let tilt = Motion::turn(start, start.translation(), DVec3::Y, 0.5).expect("a motion");
-        let found = contact(answered([&part, &plate], [&tilt, &still]));
+        let found = expect_contact(verified_outcome([&part, &plate], [&tilt, &still]));
         // 0.5 sin a + 0.25 cos a = 0.25 + gap.
         let (r, phase) = ((0.25_f64 + 0.0625).sqrt(), 0.5_f64.atan());
         let angle = ((0.25 + gap) / r).asin() - phase;

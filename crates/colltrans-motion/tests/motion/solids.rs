@@ -1,5 +1,5 @@
-//! Solids that turn: closed forms, convex bodies as solids against the convex search, exact solids at times on the
-//! way, threads; proofs and changed ones; work.
+//! Solids in motion: closed forms, convex bodies as solids against the convex search, exact overlaps at sampled times,
+//! screw threads, proofs and modified proofs, counts of work.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -17,16 +17,20 @@ use colltrans_testkit::shapes::{Mesh, block};
 use colltrans_testkit::solids::{pin, thread, washer};
 use glam::{DQuat, DVec3};
 
-fn still() -> Motion {
+fn rest_motion() -> Motion {
     Motion::still(Pose::IDENTITY)
 }
 
-/// The answer with its proof, after all checks that can be made of it.
-fn judged(cast: &MotionCast<Solid>, motions: [&Motion; 2]) -> MotionOutcome<SolidMotionProof> {
-    judged_keeping(cast, motions, 0.0)
+/// Computes the certified first contact and checks it: its proof, and exact overlaps at sampled times.
+fn checked_outcome(
+    cast: &MotionCast<Solid>,
+    motions: [&Motion; 2],
+) -> MotionOutcome<SolidMotionProof> {
+    checked_outcome_with_gap(cast, motions, 0.0)
 }
 
-fn judged_keeping(
+/// Computes and checks the first contact of a cast with a minimum gap.
+fn checked_outcome_with_gap(
     cast: &MotionCast<Solid>,
     motions: [&Motion; 2],
     gap: f64,
@@ -48,30 +52,30 @@ fn judged_keeping(
         }
         _ => panic!("{plain:?} is not {outcome:?}"),
     }
-    // The library's own exact decision on the way.
+    // Exact decisions of the library at sampled times.
     let bodies = cast.bodies();
     let overlaps = |time: f64| {
         let [a, b] = motions.map(|motion| motion.at(time).expect("a pose"));
         let cast = Cast::new(bodies[0].at(a), bodies[1].at(b), DVec3::Z).expect("a cast");
-        let cast = cast.with_tolerance(cast_tolerance(&outcome)).expect("a tolerance");
+        let cast = cast.with_tolerance(tolerance_of(&outcome)).expect("a tolerance");
         cast.keeping(gap).expect("a gap").overlaps()
     };
     for k in 0..if upper == 0.0 { 0 } else { 50 } {
         let time = lower * f64::from(k) / 50.0;
         assert!(!overlaps(time), "overlap at {time} of {lower}");
     }
-    // Nearer for certain than a gap is more than as near.
+    // With a gap, a proven contact need not be an overlap.
     if upper <= 1.0 && gap == 0.0 {
         assert!(overlaps(upper), "no overlap at {upper}");
     }
     outcome
 }
 
-fn cast_tolerance(outcome: &MotionOutcome<SolidMotionProof>) -> f64 {
+fn tolerance_of(outcome: &MotionOutcome<SolidMotionProof>) -> f64 {
     outcome.proof().tolerance
 }
 
-fn contact(outcome: MotionOutcome<SolidMotionProof>) -> MotionContact<SolidMotionProof> {
+fn expect_contact(outcome: MotionOutcome<SolidMotionProof>) -> MotionContact<SolidMotionProof> {
     match outcome {
         MotionOutcome::Contact(contact) => contact,
         other => panic!("no contact: {other:?}"),
@@ -79,7 +83,7 @@ fn contact(outcome: MotionOutcome<SolidMotionProof>) -> MotionContact<SolidMotio
 }
 
 #[test]
-fn convex_bodies_as_solids_agree_with_the_convex_search() {
+fn convex_bodies_as_solids_match_convex_search() {
     let (mut contacts, mut free, mut most) = (0, 0, 0.0_f64);
     for seed in 0..200 {
         let mut random = Random::new(seed);
@@ -97,7 +101,10 @@ fn convex_bodies_as_solids_agree_with_the_convex_search() {
         };
         let convex = MotionCast::new(p.along(&along), q.along(&other)).expect("a cast");
         let solids = MotionCast::between(p.along(&along), q.along(&other)).expect("a cast");
-        match (convex.first_contact().expect("an answer"), judged(&solids, [&along, &other])) {
+        match (
+            convex.first_contact().expect("an answer"),
+            checked_outcome(&solids, [&along, &other]),
+        ) {
             (MotionOutcome::Contact(one), MotionOutcome::Contact(two)) => {
                 contacts += 1;
                 most = most.max((one.lower - two.lower).abs());
@@ -112,51 +119,51 @@ fn convex_bodies_as_solids_agree_with_the_convex_search() {
 }
 
 #[test]
-fn threads() {
+fn screw_in_nut_is_free_at_its_pitch_only() {
     let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [24, 24], None));
     let nut = solid(&thread([1.04, 0.1, 0.5], [0.6, 1.4], [24, 9], Some(1.5)));
     assert_eq!([&bolt, &nut].map(|solid| solid.triangles().len()), [1_200, 576]);
     let turned = |factor: f64| {
         let turn = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU, 0.5 * factor);
-        let (turn, rest) = (turn.expect("a motion"), still());
+        let (turn, rest) = (turn.expect("a motion"), rest_motion());
         let cast = MotionCast::new(bolt.along(&turn), nut.along(&rest)).expect("a cast");
         let steps = cast.first_contact().expect("an answer").steps();
-        (judged(&cast, [&turn, &rest]), steps)
+        (checked_outcome(&cast, [&turn, &rest]), steps)
     };
     let (outcome, steps) = turned(1.0);
     assert!(matches!(outcome, MotionOutcome::Free(_)));
     assert!(steps.nodes < 450_000 && steps.leaves < 100, "{steps:?}");
     let (outcome, steps) = turned(0.95);
     assert!(steps.nodes < 450_000 && steps.leaves < 5_000, "{steps:?}");
-    let pitch = contact(outcome);
+    let pitch = expect_contact(outcome);
     assert!(pitch.lower > 0.9 && pitch.upper - pitch.lower < 1e-11, "{pitch:?}");
     let (outcome, steps) = turned(0.0);
     assert!(steps.nodes < 25_000 && steps.leaves < 300, "{steps:?}");
-    let level = contact(outcome);
+    let level = expect_contact(outcome);
     assert!(level.lower > 0.05 && level.upper - level.lower < 1e-11, "{level:?}");
 }
 
 #[test]
-fn a_door_in_its_frame() {
-    // The door, hung at the origin, swings shut against a stop that is a part of its frame: the corner (1, 1/8) of
-    // its far face meets the stop's face y = 1/2 at sin a + cos a / 8 = 1/2.
+fn swinging_door_meets_frame_at_closed_form_time() {
+    // The door rotates about the origin against a stop of its frame. Its corner (1, 1/8) meets the face y = 1/2 of the
+    // stop at sin a + cos a / 8 = 1/2.
     let door = solid(&block([0.0, -0.125, 0.0], [1.0, 0.125, 2.0]));
     let frame = solid(
         &block([0.5, 0.5, -0.5], [1.5, 1.0, 2.5])
             .joined(&block([-0.5, -0.5, -1.5], [1.5, 0.5, -0.5])),
     );
     let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, FRAC_PI_2).expect("a motion");
-    let rest = still();
+    let rest = rest_motion();
     let cast = MotionCast::new(door.along(&swing), frame.along(&rest)).expect("a cast");
-    let found = contact(judged(&cast, [&swing, &rest]));
+    let found = expect_contact(checked_outcome(&cast, [&swing, &rest]));
     let (r, phase) = ((1.0_f64 + 1.0 / 64.0).sqrt(), 0.125_f64.atan());
     let expected = ((0.5 / r).asin() - phase) / FRAC_PI_2;
     assert!((found.lower - expected).abs() < 1e-11, "{} {expected}", found.lower);
     assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
 }
 
-/// A block with a slot along x that is 0.5 wide and high, from the bodies that make it.
-fn lock() -> Solid {
+/// Builds a block with a slot along x that is 0.5 wide and high, from four blocks.
+fn slotted_block() -> Solid {
     let walls = [
         block([0.0, 0.25, -1.0], [1.0, 1.0, 1.0]),
         block([0.0, -1.0, -1.0], [1.0, -0.25, 1.0]),
@@ -167,19 +174,18 @@ fn lock() -> Solid {
 }
 
 #[test]
-fn a_key_in_its_lock() {
-    // Its blade is 0.4 by 0.2 in a square slot of 0.5: the farthest corner is at r = sqrt(0.2) / 2 < 0.25, so it
-    // turns; one of 0.6 by 0.2 does not: its corner (0.3, 0.1), at the angle p, is at the slot's side once
-    // r sin(a + p) = 0.25.
+fn key_rotates_in_slot_if_its_corner_fits() {
+    // A blade of 0.4 by 0.2 rotates in a square slot of 0.5, because its corners are at r = sqrt(0.2) / 2 < 0.25. A blade
+    // of 0.48 by 0.2 does not.
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::X, PI).expect("a motion");
-    let (lock, rest) = (lock(), still());
+    let (slotted_block, rest) = (slotted_block(), rest_motion());
     let key = |half: f64| solid(&block([-1.0, -half, -0.1], [0.5, half, 0.1]));
     let (small, large) = (key(0.2), key(0.24));
-    let cast = MotionCast::new(small.along(&turn), lock.along(&rest)).expect("a cast");
-    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
-    let cast = MotionCast::new(large.along(&turn), lock.along(&rest)).expect("a cast");
-    let found = contact(judged(&cast, [&turn, &rest]));
-    // The corner (0.24, -0.1) comes to y = 0.25.
+    let cast = MotionCast::new(small.along(&turn), slotted_block.along(&rest)).expect("a cast");
+    assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
+    let cast = MotionCast::new(large.along(&turn), slotted_block.along(&rest)).expect("a cast");
+    let found = expect_contact(checked_outcome(&cast, [&turn, &rest]));
+    // The corner (0.24, -0.1) reaches y = 0.25.
     let r = 0.24_f64.hypot(0.1);
     let expected = ((0.1 / r).asin() - (0.25 / r).acos()) / PI;
     assert!((found.lower - expected).abs() < 1e-11, "{} {expected}", found.lower);
@@ -188,15 +194,15 @@ fn a_key_in_its_lock() {
 }
 
 #[test]
-fn what_touches_parts_slides_and_is_stopped() {
-    // A step stands on a plate with a hole; nothing is between them.
+fn solids_in_contact_may_slide_and_separate_but_not_penetrate() {
+    // A step rests on a plate.
     let step =
         solid(&block([0.0; 3], [2.0, 1.0, 1.0]).joined(&block([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])));
     let plate = solid(&block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]));
-    let rest = still();
-    let asked = |motion: Motion| {
+    let rest = rest_motion();
+    let query = |motion: Motion| {
         let cast = MotionCast::new(step.along(&motion), plate.along(&rest)).expect("a cast");
-        judged(&cast, [&motion, &rest])
+        checked_outcome(&cast, [&motion, &rest])
     };
     let here = Pose::IDENTITY;
     let turned = Motion::turn(here, DVec3::new(0.3, 0.2, 0.0), DVec3::Z, TAU).expect("a motion");
@@ -204,59 +210,59 @@ fn what_touches_parts_slides_and_is_stopped() {
     let raised = Motion::screw(here, DVec3::ZERO, DVec3::Z, 3.0, 1.0).expect("a motion");
     let tipped = Motion::turn(here, DVec3::X * 2.0, DVec3::Y, 1.0).expect("a motion");
     for free in [turned, slid, raised, tipped] {
-        let outcome = asked(free);
+        let outcome = query(free);
         assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
     }
     let pushed = Motion::screw(here, DVec3::ZERO, DVec3::Z, 1.0, -1.0).expect("a motion");
     let levered = Motion::turn(here, DVec3::new(1.0, 0.0, 0.0), DVec3::Y, 1.0).expect("a motion");
     for blocked in [pushed, levered] {
-        let found = contact(asked(blocked));
+        let found = expect_contact(query(blocked));
         assert!(found.lower < 1e-11 && found.upper < 1e-11, "{} {}", found.lower, found.upper);
     }
-    // Without a tolerance a touch is not told from an overlap.
+    // Without a tolerance, contact is not distinguished from overlap.
     let turned = Motion::turn(here, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
     let cast = MotionCast::new(step.along(&turned), plate.along(&rest)).expect("a cast");
     let cast = cast.tolerating(0.0).expect("a tolerance");
-    let MotionOutcome::Grazing(found) = judged(&cast, [&turned, &rest]) else {
+    let MotionOutcome::Grazing(found) = checked_outcome(&cast, [&turned, &rest]) else {
         panic!("not grazing")
     };
     assert_eq!(found.lower, 0.0);
 }
 
 #[test]
-fn what_holds_a_body_is_told_at_the_start() {
+fn fits_containment_and_gaps_are_decided_at_start() {
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
-    let rest = still();
-    // A pin of the same corners fits, but may not turn, unless both are smaller by the height of a chord.
+    let rest = rest_motion();
+    // A pin with the same corners fits, but can rotate only if both are shrunk by the height of a chord.
     let fitting = solid(&pin(1.0, [-1.0, 1.0], 24));
     let cast = MotionCast::new(fitting.along(&turn), ring.along(&rest)).expect("a cast");
-    assert!(contact(judged(&cast, [&turn, &rest])).upper < 1e-4);
+    assert!(expect_contact(checked_outcome(&cast, [&turn, &rest])).upper < 1e-4);
     let chord = 1.0 - (PI / 24.0).cos();
     let cast = cast.tolerating(1.1 * chord).expect("a tolerance");
-    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
-    // Inside the material no surfaces cross.
+    assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
+    // Inside the material, no surfaces cross.
     let ball = solid(&block([1.5, -0.25, -0.25], [2.0, 0.25, 0.25]));
     let cast = MotionCast::new(ball.along(&turn), ring.along(&rest)).expect("a cast");
-    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Overlapping(_)));
-    // In a hole that is closed all round it turns.
+    assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Overlapping(_)));
+    // A block rotates in a closed cavity.
     let hollow = solid(&block([-2.0; 3], [2.0; 3]).joined(&block([-1.0; 3], [1.0; 3]).reversed()));
     let inner = solid(&block([-0.5; 3], [0.5; 3]));
     let cast = MotionCast::new(inner.along(&turn), hollow.along(&rest)).expect("a cast");
-    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
+    assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
     assert!(cast.clone().tolerating(1.0).is_err(), "nothing is left of the inner one");
-    // A gap is kept: the corner, at 0.5 sqrt(2) from the axis, comes as near as 1 - 0.5 sqrt(2).
+    // With a minimum gap: the corner, at 0.5 sqrt(2) from the axis, comes as near as 1 - 0.5 sqrt(2).
     let gap = 1.0 - 0.5_f64.sqrt();
-    let asked = |gap: f64| {
+    let query = |gap: f64| {
         let cast = cast.clone().keeping(gap).expect("a gap");
-        judged_keeping(&cast, [&turn, &rest], gap)
+        checked_outcome_with_gap(&cast, [&turn, &rest], gap)
     };
-    assert!(matches!(asked(gap - 1e-9), MotionOutcome::Free(_)));
-    assert!((contact(asked(gap + 1e-9)).lower - FRAC_PI_2 / 2.0).abs() < 1e-3);
+    assert!(matches!(query(gap - 1e-9), MotionOutcome::Free(_)));
+    assert!((expect_contact(query(gap + 1e-9)).lower - FRAC_PI_2 / 2.0).abs() < 1e-3);
 }
 
 #[test]
-fn a_slide_is_the_linear_cast() {
+fn translation_matches_linear_cast() {
     let mut random = Random::new(11);
     let ell =
         solid(&block([0.0; 3], [3.0, 1.0, 1.0]).joined(&block([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])));
@@ -270,7 +276,8 @@ fn a_slide_is_the_linear_cast() {
         let linear = Cast::new(ell.at(a), ell.at(b), by).expect("a cast");
         let (slide, rest) = (Motion::slide(a, by).expect("a motion"), Motion::still(b));
         let cast = MotionCast::new(ell.along(&slide), ell.along(&rest)).expect("a cast");
-        match (linear.first_contact().expect("an answer"), judged(&cast, [&slide, &rest])) {
+        match (linear.first_contact().expect("an answer"), checked_outcome(&cast, [&slide, &rest]))
+        {
             (Outcome::Contact(one), MotionOutcome::Contact(two)) => {
                 contacts += 1;
                 assert!((one.translation.value - two.lower).abs() < 1e-9, "{one:?} {two:?}");
@@ -286,8 +293,8 @@ fn a_slide_is_the_linear_cast() {
 }
 
 #[test]
-fn both_carried_by_one_motion_stay_as_they_are() {
-    // A hook around a bar, a little apart, far from the axis: planes that are carried along need no halving.
+fn solids_with_common_motion_are_free_with_few_nodes() {
+    // A hook around a bar with a small gap, far from the axis: carried planes prove the motion without halving.
     let hook = solid(
         &block([0.0; 3], [3.0, 1.0, 1.0])
             .joined(&block([0.0, 1.0, 0.0], [1.0, 3.0, 1.0]))
@@ -300,29 +307,29 @@ fn both_carried_by_one_motion_stay_as_they_are() {
     let both = [0, 1].map(|_| Motion::screw(pose, point, axis, 5.0, 1.0).expect("a motion"));
     for bar in &bars {
         let cast = MotionCast::new(hook.along(&both[0]), bar.along(&both[1])).expect("a cast");
-        let outcome = judged(&cast, [&both[0], &both[1]]);
+        let outcome = checked_outcome(&cast, [&both[0], &both[1]]);
         assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
         assert!(outcome.steps().nodes < 2_000, "{:?}", outcome.steps());
     }
 }
 
 #[test]
-fn changed_proofs_are_refused() {
+fn modified_proof_is_rejected_or_weaker() {
     let mut refused = 0;
     let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [10, 16], None));
     let nut = solid(&thread([1.05, 0.1, 0.5], [0.6, 1.4], [10, 6], Some(1.5)));
-    let rest = still();
+    let rest = rest_motion();
     for factor in [1.0, 0.9, 0.0] {
         let turn = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 3.0, 0.5 * factor);
         let turn = turn.expect("a motion");
         let cast = MotionCast::new(bolt.along(&turn), nut.along(&rest)).expect("a cast");
         let outcome = cast.certified_first_contact().expect("an answer");
-        let told = outcome.proof();
+        let original = outcome.proof();
         let mut check = |change: &dyn Fn(&mut SolidMotionProof)| {
-            let mut changed = told.clone();
+            let mut changed = original.clone();
             change(&mut changed);
-            if changed != *told {
-                let all = cast.verify(told).expect("a proof");
+            if changed != *original {
+                let all = cast.verify(original).expect("a proof");
                 match cast.verify(&changed) {
                     Err(_) => refused += 1,
                     Ok(less) => assert!(less[0] <= all[0] && less[1] >= all[1], "{less:?}"),
@@ -351,9 +358,9 @@ fn changed_proofs_are_refused() {
                 meeting.triangles = [u32::MAX; 2];
             }
         });
-        // Letters of the cover, changed and left out.
-        let cover = String::from(told.spans[0].cover.clone());
-        assert_eq!(MotionCover::try_from(cover.clone()).as_ref(), Ok(&told.spans[0].cover));
+        // Letters of the cover are changed or removed.
+        let cover = String::from(original.spans[0].cover.clone());
+        assert_eq!(MotionCover::try_from(cover.clone()).as_ref(), Ok(&original.spans[0].cover));
         let letters: Vec<char> = cover.chars().collect();
         let mut random = Random::new(7);
         for _ in 0..60 {
@@ -373,7 +380,7 @@ fn changed_proofs_are_refused() {
 }
 
 #[test]
-fn all_families_turn() {
+fn rotations_of_all_families_pass_exact_checks() {
     let families =
         turning::FAMILIES.into_iter().chain(["grid", "mould", "sheets", "balls", "thin"]);
     for family in families.chain(["convex-boxes", "convex-face-face", "convex-identical"]) {
@@ -384,16 +391,16 @@ fn all_families_turn() {
     }
 }
 
-/// The normal is that of the shrunk bodies, which are apart where those as they are already overlap.
+/// The normal is that of the shrunk bodies, which are separated where the nominal bodies already overlap.
 #[test]
-fn normals_lead_from_the_moving_to_the_fixed_body() {
+fn normals_point_from_moving_to_fixed_body() {
     let plate = solid(&block(DVec3::new(-3.0, -2.0, -1.0), DVec3::new(3.0, 2.0, 0.0)));
     let peg = solid(&block(DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.6, 2.0)));
     for (tolerance, keep) in [(None, 0.0), (Some(0.02), 0.0), (None, 0.1)] {
         for (from, way) in [(9.0, -20.0), (-8.0, 15.0)] {
             let start = Pose::from_translation(DVec3::Z * from).expect("a pose");
             let falls = Motion::slide(start, DVec3::Z * way).expect("a motion");
-            let stays = still();
+            let stays = rest_motion();
             let cast = MotionCast::new(peg.along(&falls), plate.along(&stays)).expect("a cast");
             let cast =
                 tolerance.map_or_else(|| cast.clone(), |l| cast.clone().tolerating(l).unwrap());
@@ -408,19 +415,19 @@ fn normals_lead_from_the_moving_to_the_fixed_body() {
     }
 }
 
-/// The face of a slanting cube that comes to an edge of another one, which is a little aside.
+/// A face of an oblique cube meets an edge of another cube, which is slightly displaced.
 #[test]
-fn a_slanting_cube_is_met_to_rounding() {
+fn oblique_cube_face_meets_edge_with_narrow_bounds() {
     let cube = solid(&block([-0.5; 3], [0.5; 3]));
     for slant in [0.3, 0.7, FRAC_PI_2 / 2.0] {
         for aside in [0.05, 0.1, 0.3] {
             for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
                 let by = DQuat::from_axis_angle(axis.normalize(), slant);
                 let pose = Pose::new(by, DVec3::new(-3.0, aside, 0.0)).expect("a pose");
-                let (slide, rest) = (Motion::slide(pose, DVec3::X * 4.0), still());
+                let (slide, rest) = (Motion::slide(pose, DVec3::X * 4.0), rest_motion());
                 let slide = slide.expect("a motion");
                 let cast = MotionCast::new(cube.along(&slide), cube.along(&rest)).expect("a cast");
-                let found = contact(judged(&cast, [&slide, &rest]));
+                let found = expect_contact(checked_outcome(&cast, [&slide, &rest]));
                 let width = found.upper - found.lower;
                 assert!(width < 1e-11, "{slant} {aside} {axis}: {} {width:e}", found.lower);
             }
@@ -429,9 +436,8 @@ fn a_slanting_cube_is_met_to_rounding() {
 }
 
 #[test]
-fn what_meets_flush_has_close_bounds() {
-    // A cube comes down on a step, its faces in the planes of the step's: facets first lie in one plane, and cross
-    // soon after.
+fn flush_contacts_have_narrow_bounds() {
+    // A cube is lowered onto a step with faces in common planes: facets first lie in one plane, and cross soon after.
     let block = |low: [f64; 3], high: [f64; 3]| {
         let [x, y, z] = [0, 1, 2].map(|k| [low[k], high[k]]);
         let corners = [0, 1, 2, 3, 4, 5, 6, 7usize];
@@ -449,7 +455,10 @@ fn what_meets_flush_has_close_bounds() {
         let down = Motion::slide(start, DVec3::new(0.0, -8.0, 0.0)).unwrap();
         let cast = MotionCast::new(cube.along(&down), step.at(Pose::IDENTITY)).unwrap();
         let linear = Cast::new(cube.at(start), step.at(Pose::IDENTITY), DVec3::NEG_Y).unwrap();
-        match (judged(&cast, [&down, &still()]), linear.clearance().unwrap().distance()) {
+        match (
+            checked_outcome(&cast, [&down, &rest_motion()]),
+            linear.clearance().unwrap().distance(),
+        ) {
             (MotionOutcome::Contact(found), Some(distance)) if distance.is_finite() => {
                 blocked += 1;
                 let width = found.upper - found.lower;
@@ -464,8 +473,8 @@ fn what_meets_flush_has_close_bounds() {
 }
 
 #[test]
-fn a_block_comes_down_on_a_column_of_its_own_outline() {
-    // No facet ever crosses another one: all sides of one lie in sides of the other, or stand on diagonals of faces.
+fn prisms_with_equal_cross_sections_have_proven_contact() {
+    // No facet crosses another one: all sides of one solid lie in sides of the other, or on diagonals of its faces.
     let (plate, column) =
         (block([0.0; 3], [1.0, 1.0, 0.25]), block([0.0, 0.0, -3.0], [1.0, 1.0, 0.0]));
     let post = block([-0.25, -0.25, 0.0], [0.25, 0.25, 0.5]);
@@ -473,7 +482,7 @@ fn a_block_comes_down_on_a_column_of_its_own_outline() {
     let pose = |turn: DQuat, x: f64, y: f64, z: f64| Pose::new(turn, DVec3::new(x, y, z)).unwrap();
     let down = |pose: Pose| Motion::slide(pose, DVec3::new(0.0, 0.0, -4.0)).unwrap();
     let plain = DQuat::IDENTITY;
-    // A lid closes about an edge of the column, and is turned on while it comes down.
+    // A lid closes about an edge of the column; a plate makes a full turn while it is lowered.
     let open = pose(DQuat::from_rotation_y(-1.0), 0.0, 0.0, 0.0);
     let lid = Motion::turn(open, DVec3::ZERO, DVec3::Y, 2.0).unwrap();
     let whole =
@@ -487,11 +496,11 @@ fn a_block_comes_down_on_a_column_of_its_own_outline() {
         (&plate, whole.unwrap(), 0.5),
     ] {
         let cast = MotionCast::new(moving.along(&motion), column.at(Pose::IDENTITY)).unwrap();
-        let outcome = judged(&cast, [&motion, &still()]);
+        let outcome = checked_outcome(&cast, [&motion, &rest_motion()]);
         let MotionOutcome::Contact(found) = &outcome else { panic!("{outcome:?}") };
         assert!(found.lower < time + 1e-11 && found.upper > time - 1e-15, "{found:?}");
         assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
-        // A point that is not inside both proves nothing.
+        // A point that is not inside both is not a proof.
         let met = found.proof.meeting.expect("it is proven");
         if let FacetsMet::Inside { point } = met.met {
             for (axis, far) in [(0, 2.0), (1, -2.0), (2, 1.0), (2, 1e300), (2, f64::NAN)] {

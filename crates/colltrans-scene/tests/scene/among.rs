@@ -1,4 +1,4 @@
-//! One body among many: the rule, bounds and proofs of all families of scenes, work, bad input.
+//! One body among many: reported obstacles, bounds and proofs for all families of scenes, counts of work, invalid input.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use colltrans_testkit::tally::Tally;
 use glam::{DQuat, DVec3};
 
 #[test]
-fn all_families_are_right() {
+fn all_families_match_queries_of_single_obstacles() {
     let mut tally = Tally::default();
     for family in FAMILIES {
         for seed in 0..cases(60) {
@@ -25,42 +25,42 @@ fn all_families_are_right() {
     assert!([stopped, tied, overlapped].iter().all(|&n| n > cases(50)) && refused > cases(500));
 }
 
-/// Small boxes, a quarter of a unit, one in each cell of a grid.
-fn grid(side: u32, random: &mut Random) -> Vec<Pose> {
+/// Returns random rotations, one in each cell of a grid.
+fn grid_poses(side: u32, random: &mut Random) -> Vec<Pose> {
     let cells = (0..side * side * side).map(|k| [k % side, k / side % side, k / side / side]);
-    let places = cells.map(|cell| DVec3::from_array(cell.map(f64::from)));
-    places.map(|at| Pose::new(random.rotation(), at).expect("a pose")).collect()
+    let poses_along_direction = cells.map(|cell| DVec3::from_array(cell.map(f64::from)));
+    poses_along_direction.map(|at| Pose::new(random.rotation(), at).expect("a pose")).collect()
 }
 
 #[test]
-fn who_cannot_be_asked_about_is_named() {
+fn error_names_obstacle_that_vanishes_with_tolerance() {
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let two_sides = Solid::from_mesh(&corners, &[[0, 1, 2], [0, 2, 1]]).expect("closed");
     let cube = Solid::from_convex(&cuboid(DVec3::ZERO, DVec3::ONE)).expect("a solid");
     let mut scene = Obstacles::new();
     scene.insert(cube.clone(), at(0.0, 0.0, 3.0));
     let thin = scene.insert(two_sides, at(0.0, 0.0, 7.0));
-    // Bodies that are turned are shrunk by more than nothing.
+    // Rotated bodies have a positive default tolerance.
     let turned = |z: f64| {
         let pose = Pose::new(DQuat::from_rotation_z(0.5), DVec3::Z * z).expect("a pose");
         Among::new(cube.at(pose), &scene).expect("a solid")
     };
-    let refused = turned(5.0).clearance(DVec3::Z).expect_err("nothing is left of it");
+    let refused = turned(5.0).clearance(DVec3::Z).expect_err("nothing of it remains");
     let QueryError::Obstacle { obstacle, reason } = &refused else { panic!("{refused}") };
     assert_eq!(*obstacle, thin);
     assert!(matches!(**reason, QueryError::NothingLeft { which: "fixed", .. }), "{refused}");
     assert!(refused.to_string().starts_with("obstacle 1: the tolerance"), "{refused}");
-    let stopped = turned(0.0).clearance(DVec3::Z).expect("only the first is asked about");
+    let stopped = turned(0.0).clearance(DVec3::Z).expect("only the first is queried");
     assert!(stopped.lower > 1.9 && stopped.steps.bodies == 1);
 }
 
-/// Shrunk bodies meet later than they do as they are, and the later the more their facets are along the way.
+/// Offset bodies meet later than nominal ones, and the delay grows as facets become parallel to the direction.
 #[test]
-fn a_slanting_obstacle_stops_before_a_wall_behind_it() {
+fn oblique_obstacle_stops_body_before_wall_behind_it() {
     let solid = |body: &ConvexPolyhedron| Solid::from_convex(body).expect("a solid");
     let cube = solid(&cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)));
     let wall = solid(&cuboid(DVec3::new(3.5, -9.0, -9.0), DVec3::new(4.0, 9.0, 9.0)));
-    // Its upper side rises by one in ten: the lower edge of the cube in front, at z = -0.5, meets it at x = 3.45.
+    // Its upper side rises by one in ten. The lower front edge of the cube, at z = -0.5, meets it at x = 3.45.
     let corners = [[0.0, -0.845], [6.0, -0.245], [6.0, -2.0], [0.0, -2.0]];
     let points: Vec<DVec3> =
         corners.iter().flat_map(|[x, z]| [-1.0, 1.0].map(|y| DVec3::new(*x, y, *z))).collect();
@@ -68,32 +68,32 @@ fn a_slanting_obstacle_stops_before_a_wall_behind_it() {
     let mut scene = Obstacles::new();
     let [_, ramp] = [wall, ramp].map(|body| scene.insert(body, Pose::IDENTITY));
     let options = colltrans_solid::SolidOptions::default().with_tolerance(0.02);
-    let asked = Among::new(cube.at(Pose::IDENTITY), &scene).expect("solids");
-    let asked = asked.with_solid_options(options);
-    let found = asked.clearance(DVec3::X).expect("an answer");
+    let query = Among::new(cube.at(Pose::IDENTITY), &scene).expect("solids");
+    let query = query.with_solid_options(options);
+    let found = query.clearance(DVec3::X).expect("an answer");
     assert_eq!(found.stop.map(|(id, _)| id), Some(ramp));
     assert!((found.lower - 2.95).abs() < 1e-9, "{}", found.lower);
-    assert!((asked.clearance_before(DVec3::X, 2.97).expect("an answer").lower - 2.95).abs() < 1e-9);
+    assert!((query.clearance_before(DVec3::X, 2.97).expect("an answer").lower - 2.95).abs() < 1e-9);
 }
 
 #[test]
-fn few_boxes_are_looked_at() {
+fn queries_visit_few_boxes_after_moves() {
     let mut random = Random::new(11);
     let small = Arc::new(cuboid(DVec3::splat(-0.1), DVec3::splat(0.1)));
     let mut scene = Obstacles::new();
-    let poses = grid(22, &mut random);
+    let poses = grid_poses(22, &mut random);
     let ids = scene.insert_all(poses.iter().map(|pose| (small.clone(), *pose)));
-    // Boxes and bodies that are looked at on average: for the nearest one, those within 0.3, and a cast.
+    // Average numbers of visited boxes and queried bodies: for the nearest obstacle, those within 0.3, and a cast.
     let work = |scene: &Obstacles, random: &mut Random| {
         let (mut boxes, mut bodies) = ([0; 3], [0; 3]);
         for _ in 0..200 {
             let place = (random.vector() * 0.5 + DVec3::splat(0.5)) * 22.0;
             let pose = Pose::new(random.rotation(), place).expect("a pose");
-            let asked = Among::new(small.at(pose), scene).expect("boxes");
+            let query = Among::new(small.at(pose), scene).expect("boxes");
             let steps = [
-                asked.nearest().expect("an answer").expect("some").steps,
-                asked.within(0.3).expect("an answer").steps,
-                asked.clearance(random.direction()).expect("an answer").steps,
+                query.nearest().expect("an answer").expect("some").steps,
+                query.within(0.3).expect("an answer").steps,
+                query.clearance(random.direction()).expect("an answer").steps,
             ];
             for k in 0..3 {
                 boxes[k] += steps[k].boxes;
@@ -106,7 +106,7 @@ fn few_boxes_are_looked_at() {
     assert!(boxes.iter().all(|n| *n < 160), "{boxes:?}");
     assert!(bodies.iter().all(|n| *n < 6), "{bodies:?}");
 
-    // Everything goes elsewhere, twice: to the places of others, by small steps and by large ones.
+    // All obstacles move twice, to poses of others with a small displacement.
     for round in 0..2 {
         for (k, id) in ids.iter().enumerate() {
             let pose = poses[(k * 7_919 + round) % poses.len()];
@@ -123,10 +123,10 @@ fn few_boxes_are_looked_at() {
 }
 
 #[test]
-fn one_by_one_is_as_good_as_all_at_once() {
+fn single_insertions_match_bulk_insertion() {
     let mut random = Random::new(5);
     let small = Arc::new(cuboid(DVec3::splat(-0.1), DVec3::splat(0.1)));
-    let poses = grid(12, &mut random);
+    let poses = grid_poses(12, &mut random);
     let mut all = Obstacles::new();
     all.insert_all(poses.iter().map(|pose| (small.clone(), *pose)));
     let mut slowly = Obstacles::new();
@@ -139,8 +139,8 @@ fn one_by_one_is_as_good_as_all_at_once() {
         let place = random.vector() * 6.0 + DVec3::splat(6.0);
         let pose = Pose::new(random.rotation(), place).expect("a pose");
         let found = [&all, &slowly].map(|scene| {
-            let asked = Among::new(small.at(pose), scene).expect("boxes");
-            asked.nearest().expect("an answer").expect("some")
+            let query = Among::new(small.at(pose), scene).expect("boxes");
+            query.nearest().expect("an answer").expect("some")
         });
         assert_eq!(found[0].obstacle, found[1].obstacle);
         assert_eq!(found[0].distance, found[1].distance);
@@ -150,17 +150,17 @@ fn one_by_one_is_as_good_as_all_at_once() {
 }
 
 #[test]
-fn of_equal_ones_the_first() {
+fn first_inserted_of_equal_obstacles_is_reported() {
     let cube = Arc::new(cuboid(DVec3::ZERO, DVec3::ONE));
     let mut scene = Obstacles::new();
     let ids: Vec<_> =
         [3.0, -3.0, 3.0].into_iter().map(|x| scene.insert(cube.clone(), at(x, 0.0, 0.0))).collect();
     let nearest = |scene: &Obstacles| {
-        let asked = Among::new(cube.at(Pose::IDENTITY), scene).expect("boxes");
-        asked.nearest().expect("an answer").map(|nearest| nearest.obstacle)
+        let query = Among::new(cube.at(Pose::IDENTITY), scene).expect("boxes");
+        query.nearest().expect("an answer").map(|nearest| nearest.obstacle)
     };
     assert_eq!(nearest(&scene), Some(ids[0]));
-    // Its place in line stays, wherever it has been.
+    // The order of insertion is not changed by moves.
     scene.set_pose(ids[0], at(9.0, 0.0, 0.0)).expect("there");
     assert_eq!(nearest(&scene), Some(ids[1]));
     scene.set_pose(ids[0], at(0.0, 3.0, 0.0)).expect("there");
@@ -169,12 +169,12 @@ fn of_equal_ones_the_first() {
     let newest = scene.insert(cube.clone(), at(3.0, 0.0, 0.0));
     assert_eq!((nearest(&scene), newest), (Some(ids[1]), ObstacleId(3)));
     let own = |id| id != newest;
-    let asked = Among::new(cube.at(Pose::IDENTITY), &scene).expect("boxes").ignoring(&own);
-    assert_eq!(asked.nearest().expect("an answer").map(|n| n.obstacle), Some(newest));
+    let query = Among::new(cube.at(Pose::IDENTITY), &scene).expect("boxes").ignoring(&own);
+    assert_eq!(query.nearest().expect("an answer").map(|n| n.obstacle), Some(newest));
 }
 
 #[test]
-fn bad_input_is_refused() {
+fn invalid_input_is_rejected() {
     let cube = cuboid(DVec3::ZERO, DVec3::ONE);
     let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point");
     let solid = Solid::from_convex(&cube).expect("a solid");
@@ -186,19 +186,19 @@ fn bad_input_is_refused() {
 
     let id = scene.insert(solid.clone(), at(3.0, 0.0, 0.0));
     assert!(Among::new(point.at(Pose::IDENTITY), &scene).is_ok());
-    let asked = Among::new(cube.at(Pose::IDENTITY), &scene).expect("a convex body and a solid");
-    assert!(matches!(asked.nearest(), Ok(Some(n)) if matches!(n.distance, ByKind::Solid(_))));
+    let query = Among::new(cube.at(Pose::IDENTITY), &scene).expect("a convex body and a solid");
+    assert!(matches!(query.nearest(), Ok(Some(n)) if matches!(n.distance, ByKind::Solid(_))));
     for length in [-1.0, f64::NAN] {
-        assert!(matches!(asked.within(length), Err(QueryError::Length { .. })));
-        assert!(matches!(asked.clearance_before(DVec3::X, length), Err(QueryError::Length { .. })));
+        assert!(matches!(query.within(length), Err(QueryError::Length { .. })));
+        assert!(matches!(query.clearance_before(DVec3::X, length), Err(QueryError::Length { .. })));
     }
     for direction in [DVec3::ZERO, DVec3::X * f64::NAN, DVec3::X * 1e100] {
-        assert!(matches!(asked.clearance(direction), Err(QueryError::Direction { .. })));
+        assert!(matches!(query.clearance(direction), Err(QueryError::Direction { .. })));
     }
-    let (_, mut proof) = asked.certified_nearest().expect("an answer").expect("one");
+    let (_, mut proof) = query.certified_nearest().expect("an answer").expect("one");
     proof.obstacle = ObstacleId(9);
     let unknown = CertificateError::UnknownObstacle { obstacle: ObstacleId(9) };
-    assert_eq!(asked.verify(&proof), Err(unknown));
+    assert_eq!(query.verify(&proof), Err(unknown));
 
     let point_id = scene.insert(point, Pose::IDENTITY);
     assert!(Among::new(solid.at(Pose::IDENTITY), &scene).is_ok());
@@ -210,9 +210,9 @@ fn bad_input_is_refused() {
     assert_eq!(scene.get(id).expect("there").1, at(3.0, 0.0, 0.0), "nothing has moved");
 }
 
-/// Far from the world's origin boxes are loose, bounds are not.
+/// Far from the origin of the world, boxes are loose but bounds are narrow.
 #[test]
-fn far_from_the_origin() {
+fn bounds_are_narrow_far_from_origin() {
     let cube = cuboid(DVec3::ZERO, DVec3::ONE);
     let far = DVec3::new(1e9, -3e8, 2e7);
     let mut scene = Obstacles::new();
@@ -222,16 +222,16 @@ fn far_from_the_origin() {
         scene.insert(cube.clone(), pose.expect("a pose"));
     }
     let above = Pose::new(turn, far + turn * DVec3::new(6.0, 0.0, 1.25)).expect("a pose");
-    let asked = Among::new(cube.at(above), &scene).expect("boxes");
-    let (nearest, proof) = asked.certified_nearest().expect("an answer").expect("one");
+    let query = Among::new(cube.at(above), &scene).expect("boxes");
+    let (nearest, proof) = query.certified_nearest().expect("an answer").expect("one");
     assert_eq!(nearest.obstacle, ObstacleId(3));
     assert!(nearest.distance.upper() - nearest.lower < 1e-7, "{nearest:?}");
-    assert!(asked.verify(&proof).expect("a proof") < 1e-7);
+    assert!(query.verify(&proof).expect("a proof") < 1e-7);
 }
 
-/// One that is asked among many keeps the gap from all: also from those whose boxes it passes.
+/// A clearance with a minimum gap considers obstacles whose boxes the body only passes.
 #[test]
-fn among_many_the_gap_is_kept_from_all() {
+fn minimum_gap_is_kept_from_all_obstacles() {
     let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
     let mut obstacles = Obstacles::default();
     obstacles.insert(cube.clone(), at(3.0, 1.2, 0.0));

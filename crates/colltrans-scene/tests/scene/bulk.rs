@@ -1,5 +1,5 @@
-//! Bodies that do not turn, asked in bulk by the faces of their difference: against the ordinary cast and the exact
-//! judge, random and tied; proofs, changed ones; how much is looked at.
+//! Many casts of bodies with fixed rotations, by the faces of their difference: against ordinary casts and exact
+//! arithmetic, random and degenerate; proofs and modified proofs, counts of visited faces.
 
 use colltrans_convex::{
     Cast, Clearance, ContactRange, ConvexPolyhedron, Outcome, Pose, Solver, StartedFrom,
@@ -12,11 +12,11 @@ use colltrans_testkit::oracle::still;
 use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec3};
 
-/// Settings of a family.
+/// Number of settings of a family.
 const SETTINGS: u64 = 16;
 
 #[test]
-fn answers_are_those_of_ordinary_casts() {
+fn answers_match_ordinary_casts_and_exact_judge() {
     let (mut wrong, mut by_faces, mut answers) = (Vec::new(), 0, 0);
     for (family, seed) in
         FAMILIES.iter().flat_map(|f| (0..cases(SETTINGS)).map(move |seed| (f.0, seed)))
@@ -44,7 +44,7 @@ fn answers_are_those_of_ordinary_casts() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    // Of settings that are hard on purpose, flat bodies among them.
+    // The settings include hard ones, for example flat bodies.
     assert!(2 * by_faces > answers, "{by_faces} of {answers}");
 }
 
@@ -52,8 +52,8 @@ fn is_by_faces(outcome: &Outcome) -> bool {
     outcome.steps().started_from == StartedFrom::Difference
 }
 
-/// Poses with one rotation, and directions.
-fn places(count: usize, random: &mut Random) -> Vec<(Pose, DVec3)> {
+/// Returns poses with a common rotation, and their common direction.
+fn poses_along_direction(count: usize, random: &mut Random) -> Vec<(Pose, DVec3)> {
     let (turn, along) = (random.rotation(), random.direction());
     let side = along.any_orthonormal_vector();
     let place = |random: &mut Random| {
@@ -64,38 +64,38 @@ fn places(count: usize, random: &mut Random) -> Vec<(Pose, DVec3)> {
     (0..count).map(|_| place(random)).collect()
 }
 
-/// In general position everything is answered by the faces, and a look at two or three of them.
+/// In general position, casts are answered by the faces and visit two to four of them.
 #[test]
-fn a_few_faces_are_looked_at() {
+fn casts_in_general_position_visit_few_faces() {
     for (n, most) in [(8, 3.0), (16, 3.0), (64, 4.5)] {
         let mut random = Random::new(n as u64);
         let [p, q] = [hull(n, &mut random), hull(n, &mut random)];
         let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
-        let places = places(2_000, &mut random);
-        let rotations = FixedRotations::new(p.at(places[0].0), q.at(world));
-        let approach = rotations.along(places[0].1).expect("a direction");
-        let (mut left, mut looks) = ([0; 2], [0; 2]);
-        for (pose, along) in &places {
+        let placements = poses_along_direction(2_000, &mut random);
+        let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
+        let approach = rotations.along(placements[0].1).expect("a direction");
+        let (mut left, mut visited) = ([0; 2], [0; 2]);
+        for (pose, along) in &placements {
             let cast = Cast::new(p.at(*pose), q.at(world), *along).expect("a query");
             let outcomes = [rotations.first_contact(&cast), approach.first_contact(&cast)];
             for (k, outcome) in outcomes.into_iter().enumerate() {
                 let outcome = outcome.expect("an answer");
                 left[k] += u32::from(!is_by_faces(&outcome));
-                looks[k] += outcome.steps().pivots;
+                visited[k] += outcome.steps().pivots;
                 assert!(outcome.steps().supports == 0 || !is_by_faces(&outcome));
             }
         }
-        println!("{n}: {left:?} left, {looks:?} faces");
-        let mean = looks.map(|looks| f64::from(looks) / places.len() as f64);
+        println!("{n}: {left:?} left, {visited:?} faces");
+        let mean = visited.map(|visited| f64::from(visited) / placements.len() as f64);
         assert!(left.iter().all(|left| *left <= 10), "{left:?} of {n} vertices are left");
         assert!(mean[0] < most && mean[1] < 2.2, "{mean:?} faces of {n} vertices");
     }
 }
 
-/// Boxes that are not turned, along an axis: their sides are faces along the direction, and where corners lie on
-/// a grid, lines pass the middles of faces.
+/// Axis-aligned boxes along an axis: their sides are parallel to the direction, and lines pass through the middles of
+/// faces.
 #[test]
-fn upright_boxes_are_answered_by_faces() {
+fn axis_aligned_boxes_are_answered_by_faces_unless_grazing() {
     let cube = ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::ONE).expect("a cube");
     let rotations = FixedRotations::new(cube.at(Pose::IDENTITY), cube.at(Pose::IDENTITY));
     let approach = rotations.along(DVec3::X).expect("a direction");
@@ -120,18 +120,18 @@ fn upright_boxes_are_answered_by_faces() {
             }
         }
     }
-    assert_eq!(by_faces, [all; 2], "all but the grazing ones");
+    assert_eq!(by_faces, [all; 2], "all except grazing casts");
 }
 
 #[test]
-fn changed_certificates_are_refused() {
+fn modified_certificate_is_rejected() {
     let mut random = Random::new(3);
     let [p, q] = [hull(20, &mut random), hull(20, &mut random)];
     let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
-    let places = places(300, &mut random);
-    let rotations = FixedRotations::new(p.at(places[0].0), q.at(world));
+    let placements = poses_along_direction(300, &mut random);
+    let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
     let (mut contacts, mut separations) = (0, 0);
-    for (pose, along) in &places {
+    for (pose, along) in &placements {
         let cast = Cast::new(p.at(*pose), q.at(world), *along).expect("a query");
         match rotations.first_contact(&cast).expect("an answer") {
             Outcome::Contact(contact) => {
@@ -167,18 +167,18 @@ fn changed_certificates_are_refused() {
 }
 
 #[test]
-fn ranges_and_clearances_are_those_of_ordinary_casts() {
+fn ranges_and_clearances_match_ordinary_casts() {
     let mut random = Random::new(11);
     let [p, q] = [hull(12, &mut random), hull(30, &mut random)];
     let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
-    let places = places(300, &mut random);
-    let rotations = FixedRotations::new(p.at(places[0].0), q.at(world));
-    let approach = rotations.along(places[0].1).expect("a direction");
-    for (pose, along) in &places {
+    let placements = poses_along_direction(300, &mut random);
+    let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
+    let approach = rotations.along(placements[0].1).expect("a direction");
+    for (pose, along) in &placements {
         for back in [0.0, 4.0, 8.0] {
             let pose = pose.translated(*along * back).expect("a pose");
             let cast = Cast::new(p.at(pose), q.at(world), *along).expect("a query");
-            // Nothing stops bodies that pass each other: both are infinite.
+            // Both are infinite for bodies that pass each other.
             let near = |a: f64, b: f64| a == b || (a - b).abs() < 1e-11;
             let ordinary = cast.contact_range().expect("an answer").interval();
             let ways = [rotations.contact_range(&cast), approach.contact_range(&cast)];
@@ -204,35 +204,35 @@ fn ranges_and_clearances_are_those_of_ordinary_casts() {
 }
 
 #[test]
-fn bits_depend_on_neither_order_nor_threads() {
+fn bits_are_independent_of_order_and_threads() {
     let mut random = Random::new(5);
     let [p, q] = [hull(16, &mut random), hull(16, &mut random)];
     let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
-    let places = places(400, &mut random);
-    let rotations = FixedRotations::new(p.at(places[0].0), q.at(world));
-    let approach = rotations.along(places[0].1).expect("a direction");
+    let placements = poses_along_direction(400, &mut random);
+    let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
+    let approach = rotations.along(placements[0].1).expect("a direction");
     let one = |(pose, along): &(Pose, DVec3)| {
         let cast = Cast::new(p.at(*pose), q.at(world), *along).expect("a query");
         [rotations.first_contact(&cast), approach.first_contact(&cast)].map(|o| o.expect("one"))
     };
-    let in_order: Vec<_> = places.iter().map(one).collect();
-    let mut backwards: Vec<_> = places.iter().rev().map(one).collect();
+    let in_order: Vec<_> = placements.iter().map(one).collect();
+    let mut backwards: Vec<_> = placements.iter().rev().map(one).collect();
     backwards.reverse();
     assert_eq!(in_order, backwards);
     let halves = std::thread::scope(|scope| {
-        let threads = places
+        let threads = placements
             .chunks(200)
             .map(|part| scope.spawn(move || part.iter().map(one).collect::<Vec<_>>()));
         let threads: Vec<_> = threads.collect();
         threads.into_iter().flat_map(|t| t.join().expect("a thread")).collect::<Vec<_>>()
     });
     assert_eq!(in_order, halves);
-    // Made again, they are the same.
-    let again = FixedRotations::new(p.at(places[7].0), q.at(world));
-    let (pose, along) = places[0];
+    // Faces that are computed again give the same bits.
+    let again = FixedRotations::new(p.at(placements[7].0), q.at(world));
+    let (pose, along) = placements[0];
     let cast = Cast::new(p.at(pose), q.at(world), along).expect("a query");
     assert_eq!(again.first_contact(&cast), Ok(in_order[0][0]));
-    // A contact's bits are those of either way of asking.
+    // Contacts have the same bits by both methods.
     let same = in_order.iter().filter(|[any, one]| match (any, one) {
         (Outcome::Contact(a), Outcome::Contact(b)) => a.certificate == b.certificate,
         _ => false,
@@ -240,9 +240,9 @@ fn bits_depend_on_neither_order_nor_threads() {
     assert!(same.count() > 100);
 }
 
-/// What the faces are not for is answered ordinarily, to the last bit.
+/// Casts that the faces do not support have the bits of ordinary casts.
 #[test]
-fn other_casts_are_answered_ordinarily() {
+fn unsupported_casts_match_ordinary_casts_bitwise() {
     let mut random = Random::new(9);
     let [p, q] = [hull(10, &mut random), hull(10, &mut random)];
     let turn = random.rotation();
@@ -263,7 +263,7 @@ fn other_casts_are_answered_ordinarily() {
     for other in others {
         assert_eq!(rotations.first_contact(&other), other.first_contact());
     }
-    // Flat ones, and those with too many vertices.
+    // Flat bodies, and bodies with too many vertices.
     let square =
         ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)).expect("a square");
     let large = hull(200, &mut random);

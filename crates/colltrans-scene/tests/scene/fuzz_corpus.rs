@@ -1,4 +1,4 @@
-//! The corpora of the fuzz targets as ordinary tests. A finding becomes one more file.
+//! Runs the corpora of the fuzz targets as ordinary tests. Each finding is added as a file.
 
 use colltrans_testkit::oracle::fuzz;
 

@@ -1,4 +1,4 @@
-//! One body among many, and one pair many times, in one program: each program is linked for itself.
+//! Tests of one body among many and of many casts of one pair, as one program, because each program is linked separately.
 
 mod among;
 mod bulk;

@@ -113,7 +113,7 @@ impl MotionCast<'_> {
     /// use colltrans::motion::{Motion, MotionCast, MotionClearance};
     /// use colltrans::{ConvexPolyhedron, Pose};
     ///
-    /// A block that stands on a table turns there, and cannot be tipped through it.
+    /// // A block on a table can rotate about the vertical axis, but cannot be tipped through the table.
     /// let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let clearance = |axis| {

@@ -9,7 +9,7 @@
 //! use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 //! use colltrans::{ConvexPolyhedron, Pose};
 //!
-//! // A door, 1 wide, swings by 90 degrees about the z axis; a post stands in its way at 45 degrees.
+//! // A door, 1 wide, swings by 90 degrees about the z axis; a post is in its way at 45 degrees.
 //! let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.02, 0.0), DVec3::new(1.0, 0.02, 2.0))?;
 //! let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.05), DVec3::splat(0.05))?;
 //! let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;

@@ -402,7 +402,7 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         let (end, remaining) = (self.end_time, self.end_time - from);
         let first = (FIRST_TRIAL_STEPS * step).min(remaining);
         // At its present rate the gap would not suffice. If the steps are short, however, there are many of them, //
-        // unless they lead to a contact.
+        // unless they end at a contact.
         if rate * first >= MAX_LOSS_SHARE * gap
             && (SHORT_STEPS * step > remaining || self.gap_dropped)
         {

@@ -114,7 +114,7 @@ impl Among<'_> {
             let named = bounds.get(&one.id).map(|[lower, _]| *lower);
             let proven =
                 named.unwrap_or_else(|| sweep.entry(&boxes::bounds_of_placed(&one.placed())));
-            // An obstacle that is met at 0 needs a proof, because its box excludes nothing there.
+            // An obstacle with a contact at 0 needs a proof, because its box excludes nothing there.
             require_proof(proven >= *lower && (proven > 0.0 || named.is_some()), one.id)?;
         }
         Ok(if is_stopped { (upper - lower).max(0.0) } else { 0.0 })

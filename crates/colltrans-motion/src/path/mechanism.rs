@@ -66,7 +66,7 @@ impl Joint {
 /// use colltrans::motion::path::{Frame, Joint, Mechanism};
 /// use colltrans::Pose;
 ///
-/// An arm of two links in a plane, each of length 1.
+/// // A planar arm of two links of length 1.
 /// let elbow = Pose::from_translation(DVec3::X)?;
 /// let arm = Mechanism::new(vec![
 ///     Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Turning(DVec3::Z) },

@@ -9,7 +9,7 @@
 //! use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathOutcome};
 //! use colltrans::{ConvexPolyhedron, Pose};
 //!
-//! // An arm of two links in a plane, each of length 1: both joints turn about z.
+//! // A planar arm of two links of length 1; both joints rotate about z.
 //! let link = ConvexPolyhedron::cuboid(DVec3::new(0.1, -0.05, -0.05), DVec3::new(1.0, 0.05, 0.05))?;
 //! let joint = Joint::Turning(DVec3::Z);
 //! let elbow = Pose::from_translation(DVec3::X)?;
@@ -17,7 +17,7 @@
 //!     Frame { parent: None, origin: Pose::IDENTITY, joint },
 //!     Frame { parent: Some(0), origin: elbow, joint },
 //! ])?;
-//! // A thin wall stands in its way; the rows are far apart.
+//! // A thin wall is in its way; the rows are far apart.
 //! let wall = ConvexPolyhedron::cuboid(DVec3::new(-9.0, 1.5, -9.0), DVec3::new(9.0, 1.5001, 9.0))?;
 //! let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![std::f64::consts::PI, 0.0]])?;
 //! let bodies = vec![
@@ -300,7 +300,7 @@ impl<'a> PathCast<'a> {
         matches!(placed, ByKind::Convex(_)) && convert_to_solid(placed).is_some()
     }
 
-    /// Searches all pairs once, with the bodies as they are.
+    /// Searches all pairs once, without conversions to solids.
     fn search_all_pairs(&self) -> Result<Searched, PathError> {
         let (mut proof, mut steps) = (PathProof::default(), MotionSteps::default());
         let mut until = Place::at_row(self.path.last_row());

@@ -47,7 +47,7 @@ impl MotionCast<'_, Solid> {
     /// use colltrans::solid::StartOverlap;
     /// use colltrans::{ConvexPolyhedron, Pose};
     ///
-    /// A plate that is pressed 1/8 into a table is turned out of it about its edge.
+    /// // A plate that is pressed 1/8 into a table is rotated out of it about an axis parallel to its edge.
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let plate = ConvexPolyhedron::cuboid(DVec3::new(0.0, 0.0, -0.125), DVec3::new(1.0, 2.0, 1.0))?;
     /// let out = Motion::turn(Pose::IDENTITY, DVec3::new(-1.0, 0.0, 0.0), DVec3::NEG_Y, 1.0)?;

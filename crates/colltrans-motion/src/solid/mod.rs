@@ -2,7 +2,7 @@
 //!
 //! Both solids are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
 //! it. An overlap at the start, including containment, is decided exactly. Afterwards the surfaces must meet before one
-//! solid can contain the other. The search looks for the first contact of facets in both bounding volume trees and in
+//! solid can contain the other. The search finds the first contact of facets in both bounding volume trees and in
 //! time.
 //!
 //! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and one

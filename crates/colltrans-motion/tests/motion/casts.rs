@@ -260,8 +260,8 @@ fn resting_part_with_tolerance_may_rotate_and_leave_but_not_sink() {
     }
 }
 
-/// Returns the penetration depth by all candidate axes: face normals and cross products of edges. Negative if the bodies
-/// are separated.
+/// Returns the penetration depth by all candidate axes: face normals and cross products of edges. Negative if the
+/// bodies are separated.
 fn depth_by_all_axes(bodies: [(&ConvexPolyhedron, Pose); 2]) -> f64 {
     let placed = bodies.map(|(body, pose)| {
         let vertices: Vec<DVec3> =

@@ -31,7 +31,8 @@ fn grid_displacement(random: &mut Random) -> DVec3 {
     }
 }
 
-/// Summary of an answer: the bounds of the times of the nominal and of the shrunk bodies, or the reason why there are none.
+/// Summary of an answer: the bounds of the times of the nominal and of the shrunk bodies, or the reason why there are
+/// none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ClearanceSummary {
     Blocked([f64; 2], [f64; 2]),
@@ -106,8 +107,8 @@ fn bodies() -> [Solid; 4] {
     [extruded(&ell, 1.0), extruded(&fork, 2.0), solid(&block([-0.5; 3], [1.0; 3])), ring]
 }
 
-/// Compares translations as motions with casts, with tolerances and meanings of overlaps. Returns the numbers of outcomes:
-/// blocked, free, overlapping, blocked after an ignored overlap, and blocked without a proven contact.
+/// Compares translations as motions with casts, with tolerances and meanings of overlaps. Returns the numbers of
+/// outcomes: blocked, free, overlapping, blocked after an ignored overlap, and blocked without a proven contact.
 ///
 /// In the last case the cast may be free, if edges pass along edges, or facets along vertices that shrinking leaves in
 /// place. The motion then stops too early, without an upper bound.
@@ -231,8 +232,8 @@ fn translated_convex_bodies_match_linear_clearance() {
 
 #[test]
 fn door_is_blocked_at_nominal_and_shrunk_closed_form_times() {
-    // As in `solids.rs`, the corner (1, 1/8) of a door meets the face y = 1/2 of the stop at sin a + cos a / 8 = 1/2. Shrunk by
-    // 0.01, the corner (0.99, 0.115) meets y = 0.51.
+    // As in `solids.rs`, the corner (1, 1/8) of a door meets the face y = 1/2 of the stop at sin a + cos a / 8 = 1/2.
+    // Shrunk by 0.01, the corner (0.99, 0.115) meets y = 0.51.
     let door = solid(&block([0.0, -0.125, 0.0], [1.0, 0.125, 2.0]));
     let frame = solid(
         &block([0.5, 0.5, -0.5], [1.5, 1.0, 2.5])
@@ -315,8 +316,8 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
 
 #[test]
 fn ignored_start_overlap_still_blocks_later_contacts() {
-    // A blade is pressed 1/8 into a table and rotated out of it about the x axis. It is free unless its far edge meets a shelf
-    // above.
+    // A blade is pressed 1/8 into a table and rotated out of it about the x axis. It is free unless its far edge meets
+    // a shelf above.
     let blade = solid(&block([-1.0, 0.0, -0.125], [1.0, 2.0, 0.25]));
     let table = block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let shelf = block([-4.0, 0.0, 1.5], [4.0, 3.0, 2.0]);
@@ -375,8 +376,8 @@ fn body_inside_solid_may_leave_but_not_enter_again() {
 
 #[test]
 fn pressed_pin_may_be_pulled_out_but_its_head_blocks() {
-    // The pin is larger than the hole by 0.01 and has a head. It is pulled out, or pushed in until the head meets the ring,
-    // 0.5 below.
+    // The pin is larger than the hole by 0.01 and has a head. It is pulled out, or pushed in until the head meets the
+    // ring, 0.5 below.
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
     let stud = pin(1.01, [-1.0, 1.0], 24).joined(&pin(2.0, [1.0, 1.5], 24));
     let stud = solid(&stud);

@@ -1,4 +1,5 @@
-//! Tests of bodies in motion and of bodies that joints carry, as one program, because each program is linked separately.
+//! Tests of bodies in motion and of bodies that joints carry, as one program, because each program is linked
+//! separately.
 
 mod casts;
 mod clearance;

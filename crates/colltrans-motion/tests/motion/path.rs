@@ -1,5 +1,5 @@
-//! Paths of joints: closed forms, samples of the path, one joint against a rotation, solids, proofs and modified proofs,
-//! counts of work.
+//! Paths of joints: closed forms, samples of the path, one joint against a rotation, solids, proofs and modified
+//! proofs, counts of work.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -136,8 +136,8 @@ fn two_links_reach_wall_at_closed_form_time() {
 
 #[test]
 fn thin_wire_between_samples_is_found() {
-    // A thin wire in the path of an arm that rotates by 90 degrees per row. With a hundred samples per row, the tip is on
-    // both sides of the wire and never in it.
+    // A thin wire in the path of an arm that rotates by 90 degrees per row. With a hundred samples per row, the tip is
+    // on both sides of the wire and never in it.
     let link = cuboid([0.0, -0.002, -0.002], [1.0, 0.002, 0.002]);
     let angle: f64 = 0.5 * FRAC_PI_2 + 0.5 * FRAC_PI_2 / 100.0;
     let tip = DVec3::new(angle.cos(), angle.sin(), 0.0) * 1.9;

@@ -64,8 +64,8 @@ fn parry_317_rotating_cuboid_meets_another() {
     assert!(found[0][0] <= found[1][1] && found[1][0] <= found[0][1], "{found:?}");
 }
 
-/// parry #176: continuous collision detection reaches code marked as unreachable. Bodies that touch or overlap slightly at
-/// the start, with slow and fast rotation: all queries end, and all proofs hold.
+/// parry #176: continuous collision detection reaches code marked as unreachable. Bodies that touch or overlap slightly
+/// at the start, with slow and fast rotation: all queries end, and all proofs hold.
 #[test]
 fn parry_176_contact_at_start_has_verified_answer() {
     let (p, q) = (cuboid([0.5, 0.5, 0.5]), cuboid([2.0, 0.5, 2.0]));
@@ -107,8 +107,8 @@ fn ncollide_369_equal_velocities_terminate_as_free() {
     }
 }
 
-/// `Box2D` #115: a small box passes the corner of a long one and is reported to touch it. With the original angle, 81 turns
-/// larger, the loop does not end. The numbers are those of the report.
+/// `Box2D` #115: a small box passes the corner of a long one and is reported to touch it. With the original angle, 81
+/// turns larger, the loop does not end. The numbers are those of the report.
 #[test]
 fn box2d_115_small_box_passes_corner() {
     let (long, small) = (cuboid([25.0, 5.0, 1.0]), cuboid([2.5, 2.5, 1.0]));
@@ -142,8 +142,8 @@ fn box2d_115_small_box_passes_corner() {
     }
 }
 
-/// FCL #555: `continuousCollide` misses the contact of two meshes of boxes that approach each other. As convex bodies and as
-/// solids they meet when their gap of 6 is closed at a speed of 8.
+/// FCL #555: `continuousCollide` misses the contact of two meshes of boxes that approach each other. As convex bodies
+/// and as solids they meet when their gap of 6 is closed at a speed of 8.
 #[test]
 fn fcl_555_approaching_boxes_meet() {
     let above = ConvexPolyhedron::cuboid(DVec3::new(-1.0, -1.0, 3.0), DVec3::new(1.0, 1.0, 5.0));
@@ -166,8 +166,8 @@ fn fcl_555_approaching_boxes_meet() {
     assert_eq!(lower, solid.lower);
 }
 
-/// FCL #120: conservative advancement of translated boxes fails in most modes. Closed forms: contacts of a corner, an edge
-/// and a face, and boxes that miss.
+/// FCL #120: conservative advancement of translated boxes fails in most modes. Closed forms: contacts of a corner, an
+/// edge and a face, and boxes that miss.
 #[test]
 fn fcl_120_translated_boxes_match_closed_forms() {
     let cube = cuboid([0.5; 3]);

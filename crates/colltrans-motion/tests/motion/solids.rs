@@ -175,8 +175,8 @@ fn slotted_block() -> Solid {
 
 #[test]
 fn key_rotates_in_slot_if_its_corner_fits() {
-    // A blade of 0.4 by 0.2 rotates in a square slot of 0.5, because its corners are at r = sqrt(0.2) / 2 < 0.25. A blade
-    // of 0.48 by 0.2 does not.
+    // A blade of 0.4 by 0.2 rotates in a square slot of 0.5, because its corners are at r = sqrt(0.2) / 2 < 0.25. A
+    // blade of 0.48 by 0.2 does not.
     let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::X, PI).expect("a motion");
     let (slotted_block, rest) = (slotted_block(), rest_motion());
     let key = |half: f64| solid(&block([-1.0, -half, -0.1], [0.5, half, 0.1]));

@@ -1,4 +1,5 @@
-//! One body among many: reported obstacles, bounds and proofs for all families of scenes, counts of work, invalid input.
+//! One body among many: reported obstacles, bounds and proofs for all families of scenes, counts of work, invalid
+//! input.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! Tests of one body among many and of many casts of one pair, as one program, because each program is linked separately.
+//! Tests of one body among many and of many casts of one pair, as one program, because each program is linked
+//! separately.
 
 mod among;
 mod bulk;

@@ -49,7 +49,8 @@ const MAX_ARC_VERTICES: usize = 1_000;
 /// Number of steps to the end of the interval above which steps count as short.
 const SHORT_STEPS: f64 = 64.0;
 
-/// Length of the first trial of a single plane, in steps; and the maximum share of its gap that it may lose there.
+/// Length of the first trial of a single plane, in steps; and the maximum share of its gap that a plane may lose up to
+/// the next one.
 const FIRST_TRIAL_STEPS: f64 = 4.0;
 const MAX_LOSS_SHARE: f64 = 0.75;
 
@@ -194,15 +195,15 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         let h = sample.time() - self.front.time();
         if h > 0.0 {
             let k = self.curvature;
-            let seen = ((self.front.rate - sample.rate) / h).min(k);
-            self.gap_acceleration = seen - ACCELERATION_MARGIN * k.max(-seen);
+            let sampled = ((self.front.rate - sample.rate) / h).min(k);
+            self.gap_acceleration = sampled - ACCELERATION_MARGIN * k.max(-sampled);
             self.gap_dropped = sample.gap < DROP_RATIO * self.front.gap;
             self.sampled_past_end = false;
         }
         self.front = *sample;
     }
 
-    /// Checks whether all times between the front `left` and a later plane are proven. Updates `K`.
+    /// Checks whether all times between the front and a later plane are proven. Updates `K`.
     fn is_joined(&mut self, front: &SampleOf<'a, C>, next: &SampleOf<'a, C>) -> bool {
         let enough = max_provable_curvature([front.gap, next.gap], 2.0 * ROOT_MARGIN);
         let normals = [front.normal, next.normal];
@@ -231,12 +232,12 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
             return false;
         }
         let front = self.front;
-        let turned = |sample: &SampleOf<'a, C>, normal: DVec3| Sample {
+        let with_normal = |sample: &SampleOf<'a, C>, normal: DVec3| Sample {
             normal,
             gap: self.motion.claimed_gap(&sample.at, normal),
             ..*sample
         };
-        let (last, first) = (turned(next, front.normal), turned(&front, next.normal));
+        let (last, first) = (with_normal(next, front.normal), with_normal(&front, next.normal));
         let between = if last.is_apart() && self.is_joined(&front, &last) {
             last
         } else if first.is_apart() && self.is_joined(&first, next) {
@@ -388,9 +389,8 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         Some((time, self.sampler.prove_contact(self.motion, time)?))
     }
 
-    /// Moves the front by a single plane, if this proves more than the next step. The plane is that of the front, or
-    /// one perpendicular to a line from an axis. It is tried up to the end of the span, and otherwise at lengths that
-    /// double from a few steps.
+    /// Moves the front by a single plane, if this proves more than the next step. Up to the end of the span, several
+    /// normals are tried. Otherwise the normal of the front is tried at lengths that double from a few steps.
     fn advance_by_single_plane(&mut self) -> bool {
         let (from, motion) = (self.front.time(), self.motion);
         let Sample { gap, rate, .. } = self.front;
@@ -401,7 +401,7 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         let step = self.next_time() - from;
         let (end, remaining) = (self.end_time, self.end_time - from);
         let first = (FIRST_TRIAL_STEPS * step).min(remaining);
-        // At its present rate the gap would not suffice. If the steps are short, however, there are many of them, //
+        // At its present rate the gap would not suffice. If the steps are short, however, there are many of them,
         // unless they end at a contact.
         if rate * first >= MAX_LOSS_SHARE * gap
             && (SHORT_STEPS * step > remaining || self.gap_dropped)
@@ -426,7 +426,8 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         farthest.is_some_and(|length| self.move_front_by_single_plane(at(length)))
     }
 
-    /// Proves the rest of the span by a single plane. Returns `false` if none of the tried normals does.
+    /// Proves the rest of the span by a single plane: with the normal of the front, a radial one, or one between the
+    /// axes. Returns `false` if none of them does.
     fn finish_by_single_plane(&mut self) -> bool {
         let (front, motion) = (self.front, self.motion);
         let at = motion.instant_at(self.end_time);
@@ -495,7 +496,7 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
     }
 }
 
-/// Returns the time at which a gap closes, for a closing speed `rate` and a second derivative `slowing` of the gap.
+/// Returns the time at which a gap closes, for a closing speed `rate` and a second derivative `gap_acceleration`.
 /// Returns infinity if it does not close.
 fn closing_time(gap: f64, rate: f64, gap_acceleration: f64) -> f64 {
     let square = rate * rate - 2.0 * gap_acceleration * gap;

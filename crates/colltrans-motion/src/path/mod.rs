@@ -95,7 +95,7 @@ pub struct PathBody<'a> {
 
 impl<'a> PathBody<'a> {
     /// Returns a body carried by a frame, with its pose in the frame.
-    pub fn carried_gap_loss(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
+    pub fn carried(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
         Self { frame: Some(frame), placed: placed.into() }
     }
 

@@ -285,7 +285,7 @@ impl<'a> MotionCast<'a, Solid> {
     }
 }
 
-/// Searches a span. Returns the earliest contact, if any, and the entries of its proof in [`Mode::Writing`].
+/// Searches a span. Returns the earliest contact, if any, and the entries of its proof in [`SearchMode::Recording`].
 fn search_span(
     span: &Span<SolidTree>,
     mode: SearchMode,

@@ -14,8 +14,8 @@ use colltrans_convex::pair::{Pair, distance_from};
 use colltrans_convex::setting::{TwoBodies, VertexPair};
 use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearly};
 
-/// Share of the size of the bodies beyond which a distance is computed roughly; and the relative accuracy of such a
-/// distance. The exact distance is needed only near a contact.
+/// Share of the size of the bodies beyond which a distance is computed roughly; and the accuracy of such a distance,
+/// relative to its part beyond that share. The exact distance is needed only near a contact.
 const FAR_SHARE: f64 = 1e-3;
 const ROUGH_ACCURACY: f64 = 0.2;
 

@@ -113,7 +113,7 @@ impl Chain {
         chain
     }
 
-    /// Computes the angles between the axes of consecutive revolute joints.
+    /// Computes bounds of the sines of the angles between the axes of consecutive revolute joints.
     fn set_sines(&mut self) {
         let (mut turned, mut last) = (DMat3::IDENTITY, None);
         for joint in &mut self.joints {

@@ -33,8 +33,8 @@ pub(super) struct PlanePath {
     pub(super) stretches: Vec<Stretch>,
 }
 
-/// Appends a plane to the planes of its row.
 impl PlanePath {
+    /// Appends a plane to the planes of its row.
     pub(super) fn append_plane(&mut self, row: usize, plane: PlaneAt) {
         match self.stretches.last_mut() {
             Some(last) if last.row == row => {
@@ -118,7 +118,7 @@ impl PiecePair<'_> {
             plane_path.append_plane(from.row, plane);
         }
         loop {
-            let here = match plane_path.last_plane() {
+            let (place, gap) = match plane_path.last_plane() {
                 Some((place, _)) if place.normalised() >= until.normalised() => {
                     return (plane_path, FollowEnd::Apart);
                 }
@@ -126,14 +126,14 @@ impl PiecePair<'_> {
                 None => (from, 0.0),
             };
             // Near each other, the search within a row proves more.
-            let next = Place::at_row(here.0.row + 1).earlier_of(until);
-            if here.1 > 0.0
-                && let Some((place, plane)) = self.leap_by_gaps(sampler, here, next, until)
+            let next = Place::at_row(place.row + 1).earlier_of(until);
+            if gap > 0.0
+                && let Some((place, plane)) = self.leap_by_gaps(sampler, (place, gap), next, until)
             {
                 plane_path.append_stretch(place.row, plane);
                 continue;
             }
-            match self.follow_row(sampler, here.0, until, &mut plane_path) {
+            match self.follow_row(sampler, place, until, &mut plane_path) {
                 FollowEnd::Apart => {}
                 other => return (plane_path, other),
             }

@@ -325,7 +325,7 @@ impl<'a> PathCast<'a> {
             } else if search.stop.is_some() {
                 reached = reached.earlier_of(search.reached);
             }
-            let found = search.with_earlier_contact();
+            let found = search.with_proven_contact();
             steps += search.sampler.steps;
             if let Some((place, stop)) = found.filter(|_| !is_open) {
                 until = place;

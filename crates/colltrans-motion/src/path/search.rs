@@ -70,7 +70,7 @@ impl<'p> PathSearch<'p> {
 
     /// Returns the first stop, replaced by a proven contact soon after it if there is one. Returns `None` if the search
     /// did not stop.
-    pub(super) fn with_earlier_contact(&mut self) -> Option<(Place, Stop)> {
+    pub(super) fn with_proven_contact(&mut self) -> Option<(Place, Stop)> {
         let (until, stop) = self.stop.take()?;
         let Place { row, share } = self.reached.normalised();
         let known = match &stop {

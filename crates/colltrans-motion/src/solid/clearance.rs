@@ -79,7 +79,7 @@ impl MotionCast<'_, Solid> {
             let (found, _) = search_span(&span, mode, &mut steps);
             let Some(mut found) = found else { continue };
             if mode == SearchMode::FirstContact {
-                found = Self::with_earlier_contact(&span, found, &mut steps);
+                found = Self::with_proven_contact(&span, found, &mut steps);
             }
             let time = self.blocking_time(&span, &found);
             return match self.contact_outcome(&span, &found, steps, |_| ()) {

@@ -130,7 +130,7 @@ impl<'a> MotionCast<'a, Solid> {
         for span in split_into_spans(trees.each_ref(), self.motions(), self.min_gap) {
             let (found, _) = search_span(&span, SearchMode::FirstContact, &mut steps);
             if let Some(found) = found {
-                let found = Self::with_earlier_contact(&span, found, &mut steps);
+                let found = Self::with_proven_contact(&span, found, &mut steps);
                 return Ok(self.contact_outcome(&span, &found, steps, |_| ()));
             }
         }
@@ -158,7 +158,7 @@ impl<'a> MotionCast<'a, Solid> {
                 proof.spans.push(SpanProof::new(span.to, recorded));
                 continue;
             };
-            let mut found = Self::with_earlier_contact(&span, found, &mut steps);
+            let mut found = Self::with_proven_contact(&span, found, &mut steps);
             let (lower, recorded) = prove_until(&span, found.lower, &mut steps);
             found.lower = lower;
             proof.spans.push(SpanProof::new(lower, recorded));
@@ -211,7 +211,7 @@ impl<'a> MotionCast<'a, Solid> {
     }
 
     /// Replaces the contact of a search result by an earlier proven contact, if there is one.
-    fn with_earlier_contact(
+    fn with_proven_contact(
         span: &Span<SolidTree>,
         mut found: EarliestContact,
         steps: &mut MotionSteps,

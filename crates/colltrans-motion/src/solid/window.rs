@@ -106,8 +106,8 @@ struct PlacedPart {
     is_facet: bool,
 }
 
-/// Places a part with a rotation.
 impl PlacedPart {
+    /// Places a part with a rotation.
     #[inline]
     fn new(part: &TreePart, rotation: &DMat3, axis: DVec3) -> Self {
         let vectors = match part {
@@ -162,7 +162,7 @@ impl<'s, 'a> SpanFrame<'s, 'a> {
     /// Computes the error bounds and the rotation data of a span.
     pub(super) fn new(span: &'s Span<'a, SolidTree<'a>>) -> Self {
         let start = span.instant_at(span.from).bodies;
-        // Maximum distance of points of a body within the span.
+        // Bound of the distance of points of a body from its start origin within the span.
         let far = |which: usize| {
             let (piece, h) = (span.piece(which), span.to - span.from);
             let swung = 2.0 * piece.arm.length() * (piece.rate.abs() * h).min(1.0);

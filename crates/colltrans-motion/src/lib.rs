@@ -13,9 +13,9 @@
 //! let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.02, 0.0), DVec3::new(1.0, 0.02, 2.0))?;
 //! let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.05), DVec3::splat(0.05))?;
 //! let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
-//! let there = Pose::from_translation(DVec3::new(0.6, 0.6, 1.0))?;
+//! let post_pose = Pose::from_translation(DVec3::new(0.6, 0.6, 1.0))?;
 //!
-//! let cast = MotionCast::new(door.along(&swing), post.at(there))?;
+//! let cast = MotionCast::new(door.along(&swing), post.at(post_pose))?;
 //! let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
 //! assert!(0.4 < contact.lower && contact.lower <= contact.upper && contact.upper < 0.5);
 //! assert!(contact.upper - contact.lower < 1e-11);

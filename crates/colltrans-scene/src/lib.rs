@@ -64,24 +64,24 @@ type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 /// use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-/// let mut room = Obstacles::new();
+/// let mut scene = Obstacles::new();
 /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
-/// let table = room.insert(table, Pose::IDENTITY);
-/// let mug = room.insert(cube.clone(), Pose::from_translation(DVec3::new(2.0, 0.0, 0.0))?);
-/// let finger = room.insert(cube.clone(), Pose::from_translation(DVec3::new(-1.0, 0.0, 3.0))?);
+/// let table = scene.insert(table, Pose::IDENTITY);
+/// let mug = scene.insert(cube.clone(), Pose::from_translation(DVec3::new(2.0, 0.0, 0.0))?);
+/// let finger = scene.insert(cube.clone(), Pose::from_translation(DVec3::new(-1.0, 0.0, 3.0))?);
 ///
 /// let hand = Pose::from_translation(DVec3::new(0.0, 0.0, 3.0))?;
 /// let own = |id| id == finger;
-/// let asked = Among::new(cube.at(hand), &room)?.ignoring(&own);
-/// assert_eq!(asked.nearest()?.expect("there are some").obstacle, mug);
-/// assert_eq!(asked.within(2.5)?.closer.len(), 1);
-/// let stop = asked.clearance(DVec3::NEG_Z)?.stop.expect("the table is below");
+/// let query = Among::new(cube.at(hand), &scene)?.ignoring(&own);
+/// assert_eq!(query.nearest()?.expect("there are some").obstacle, mug);
+/// assert_eq!(query.within(2.5)?.closer.len(), 1);
+/// let stop = query.clearance(DVec3::NEG_Z)?.stop.expect("the table is below");
 /// assert_eq!(stop.0, table);
 ///
-/// // The proof: checked against all bodies, without a search.
-/// let (down, proof) = asked.certified_clearance(DVec3::NEG_Z)?;
+/// // The proof is checked against all bodies, without a search.
+/// let (down, proof) = query.certified_clearance(DVec3::NEG_Z)?;
 /// assert!(down.lower <= 3.0 && down.lower > 2.999);
-/// assert!(asked.verify(&proof)? < 1e-12);
+/// assert!(query.verify(&proof)? < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy)]

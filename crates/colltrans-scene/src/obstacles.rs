@@ -38,12 +38,12 @@ pub struct UnknownObstacle {
 ///
 /// let hand = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::splat(0.5))?;
 /// let above = Pose::from_translation(DVec3::new(24.25, 0.25, 5.0))?;
-/// let asked = Among::new(hand.at(above), &shelf)?;
-/// let nearest = asked.nearest()?.expect("there are obstacles");
+/// let query = Among::new(hand.at(above), &shelf)?;
+/// let nearest = query.nearest()?.expect("there are obstacles");
 /// assert_eq!(nearest.obstacle, ids[12]);
 /// assert!(nearest.lower <= 4.0 && 4.0 <= nearest.distance.upper());
 ///
-/// let down = asked.clearance(DVec3::NEG_Z)?;
+/// let down = query.clearance(DVec3::NEG_Z)?;
 /// assert_eq!(down.stop.expect("it is in the way").0, ids[12]);
 /// shelf.remove(ids[12]);
 /// assert_eq!(Among::new(hand.at(above), &shelf)?.clearance(DVec3::NEG_Z)?.lower, f64::INFINITY);

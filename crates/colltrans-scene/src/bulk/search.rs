@@ -85,7 +85,7 @@ impl<'f> FaceView<'f> {
     #[inline]
     /// Prepares the faces for a line.
     pub(super) fn new(faces: &'f Faces, line: &Line) -> Self {
-        let axes = line.axes();
+        let axes = line.direction_axes();
         Self { faces, axes, at: coordinates_along(&axes, line.setting.offset) }
     }
 

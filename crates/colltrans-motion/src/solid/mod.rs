@@ -5,9 +5,9 @@
 //! solid can contain the other. The search finds the first contact of facets in both bounding volume trees and in
 //! time.
 //!
-//! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and one
-//! plane), `facets` (two facets as convex bodies), `inside` (a point inside both solids), `proof` (entries of a cover),
-//! `search`, `meeting` (proves contact at a time), `verify`, `clearance`.
+//! Each module uses only those before it: `tree` (a shrunk solid), `window` (one plane for two parts in an interval),
+//! `facets` (two facets as convex bodies), `inside` (a point inside both solids), `proof` (entries of a cover).
+//! `search`, `meeting` (proves contact at a time), `verify` and `clearance` use them.
 
 mod clearance;
 mod facets;

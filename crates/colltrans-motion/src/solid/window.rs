@@ -333,8 +333,8 @@ impl Window<'_, '_, '_> {
             || self.is_separated_by_carried(plane)
     }
 
-    /// Checks whether both bodies have the same angular velocity and axis, and the plane separates both parts at the
-    /// start by more than the gap that is lost while it is carried along.
+    /// Checks whether a plane separates both parts while both bodies carry it along. Returns `false` unless the bodies
+    /// have the same angular velocity and axis, and the gap at the start exceeds the loss.
     fn is_separated_by_carried(&self, plane: PlaneName) -> bool {
         let SpanFrame { span, coordinate_error, has_common_rotation } = *self.frame;
         if !has_common_rotation {

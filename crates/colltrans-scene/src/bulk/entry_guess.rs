@@ -74,8 +74,8 @@ impl EntryGuessTable {
         self.cells[self.cell_of(toward)]
     }
 
-    #[inline]
     /// Returns the cell of a direction from the centre.
+    #[inline]
     fn cell_of(&self, toward: DVec3) -> usize {
         let [x, y, z] = toward.abs().to_array();
         let (axis, along, u, v) = if x >= y && x >= z {

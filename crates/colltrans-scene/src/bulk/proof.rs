@@ -48,8 +48,8 @@ impl LineMargins {
 }
 
 impl<'c> Line<'c> {
-    #[inline]
     /// Computes the margins of a cast.
+    #[inline]
     pub(super) fn from_cast(cast: &'c Cast) -> Self {
         let noise = cast.setting.noise();
         let tolerance = cast.options.graze_tolerance.max(noise.touching());

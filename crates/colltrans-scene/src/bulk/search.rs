@@ -82,8 +82,8 @@ pub(super) struct FaceView<'f> {
 }
 
 impl<'f> FaceView<'f> {
-    #[inline]
     /// Prepares the faces for a line.
+    #[inline]
     pub(super) fn new(faces: &'f Faces, line: &Line) -> Self {
         let axes = line.direction_axes();
         Self { faces, axes, at: coordinates_along(&axes, line.setting.offset) }

@@ -30,9 +30,9 @@ pub(super) fn gap_loss<B: Hull>(
     let drift = normal.dot(span.relative_velocity()) * h;
     let sizes = (0..2).map(|which| span.piece(which).arm.length() + span.body(which).reach());
     let size = sizes.sum::<f64>() + span.relative_velocity().length() * h;
-    let risen = max_rise(span, ends, 0, normal) + max_rise(span, ends, 1, -normal);
+    let total_rise = max_rise(span, ends, 0, normal) + max_rise(span, ends, 1, -normal);
     // The rise is computed from places that have errors at both ends.
-    risen - drift.min(0.0) + 2.0 * span.error + SUM_ERROR * size
+    total_rise - drift.min(0.0) + 2.0 * span.error + SUM_ERROR * size
 }
 
 /// Returns an upper bound of the rise, within an interval, of the highest point of a body along a normal.
@@ -53,23 +53,23 @@ fn max_rise<B: Hull>(
     let [n, side] =
         [perpendicular_part(normal, piece.axis), normal.cross(piece.axis) * angle.signum()];
     let along = normal - n;
-    let (mut highest, mut before) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    let (mut highest, mut highest_at_start) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     for v in body.corners() {
         let first = moved[0].arm + moved[0].rotation * *v;
         let last = moved[1].arm + moved[1].rotation * *v;
         // The slopes at both ends decide whether the peak is between them.
         let peak = around || (side.dot(first) > 0.0 && side.dot(last) < 0.0);
-        let here = normal.dot(first);
+        let start_height = normal.dot(first);
         let top = if peak {
             let (a, b) = (n.dot(first), side.dot(first));
             along.dot(first) + (a * a + b * b).sqrt()
         } else {
-            here.max(normal.dot(last))
+            start_height.max(normal.dot(last))
         };
         highest = highest.max(top);
-        before = before.max(here);
+        highest_at_start = highest_at_start.max(start_height);
     }
-    highest - before
+    highest - highest_at_start
 }
 
 /// Returns an upper bound of the gap that a plane loses while the moving body carries it for a time `h`. `offset` is
@@ -86,22 +86,28 @@ pub(super) fn carried_gap_loss<B: Hull>(
     }
     let arm = |piece: &Piece| piece.arm.length();
     let size = offset.length() + arm(p) + arm(q);
-    let beside = perpendicular_part(offset, p.axis).length() + 4.0 * span.error + SUM_ERROR * size;
-    let swung = (p.rate.abs() * h).min(2.0) * normal.length();
-    let spins = q.axis * q.rate - p.axis * p.rate;
-    let other = if spins == DVec3::ZERO { 0.0 } else { spins.length() + SUM_ERROR * p.rate.abs() };
-    let elsewhere = other * (arm(q) + span.body(1).reach()) * normal.length();
+    let axis_distance =
+        perpendicular_part(offset, p.axis).length() + 4.0 * span.error + SUM_ERROR * size;
+    let rotation_length = (p.rate.abs() * h).min(2.0) * normal.length();
+    let spin_difference = q.axis * q.rate - p.axis * p.rate;
+    let spin_error = if spin_difference == DVec3::ZERO {
+        0.0
+    } else {
+        spin_difference.length() + SUM_ERROR * p.rate.abs()
+    };
+    let deviation_rate = spin_error * (arm(q) + span.body(1).reach()) * normal.length();
     let drift = span.relative_velocity();
-    let sinking = (-normal.dot(p.axis) * drift.dot(p.axis)).max(0.0);
-    let sideways =
+    let axial_rate = (-normal.dot(p.axis) * drift.dot(p.axis)).max(0.0);
+    let lateral_rate =
         perpendicular_part(drift, p.axis).length() * perpendicular_part(normal, p.axis).length();
     let rounded = SUM_ERROR * drift.length() * normal.length();
-    (beside * swung + (elsewhere + sinking + sideways + rounded) * h) * (1.0 + 1e-12)
+    (axis_distance * rotation_length + (deviation_rate + axial_rate + lateral_rate + rounded) * h)
+        * (1.0 + 1e-12)
 }
 
 /// Checks whether both bodies have the same angular velocity, up to rounding.
 pub(super) fn has_same_spin<B: Hull>(span: &Span<B>) -> bool {
     let [p, q] = [span.piece(0), span.piece(1)];
-    let spins = q.axis * q.rate - p.axis * p.rate;
-    p.rate != 0.0 && spins.length() <= SAME_SPIN * p.rate.abs()
+    let spin_difference = q.axis * q.rate - p.axis * p.rate;
+    p.rate != 0.0 && spin_difference.length() <= SAME_SPIN * p.rate.abs()
 }

@@ -25,17 +25,17 @@ pub(super) enum ContactState<M> {
 }
 
 /// Returns the first time found from `from` on at which the bodies meet, with its proof. The search is limited to times
-/// before `known`, a proven contact, or else before `end`. Returns `None` if it finds no such time.
+/// before `known_contact`, if given, or else before `end`. Returns `None` if it finds no such time.
 pub(super) fn find_crossing_time<M>(
     from: f64,
-    known: Option<f64>,
+    known_contact: Option<f64>,
     end: f64,
     mut state_at: impl FnMut(f64) -> ContactState<M>,
 ) -> Option<(f64, M)> {
-    if known.is_some_and(|met| met - from <= MIN_WIDTH) {
+    if known_contact.is_some_and(|met| met - from <= MIN_WIDTH) {
         return None;
     }
-    let before = known.unwrap_or(end);
+    let before = known_contact.unwrap_or(end);
     let (mut last, mut was_undecided) = (from, false);
     let mut found = None;
     for k in -1..MAX_DOUBLINGS {

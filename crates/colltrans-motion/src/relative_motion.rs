@@ -190,11 +190,11 @@ impl<'a, B: Hull> RelativeMotion<'a> for Span<'a, B> {
         if p.rate == 0.0 || q.rate == 0.0 {
             return None;
         }
-        let way = at.bodies.offset - (at.moved[1].arm - at.moved[0].arm);
+        let axis_offset = at.bodies.offset - (at.moved[1].arm - at.moved[0].arm);
         let normal = p.axis.cross(q.axis);
         let are_parallel = normal.length() < PARALLEL_LENGTH;
-        let normal = if are_parallel { perpendicular_part(way, p.axis) } else { normal };
-        normal.try_normalize().map(|n| if n.dot(way) < 0.0 { -n } else { n })
+        let normal = if are_parallel { perpendicular_part(axis_offset, p.axis) } else { normal };
+        normal.try_normalize().map(|n| if n.dot(axis_offset) < 0.0 { -n } else { n })
     }
 
     fn angular_speed(&self) -> f64 {

@@ -140,7 +140,7 @@ impl Chain {
                 let across = |v: DVec3| v.cross(axis).length();
                 let lever = match beyond {
                     None => far(&|p| across(*p)),
-                    Some((way, rest)) => across(way) + rest,
+                    Some((offset, rest)) => across(offset) + rest,
                 };
                 joint.lever = lever * BOUND_FACTOR;
             }
@@ -381,8 +381,8 @@ mod tests {
         let mechanism = Mechanism::new(frames).unwrap();
         let corners = [DVec3::new(0.5, 0.0, 0.0)];
         let chain = Chain::new(&mechanism, &[0, 1], &path, Pose::IDENTITY, &corners);
-        let way = chain.travel_bound(&path, 0);
-        assert!((1.5..1.5 + 1e-6).contains(&way), "{way}");
+        let travel = chain.travel_bound(&path, 0);
+        assert!((1.5..1.5 + 1e-6).contains(&travel), "{travel}");
         assert!(chain.error > 0.0 && chain.error < 1e-12, "{}", chain.error);
     }
 }

@@ -43,17 +43,17 @@ impl<'a> LinkPair<'a> {
     pub(super) fn new(path: &'a JointPath, chains: [Chain; 2], min_gap: f64) -> Self {
         let mut travel = vec![0.0];
         for row in 0..path.last_row() {
-            let way: f64 = chains.iter().map(|chain| chain.travel_bound(path, row)).sum();
-            travel.push((travel[row] + way).next_up());
+            let distance: f64 = chains.iter().map(|chain| chain.travel_bound(path, row)).sum();
+            travel.push((travel[row] + distance).next_up());
         }
         Self { path, chains, travel, min_gap }
     }
 
     /// Returns an upper bound of the distance that both bodies together move from the start to a place.
     pub(super) fn travel_to(&self, place: Place) -> f64 {
-        let here = self.travel[place.row];
-        let next = self.travel.get(place.row + 1).unwrap_or(&here);
-        here + place.share * (next - here)
+        let current = self.travel[place.row];
+        let next = self.travel.get(place.row + 1).unwrap_or(&current);
+        current + place.share * (next - current)
     }
 
     /// Checks whether gaps at two places prove all places between them.
@@ -71,9 +71,10 @@ impl<'a> LinkPair<'a> {
         if self.travel_to(until) <= most {
             return until;
         }
-        let row = self.travel.partition_point(|way| *way <= most).saturating_sub(1);
-        let (here, next) = (self.travel[row], self.travel.get(row + 1).unwrap_or(&f64::INFINITY));
-        let share = ((most - here) / (next - here)).clamp(0.0, 1.0);
+        let row = self.travel.partition_point(|distance| *distance <= most).saturating_sub(1);
+        let (current, next) =
+            (self.travel[row], self.travel.get(row + 1).unwrap_or(&f64::INFINITY));
+        let share = ((most - current) / (next - current)).clamp(0.0, 1.0);
         Place { row, share }.normalised()
     }
 

@@ -207,18 +207,18 @@ impl JointPath {
 
     /// Returns bounds of the time of a place.
     pub(super) fn time_bounds(&self, place: Place) -> [f64; 2] {
-        let here = self.times[place.row];
+        let current = self.times[place.row];
         if place.share == 0.0 {
-            return [here; 2];
+            return [current; 2];
         }
         let next = self.times[place.row + 1];
         if place.share == 1.0 {
             return [next; 2];
         }
-        let time = here + place.share * (next - here);
+        let time = current + place.share * (next - current);
         // Error: two roundings of the product, one of the sum.
-        let off = f64::EPSILON * (time.abs() + 2.0 * (next - here));
-        [(time - off).max(here), (time + off).min(next)]
+        let off = f64::EPSILON * (time.abs() + 2.0 * (next - current));
+        [(time - off).max(current), (time + off).min(next)]
     }
 
     /// Returns the value of a joint at a row, and its change up to the next row.

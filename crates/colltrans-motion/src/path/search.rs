@@ -73,7 +73,7 @@ impl<'p> PathSearch<'p> {
     pub(super) fn with_proven_contact(&mut self) -> Option<(Place, Stop)> {
         let (until, stop) = self.stop.take()?;
         let Place { row, share } = self.reached.normalised();
-        let known = match &stop {
+        let known_contact = match &stop {
             Stop::Stalled => return Some((until, stop)),
             Stop::Met(place, ..) if place.row == row => Some(place.share),
             _ => None,
@@ -81,8 +81,9 @@ impl<'p> PathSearch<'p> {
         if row >= self.link_pair.path.last_row() {
             return Some((until, stop));
         }
-        let found =
-            find_crossing_time(share, known, 1.0, |share| self.contact_state(Place { row, share }));
+        let found = find_crossing_time(share, known_contact, 1.0, |share| {
+            self.contact_state(Place { row, share })
+        });
         Some(found.map_or((until, stop), |(share, how)| {
             let place = Place { row, share };
             (place, Stop::Met(place, how))
@@ -149,10 +150,10 @@ impl<'p> PathSearch<'p> {
     fn cover_by_planes(&mut self, numbers: [usize; 2], from: Place, until: Place) -> Cover {
         // The nearest pairs of other pieces are not valid for these.
         self.sampler.discard_pairs();
-        let (plane_path, fate) =
+        let (plane_path, follow_end) =
             self.piece_pair(numbers).follow_pieces(&mut self.sampler, from, until);
         let reached = plane_path.last_plane().map_or(from, |(place, _)| place);
-        let stop = match fate {
+        let stop = match follow_end {
             FollowEnd::Apart => None,
             FollowEnd::Met(place, met) => {
                 Some((place, Stop::Met(place, How::Pieces { pieces: numbers, met })))

@@ -75,9 +75,9 @@ impl Guesses {
         let height = up.dot(middle - g[0]);
         let down = if faces { 0.5 * height } else { DEPTH_FACTOR * ERROR_FACTOR * off };
         let fits = if faces { height < 0.0 } else { height.abs() < off };
-        let kept = &mut self.0[usize::from(faces)];
-        if fits && first != last && kept.is_none_or(|kept| area > kept.area) {
-            *kept = Some(Guess { area, point: middle - up * down, triangles });
+        let best = &mut self.0[usize::from(faces)];
+        if fits && first != last && best.is_none_or(|best| area > best.area) {
+            *best = Some(Guess { area, point: middle - up * down, triangles });
         }
     }
 
@@ -168,18 +168,18 @@ fn clip_to_facet(f: &Corners, g: &Corners, normal: DVec3) -> Vec<DVec3> {
     (0..3).fold(f.to_vec(), |part, k| {
         let (from, side) = (g[k], normal.cross(g[(k + 1) % 3] - g[k]));
         let height = |p: DVec3| side.dot(p - from);
-        let mut kept = Vec::with_capacity(part.len() + 1);
+        let mut clipped = Vec::with_capacity(part.len() + 1);
         for (i, &p) in part.iter().enumerate() {
             let q = part[(i + 1) % part.len()];
             let [a, b] = [height(p), height(q)];
             if a >= 0.0 {
-                kept.push(p);
+                clipped.push(p);
             }
             if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
-                kept.push(p + (q - p) * (a / (a - b)));
+                clipped.push(p + (q - p) * (a / (a - b)));
             }
         }
-        kept
+        clipped
     })
 }
 
@@ -223,9 +223,9 @@ fn is_facet_beyond(corners: Corners, off: f64) -> bool {
     let [a, b, c] = corners;
     let edge = |u: DVec3, v: DVec3| u - (v - u) * (u.dot(v - u) / (v - u).length_squared());
     let across = facet_normal(&corners);
-    let ways = [across, -across, a, b, c, edge(a, b), edge(b, c), edge(c, a)];
-    ways.into_iter().any(|way| {
-        let n = way.normalize_or_zero();
+    let directions = [across, -across, a, b, c, edge(a, b), edge(b, c), edge(c, a)];
+    directions.into_iter().any(|direction| {
+        let n = direction.normalize_or_zero();
         corners.iter().all(|v| n.dot(*v) > off)
     })
 }

@@ -216,10 +216,10 @@ impl<'a> MotionCast<'a, Solid> {
         mut found: EarliestContact,
         steps: &mut MotionSteps,
     ) -> EarliestContact {
-        let known = found.met.map(|(time, ..)| time);
+        let known_contact = found.met.map(|(time, ..)| time);
         let (frame, mut sampler) = (SpanFrame::new(span), FacetSampler::default());
         let state = |time| contact_state_at(&frame, time, &mut sampler);
-        let earlier = find_crossing_time(found.lower, known, span.to.next_up(), state);
+        let earlier = find_crossing_time(found.lower, known_contact, span.to.next_up(), state);
         if let Some((time, (pair, how))) = earlier {
             found.met = Some((time, pair, how));
         }

@@ -130,8 +130,8 @@ fn is_contact_proven(
     span: &Span<SolidTree>,
     FacetsMeeting { time, triangles, met }: &FacetsMeeting,
 ) -> bool {
-    let known = |k: usize| (triangles[k] as usize) < span.body(k).solid.triangles().len();
-    if !(known(0) && known(1) && (span.from..=span.to).contains(time)) {
+    let is_facet = |k: usize| (triangles[k] as usize) < span.body(k).solid.triangles().len();
+    if !(is_facet(0) && is_facet(1) && (span.from..=span.to).contains(time)) {
         return false;
     }
     let bodies = span.instant_at(*time).bodies;

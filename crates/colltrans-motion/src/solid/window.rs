@@ -255,8 +255,9 @@ impl Window<'_, '_, '_> {
     fn separates_along(&self, normal: DVec3) -> bool {
         let (frame, length) = (self.frame, normal.abs().element_sum());
         let min_gap = frame.span.min_gap;
-        let kept = if min_gap > 0.0 { min_gap * normal.length() * (1.0 + 1e-12) } else { 0.0 };
-        let coordinate_error = frame.coordinate_error * length + kept;
+        let gap_margin =
+            if min_gap > 0.0 { min_gap * normal.length() * (1.0 + 1e-12) } else { 0.0 };
+        let coordinate_error = frame.coordinate_error * length + gap_margin;
         let shares = [0, 1].map(|k| normal.dot(self.frame.piece(k).axis));
         let mut gaps = [0.0; 2];
         // Maximum coordinates along the vectors `W`.
@@ -347,12 +348,12 @@ impl Window<'_, '_, '_> {
         let Some(normal) = begin.plane_normal(plane) else { return false };
         let [high, _] = placed[0][0].max_coordinates(normal, 0.0);
         let [low, _] = placed[1][0].max_coordinates(-normal, 0.0);
-        let kept = span.min_gap.max(0.0) * normal.length() * (1.0 + 1e-12);
+        let gap_margin = span.min_gap.max(0.0) * normal.length() * (1.0 + 1e-12);
         let gap = normal.dot(start.offset)
             - low
             - high
             - coordinate_error * normal.abs().element_sum()
-            - kept;
+            - gap_margin;
         let offset = start.offset - (start.places[1].arm - start.places[0].arm);
         gap > arc::carried_gap_loss(span, offset, self.ends[1].time - start.time, normal)
     }

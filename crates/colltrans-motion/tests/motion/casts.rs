@@ -371,7 +371,7 @@ fn contacts_take_few_samples_and_support_points() {
         let mut random = Random::new(seed);
         let along = random_motion(&mut random, 6.0);
         let pose = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
-        let cast = MotionCast::new(p.along(&along), q.at(there)).expect("a cast");
+        let cast = MotionCast::new(p.along(&along), q.at(pose)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         if let MotionOutcome::Contact(found) = &outcome {
             contacts += 1;
@@ -387,11 +387,11 @@ fn contacts_take_few_samples_and_support_points() {
 fn too_long_motions_return_coarse_error() {
     let cube = cuboid([1.0; 3]);
     let solid = Solid::from_convex(&cube).expect("a solid");
-    let pose = Motion::still(at(3.0, 0.0, 0.0));
+    let still = Motion::still(at(3.0, 0.0, 0.0));
     for far in [1e20, 1e50, 1e60] {
         let slide = Motion::slide(Pose::IDENTITY, DVec3::X * far).expect("a motion");
-        let cast = MotionCast::new(cube.along(&slide), cube.along(&there)).expect("a cast");
-        let solids = MotionCast::new(solid.along(&slide), solid.along(&there)).expect("a cast");
+        let cast = MotionCast::new(cube.along(&slide), cube.along(&still)).expect("a cast");
+        let solids = MotionCast::new(solid.along(&slide), solid.along(&still)).expect("a cast");
         for found in [cast.first_contact().map(|_| ()), solids.first_contact().map(|_| ())] {
             assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
         }
@@ -399,7 +399,7 @@ fn too_long_motions_return_coarse_error() {
         assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
         // Bodies that move apart never meet, at any distance.
         let away = Motion::slide(at(1e60, 0.0, 0.0), DVec3::X * 1e40).expect("a motion");
-        let cast = MotionCast::new(cube.along(&away), cube.along(&there)).expect("a cast");
+        let cast = MotionCast::new(cube.along(&away), cube.along(&still)).expect("a cast");
         assert!(matches!(cast.first_contact(), Ok(MotionOutcome::Free(_))));
     }
 }
@@ -538,7 +538,7 @@ fn two_points_passing_through_each_other_graze() {
     let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
     for x in [0.0, 1.0, 3.7] {
         let pose = Pose::from_translation(DVec3::X * x).expect("a pose");
-        let cast = MotionCast::new(point.along(&motion), point.at(there)).expect("a cast");
+        let cast = MotionCast::new(point.along(&motion), point.at(pose)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         let MotionOutcome::Grazing(contact) = &outcome else { panic!("{outcome:?}") };
         assert!((contact.lower - 0.25 * x).abs() < 1e-12, "{}", contact.lower);

@@ -40,7 +40,7 @@ enum ClearanceSummary {
     Overlapping,
 }
 
-fn summary<P>(clearance: &MotionClearance<P>) -> ClearanceSummary {
+fn summary_of<P>(clearance: &MotionClearance<P>) -> ClearanceSummary {
     match clearance {
         MotionClearance::Blocked { time, contact } => {
             let MotionStop { time: place, shrunk, .. } = &**contact;

@@ -22,8 +22,9 @@ use thiserror::Error;
 pub enum MotionProofError {
     /// A plane or its time is invalid.
     #[error(
-        "plane {index} of span {span} is invalid: the first plane must be at the start of the span, times must not \
-         decrease, normals must have length 1, and a span must start where the previous one ended"
+        "plane {index} of span {span} is invalid: the first plane must be at the start of the span, \
+         times must not decrease, normals must have length 1, and a span must start where the \
+         previous one ended"
     )]
     Plane {
         /// Index of the span.
@@ -53,7 +54,8 @@ pub enum MotionProofError {
     },
     /// The proof has a different tolerance than the query.
     #[error(
-        "the proof has the tolerance {claimed}, the query {asked}; verify it with the tolerance of the proof"
+        "the proof has the tolerance {claimed}, the query {asked}; verify it with the tolerance of \
+         the proof"
     )]
     Tolerance {
         /// Tolerance of the proof.

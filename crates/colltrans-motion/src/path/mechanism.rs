@@ -314,7 +314,8 @@ impl TryFrom<PathRecord> for JointPath {
 pub enum PathError {
     /// The parent of a frame is not an earlier frame.
     #[error(
-        "frame {frame} has itself or a later frame as its parent; parents must come before their children"
+        "frame {frame} has itself or a later frame as its parent; parents must come before \
+         their children"
     )]
     Parent {
         /// Number of the frame.
@@ -330,7 +331,8 @@ pub enum PathError {
     },
     /// There are no rows, or the number of times differs from that of rows.
     #[error(
-        "the path has {rows} rows and {times} times; give at least one row, and one time for each row"
+        "the path has {rows} rows and {times} times; give at least one row, and one time for \
+         each row"
     )]
     Rows {
         /// Number of times.
@@ -358,7 +360,8 @@ pub enum PathError {
     },
     /// A joint value is invalid.
     #[error(
-        "invalid value {value} of frame {frame} in row {row}; accepted: finite, at most 1e5 for angles in radians"
+        "invalid value {value} of frame {frame} in row {row}; accepted: finite, at most 1e5 for \
+         angles in radians"
     )]
     Value {
         /// Index of the row, from 0.
@@ -377,7 +380,11 @@ pub enum PathError {
         frame: usize,
     },
     /// A pair does not consist of two bodies.
-    #[error("invalid pair of bodies {} and {}; a pair needs the numbers of two different bodies", .pair[0], .pair[1])]
+    #[error(
+        "invalid pair of bodies {} and {}; a pair needs the numbers of two different bodies",
+        .pair[0],
+        .pair[1]
+    )]
     Pair {
         /// The pair, as given.
         pair: [usize; 2],

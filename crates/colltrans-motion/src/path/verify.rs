@@ -34,8 +34,8 @@ pub enum PathProofError {
     Solids,
     /// A cover has invalid steps.
     #[error(
-        "the cover of pair {pair} is invalid near row {row}: each step must continue the previous one, normals \
-         must have length 1, and a split piece must have all its parts"
+        "the cover of pair {pair} is invalid near row {row}: each step must continue the previous \
+         one, normals must have length 1, and a split piece must have all its parts"
     )]
     Order {
         /// Index of the pair.

@@ -16,7 +16,7 @@ pub(super) struct Plane {
     pub(super) normal: DVec3,
     /// Lower bound of `min n.m` over `M0` for this normal.
     pub(super) min_coordinate: f64,
-    /// Height of the highest corner of the face above `least`, rounded.
+    /// Height of the highest corner of the face above `min_coordinate`, rounded.
     pub(super) thickness: f64,
     /// The lowest corner.
     pub(super) lowest: VertexPair,

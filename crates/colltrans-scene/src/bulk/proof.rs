@@ -72,7 +72,7 @@ pub(super) fn direction_axes(unit: DVec3) -> [DVec3; 3] {
     [e1, unit.cross(e1), unit]
 }
 
-/// Builds the contact in a face that the line certainly enters. `of` is the index of the face, `seen` and `face` are
+/// Builds the contact in a face that the line certainly enters. `of` is the index of the face, `view` and `face` are
 /// its view relative to the line. Returns `None` if the face is too uneven or too steep.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "moved about, an outcome goes through memory")]

@@ -130,7 +130,7 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
     }
 }
 
-/// Returns the depth beyond which bodies with the position error `error` meet, for a minimum gap `keep` (negative: a
+/// Returns the depth beyond which bodies with the position error `error` meet, for a minimum gap `min_gap` (negative: a
 /// tolerated depth).
 pub(super) fn min_proving_depth(min_gap: f64, error: f64) -> f64 {
     error - min_gap.min(0.0)

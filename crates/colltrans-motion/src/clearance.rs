@@ -187,8 +187,8 @@ pub(super) fn sample_in_spans<'a, B: Hull, L: Sampler<B>>(
     Some(sampler.sample(span, time))
 }
 
-/// Computes when the nominal bodies meet, for bodies that meet with the tolerance between `lower` and `upper`. `added_gap`
-/// is the gap that the tolerance has added, `rate` its closing speed.
+/// Computes when the nominal bodies meet, for bodies that meet with the tolerance between `lower` and `upper`.
+/// `added_gap` is the gap that the tolerance has added, `rate` its closing speed.
 ///
 /// Samples times at growing distances before `lower`, until the bodies are separated, and searches for the contact from
 /// there on. If they are never separated, for example if one rests on the other from the start, the time is

@@ -114,8 +114,8 @@ impl<'a> Among<'a> {
     /// Builds the queries of a placed body among obstacles, with default options.
     ///
     /// # Errors
-    /// Returns an error for a convex body whose facets [`Solid::from_mesh`](colltrans_solid::Solid::from_mesh) rejects, if
-    /// it must be converted to a solid. This applies to a moving body among solids, and to the obstacles of a moving
+    /// Returns an error for a convex body whose facets [`Solid::from_mesh`](colltrans_solid::Solid::from_mesh) rejects,
+    /// if it must be converted to a solid. This applies to a moving body among solids, and to the obstacles of a moving
     /// solid ([`QueryError::Obstacle`] with the id).
     pub fn new(
         moving: impl Into<AnyPlaced<'a>>,

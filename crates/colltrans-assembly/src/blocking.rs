@@ -1,10 +1,10 @@
-//! The directional blocking graph of Wilson and Latombe ("Geometric reasoning about mechanical
-//! assembly", Artificial Intelligence 71, 1994).
+//! The directional blocking graph of Wilson and Latombe ("Geometric reasoning about mechanical assembly", Artificial
+//! Intelligence 71, 1994).
 //!
-//! Notation: an arc from `A` to `B` says that `A`, moving to infinity along `d`, meets `B`. What must
-//! come along with `A` is its *closure*, all that is reached from it. The strongly connected
-//! components are the smallest groups that move as one; a component without an arc that leaves it can
-//! be taken out along `d`, as it is.
+//! Notation: an arc from `A` to `B` states that `A`, moving to infinity along `d`, collides with `B`. The *closure*
+//! of `A` is the set of all parts that are reachable from it; they must move with `A`. The strongly connected
+//! components are the smallest groups that move as one body. A component that no arc leaves can be removed along `d`
+//! as it is.
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -12,22 +12,22 @@ use petgraph::visit::Dfs;
 
 use crate::matrix::Matrix;
 
-/// Who blocks whom along one direction, among some of the parts.
+/// The blocking graph of some parts along one direction.
 #[derive(Debug, Clone)]
 pub struct Blocking {
     graph: DiGraph<usize, ()>,
-    /// The node of each part that takes part.
+    /// The node of each part, or `None` if the part is not in the graph.
     node: Vec<Option<NodeIndex>>,
 }
 
 impl Blocking {
-    /// The graph along a direction of the matrix, of the parts that are `true`.
+    /// Builds the graph of the parts in the mask `among` along a direction of the matrix.
     pub fn new(matrix: &Matrix, direction: usize, among: &[bool]) -> Self {
         let arcs = matrix.meetings(direction).iter().map(|m| (m.moving, m.fixed));
         Self::from_arcs(arcs, among)
     }
 
-    /// The same with the arcs of an order.
+    /// Builds the graph along a direction with additional arcs of order constraints.
     pub(crate) fn with_order(
         matrix: &Matrix,
         direction: usize,
@@ -38,7 +38,7 @@ impl Blocking {
         Self::from_arcs(arcs.chain(order.iter().copied()), among)
     }
 
-    /// The graph of these arcs, of the parts that are `true`.
+    /// Builds the graph with these arcs, of the parts in the mask `among`.
     pub fn from_arcs(arcs: impl IntoIterator<Item = (usize, usize)>, among: &[bool]) -> Self {
         let mut graph = DiGraph::new();
         let node: Vec<Option<NodeIndex>> = among
@@ -54,7 +54,8 @@ impl Blocking {
         Self { graph, node }
     }
 
-    /// All that must come along with a part, itself included, in increasing order.
+    /// Returns the closure of a part, itself included, in increasing order. It is empty if the part is not in the
+    /// graph.
     pub fn closure(&self, part: usize) -> Vec<usize> {
         let Some(start) = self.node[part] else { return Vec::new() };
         let mut search = Dfs::new(&self.graph, start);
@@ -66,7 +67,7 @@ impl Blocking {
         reached
     }
 
-    /// The parts that a part meets, in increasing order.
+    /// Returns the parts that block a part directly, in increasing order.
     pub fn blockers(&self, part: usize) -> Vec<usize> {
         let Some(node) = self.node[part] else { return Vec::new() };
         let mut met: Vec<usize> = self.graph.neighbors(node).map(|n| self.graph[n]).collect();
@@ -75,7 +76,7 @@ impl Blocking {
         met
     }
 
-    /// The groups that move as one, each in increasing order, by their first parts.
+    /// Returns the strongly connected components, each in increasing order, sorted by their first parts.
     pub fn groups(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = tarjan_scc(&self.graph)
             .into_iter()
@@ -89,7 +90,7 @@ impl Blocking {
         groups
     }
 
-    /// The groups that can be taken out as they are: no part of them meets one outside.
+    /// Returns the components that no arc leaves, which can be removed as they are.
     pub fn removable(&self) -> Vec<Vec<usize>> {
         let mut group_of = vec![usize::MAX; self.node.len()];
         let groups = self.groups();
@@ -121,7 +122,7 @@ mod tests {
         (0..count).map(arc).filter(|(a, b)| a != b).collect()
     }
 
-    /// All subsets of the parts that no arc leaves.
+    /// Returns all subsets of the parts that no arc leaves.
     fn closed_sets(n: usize, arcs: &[(usize, usize)], among: &[bool]) -> Vec<u32> {
         let alive: u32 = (0..n).filter(|&k| among[k]).map(|k| 1 << k).sum();
         let closed = |set: &u32| {
@@ -146,7 +147,7 @@ mod tests {
                     closed.iter().filter(|s| *s >> part & 1 == 1).min_by_key(|s| s.count_ones());
                 assert_eq!(Some(&set(&graph.closure(part))), least);
             }
-            // Removable as they are: closed sets that contain no smaller one.
+            // Removable groups are the minimal closed sets.
             let minimal = |s: &&u32| !closed.iter().any(|t| t != *s && t & **s == *t);
             let mut expected: Vec<u32> = closed.iter().filter(minimal).copied().collect();
             let mut found: Vec<u32> = graph.removable().iter().map(|g| set(g)).collect();

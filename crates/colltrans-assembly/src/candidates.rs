@@ -1,11 +1,15 @@
-//! Directions worth asking.
+//! Candidate directions for removal.
 //!
-//! A sphere of samples misses tight fits, whose free directions are isolated. Those come from the
-//! parts: normals of contacts, and what is orthogonal to two of them (a pin in a hole, a key in its
-//! groove); axes of cylinders ([`cylinders`]); principal axes of inertia ([`inertia`]); the axes of
-//! the world. Directions closer than an angle to one that was found before are left out; the most
-//! significant (largest contact, longest cylinder) come first, so that slivers do not stand for
-//! them.
+//! Samples of the sphere miss tight fits, whose free directions are isolated. Candidates therefore come from the
+//! parts:
+//!
+//! - the axes of the world,
+//! - normals of contacts, and vectors orthogonal to two of them (a pin in a hole, a key in a groove),
+//! - axes of cylinders ([`cylinders`]),
+//! - principal axes of inertia ([`inertia`]).
+//!
+//! A direction within an angle of an earlier one is omitted. The most significant candidates (largest contact,
+//! longest cylinder) come first, so that slivers do not replace them.
 
 use colltrans::glam::DVec3;
 
@@ -17,10 +21,10 @@ use crate::liaisons::Liaison;
 use crate::sphere::{angle, unit};
 use crate::{cylinders, inertia};
 
-/// Where a direction comes from.
+/// Source of a candidate direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Origin {
-    /// The caller gave it.
+    /// Given by the caller.
     Given,
     /// An axis of the world.
     World,
@@ -37,7 +41,7 @@ pub enum Origin {
 }
 
 impl Origin {
-    /// A word or two for people.
+    /// Returns a short name for users.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -51,31 +55,31 @@ impl Origin {
     }
 }
 
-/// A direction worth asking.
+/// A candidate direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Of length 1.
+    /// The direction, of length 1.
     pub direction: DVec3,
-    /// Where it comes from.
+    /// Source of the direction.
     pub origin: Origin,
 }
 
-/// How directions are chosen.
+/// Options for the choice of candidate directions.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Choice {
-    /// The caller's, of any length; they are kept whatever else there is.
+    /// Directions of the caller, of any nonzero length. They are always included.
     pub given: Vec<DVec3>,
-    /// Of any length; it and the opposite count as given, for who rests on whom is asked along it. Not if nothing is
-    /// looked for.
+    /// Direction of gravity, of any nonzero length. It and its opposite are included like given directions, because
+    /// supports are determined along gravity. Ignored if [`search`](Self::search) is false.
     pub gravity: Option<DVec3>,
-    /// Whether to look for more than those.
+    /// Whether to search for directions beyond the given ones.
     pub search: bool,
-    /// Two directions closer than this are one, in radians.
+    /// Angle below which two directions are equal, in radians.
     pub apart: f64,
-    /// At most so many directions for all parts, beside those given; the rest are finer ones.
+    /// Maximum number of directions for all parts in addition to the given ones. Further directions are finer ones.
     pub main: usize,
-    /// At most so many finer directions.
+    /// Maximum number of finer directions.
     pub finer: usize,
 }
 
@@ -86,63 +90,63 @@ impl Default for Choice {
 }
 
 impl Choice {
-    /// The same with another [`given`](Self::given).
+    /// Returns the options with other [`given`](Self::given) directions.
     #[must_use]
     pub fn with_given(self, given: Vec<DVec3>) -> Self {
         Self { given, ..self }
     }
 
-    /// The same with another [`gravity`](Self::gravity).
+    /// Returns the options with another direction of [`gravity`](Self::gravity).
     #[must_use]
     pub fn with_gravity(self, gravity: Option<DVec3>) -> Self {
         Self { gravity, ..self }
     }
 
-    /// The same with another [`search`](Self::search).
+    /// Returns the options with [`search`](Self::search) enabled or disabled.
     #[must_use]
     pub fn with_search(self, search: bool) -> Self {
         Self { search, ..self }
     }
 }
 
-/// A direction that is asked only of some parts, if no other moves them.
+/// A direction that is tested only for parts that no other direction moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finer {
-    /// Of length 1.
+    /// The direction, of length 1.
     pub direction: DVec3,
-    /// Where it comes from.
+    /// Source of the direction.
     pub origin: Origin,
-    /// The part that it comes from; `None` if it may concern any.
+    /// Index of the part that it comes from; `None` if it may concern any part.
     pub part: Option<usize>,
 }
 
 impl Finer {
-    /// Whether it comes from one of the parts that are `true`.
+    /// Checks whether it comes from a part of the mask.
     pub fn concerns(&self, parts: &[bool]) -> bool {
         self.part.is_none_or(|part| parts[part])
     }
 }
 
-/// The directions to ask of all parts, the caller's first, and finer ones.
+/// The directions to test for all parts, those of the caller first, and finer ones.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Candidates {
-    /// To ask of all parts.
+    /// Directions to test for all parts.
     pub main: Vec<Candidate>,
-    /// To ask of parts that none of those moves.
+    /// Directions to test for parts that none of those moves.
     pub finer: Vec<Finer>,
 }
 
 impl Candidates {
-    /// The main directions.
+    /// Returns the directions to test for all parts.
     pub fn directions(&self) -> Vec<DVec3> {
         self.main.iter().map(|c| c.direction).collect()
     }
 }
 
-/// The directions to ask.
+/// Computes the candidate directions of an assembly.
 ///
 /// # Errors
-/// A direction of the caller that is zero or not finite.
+/// Returns an error if a direction of the caller is zero or not finite.
 pub fn candidates(
     bodies: &Bodies,
     liaisons: &[Liaison],
@@ -208,13 +212,14 @@ impl Chosen {
     }
 }
 
-/// Zeros without a sign.
+/// Returns the direction with zeros of positive sign.
 fn positive(d: DVec3) -> DVec3 {
     d + DVec3::ZERO
 }
 
 struct Axis {
-    /// Axes of cylinders and what is orthogonal to contacts of large areas first.
+    /// Priority class, lowest first: axes of cylinders, and vectors orthogonal to the two largest contacts, have the
+    /// lowest.
     rank: usize,
     weight: f64,
     along: DVec3,
@@ -222,10 +227,10 @@ struct Axis {
     part: usize,
 }
 
-/// Contact normals that are looked at in pairs, for each part.
+/// Maximum number of contact normals of a part that are combined in pairs.
 const NORMALS: usize = 6;
 
-/// The axes of one part.
+/// Returns the candidate axes of one part.
 fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut axes = Vec::new();
@@ -236,11 +241,12 @@ fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     }
     let normals = normals_of(liaisons, part, NORMALS);
     for (k, &(weight, n)) in normals.iter().enumerate() {
-        // The largest contact of a part may well say where it goes; the others are finer.
+        // The normal of the largest contact often is the removal direction; the others are finer candidates.
         add(if k == 0 { 1 } else { 3 }, weight, n, Origin::Contact);
         for &(other, m) in &normals[..k] {
             let cross = n.cross(m);
-            // Nearly parallel normals define no axis; the squarer, the better it is defined.
+            // Nearly parallel normals define no axis. The closer they are to orthogonal, the better the axis is
+            // defined.
             if cross.length() > 0.1 {
                 let weight = weight.min(other) * cross.length_squared();
                 add(if k == 1 { 1 } else { 2 }, weight, cross.normalize(), Origin::Orthogonal);
@@ -253,8 +259,8 @@ fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     axes
 }
 
-/// The normals of a part's contacts, largest area first, those within a degree of a larger one with
-/// it; without signs.
+/// Returns the contact normals of a part without signs, largest area first. A normal within a degree of a larger one
+/// is merged with it.
 fn normals_of(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, DVec3)> {
     const TOGETHER: f64 = 0.017;
     let own = liaisons.iter().filter(|l| l.parts.contains(&part));
@@ -269,7 +275,7 @@ fn normals_of(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, DVec3
         let count = normals.len();
         match normals.iter_mut().find(|x| near(x.1)) {
             Some(known) => known.0 += area,
-            // Round contacts have many; those of the largest facets are enough to define an axis.
+            // Round contacts have many normals. Those of the largest facets are enough to define an axis.
             None if count < 8 * most => normals.push((area, normal)),
             None => (),
         }

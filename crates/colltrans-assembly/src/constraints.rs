@@ -1,11 +1,12 @@
-//! What is asked of plans beside geometry: who leaves before whom, who leaves with whom, and who never goes where.
+//! Constraints on plans beyond geometry: order, parts that leave together, and forbidden directions.
 //!
-//! An order is more arcs of the blocking graph, along every direction: `a` before `b` is an arc from `b` to `a`, as if `b`
-//! met it, and parts that leave as one are a ring of arcs. So all that holds of blocking graphs holds with an order, too:
-//! what can leave stays able to leave, and a greedy plan takes as much apart as any. A direction along which a part never
-//! goes is one along which no group with it leaves.
+//! An order constraint is an additional arc of the blocking graph along every direction: "`a` before `b`" is an arc
+//! from `b` to `a`, as if `a` blocked `b`. Parts that leave as one are connected by arcs both ways. Therefore all
+//! properties of blocking graphs remain valid: a removable group stays removable, and a greedy plan removes as much
+//! as any other. A forbidden direction of a part is forbidden for every group that contains the part.
 //!
-//! Invariant: units that are never taken apart share no part; of two others that share one, one holds the other.
+//! Invariant: units that are never taken apart are disjoint. Of two other units that share a part, one contains the
+//! other.
 
 use glam::DVec3;
 use petgraph::algo::tarjan_scc;
@@ -15,29 +16,30 @@ use petgraph::unionfind::UnionFind;
 use crate::error::AssemblyError;
 use crate::sphere::unit;
 
-/// Parts that leave as one.
+/// A unit: parts that leave as one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// What it is called.
+    /// Name of the unit.
     pub name: Option<String>,
-    /// Positions of the parts, in increasing order.
+    /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// Whether it is taken apart once nothing else is left: a subassembly is, what stays together is not.
+    /// Whether the unit is taken apart once nothing else is left. This holds for subassemblies, not for parts that
+    /// stay together.
     pub apart: bool,
 }
 
-/// A part, and where it never goes.
+/// A forbidden range of directions of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Never {
-    /// Position of the part.
+    /// Index of the part.
     pub part: usize,
-    /// Of length 1.
+    /// Centre of the range, of length 1.
     pub direction: DVec3,
-    /// Nor along any direction within this angle, in degrees.
+    /// Angle of the range around its centre, in degrees.
     pub within: f64,
 }
 
-/// What is asked of plans.
+/// Constraints on plans.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Constraints {
     before: Vec<[usize; 2]>,
@@ -45,37 +47,37 @@ pub struct Constraints {
     never: Vec<Never>,
 }
 
-/// Where nothing else is said, parts that never go along a direction do not within so many degrees of it.
+/// Default angle around a forbidden direction, in degrees.
 pub const WITHIN_DEGREES: f64 = 45.0;
 
-/// Cosines are rounded: an angle of just the one given counts as within.
+/// Tolerance of cosines, so that an angle equal to the limit is within it.
 const ROUNDED: f64 = 1e-12;
 
 impl Constraints {
-    /// Pairs of which the first leaves no later than the second: not while the second leaves and it stays.
+    /// Returns the pairs of which the first part leaves before or together with the second.
     pub fn before(&self) -> &[[usize; 2]] {
         &self.before
     }
 
-    /// Parts that leave as one.
+    /// Returns the units of parts that leave as one.
     pub fn units(&self) -> &[Unit] {
         &self.units
     }
 
-    /// Where parts never go.
+    /// Returns the forbidden directions of parts.
     pub fn never(&self) -> &[Never] {
         &self.never
     }
 
-    /// Checks whether anything is asked of who leaves before whom, or with whom.
+    /// Checks whether there are order constraints or units.
     pub(crate) fn is_any_order(&self) -> bool {
         !self.before.is_empty() || !self.units.is_empty()
     }
 
-    /// Adds that parts leave before others.
+    /// Adds the constraint that some parts leave before others. `name` returns the name of a part.
     ///
     /// # Errors
-    /// Then something would leave before itself; `name` says how a part is called.
+    /// Returns an error if the order becomes cyclic.
     pub(crate) fn add_before<'a>(
         &mut self,
         [first, second]: [&[usize]; 2],
@@ -93,17 +95,18 @@ impl Constraints {
         self.check(name)
     }
 
-    /// Adds parts that leave as one.
+    /// Adds a unit of parts that leave as one. `name` returns the name of a part.
     ///
     /// # Errors
-    /// Subassemblies share parts, and neither holds the other; then something would leave before itself.
+    /// Returns an error if two subassemblies overlap and neither contains the other, or if the order becomes cyclic.
     pub(crate) fn add_unit<'a>(
         &mut self,
         added: Unit,
         name: impl Fn(usize) -> &'a str,
     ) -> Result<(), AssemblyError> {
         self.units.push(added);
-        // What stays together is one if it shares a part; and a subassembly that holds some of it holds all.
+        // Units that stay together are merged if they share a part. A subassembly that contains a part of one is
+        // extended by all of it.
         while let Some([a, b]) = self.overlapping(|a, b| !a.apart || !b.apart) {
             let (from, to) = if self.units[b].apart { (a, b) } else { (b, a) };
             let parts = self.units[from].parts.clone();
@@ -126,7 +129,8 @@ impl Constraints {
         self.check(name)
     }
 
-    /// Two units that share parts, of which neither holds the other as a subassembly may.
+    /// Returns the first two units that share parts although neither may contain the other, among pairs that are
+    /// `wanted`.
     fn overlapping(&self, wanted: impl Fn(&Unit, &Unit) -> bool) -> Option<[usize; 2]> {
         let holds = |a: &Unit, b: &Unit| a.apart && b.parts.iter().all(|p| a.parts.contains(p));
         let pairs = (0..self.units.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
@@ -138,10 +142,10 @@ impl Constraints {
         pairs.into_iter().find(clash)
     }
 
-    /// Adds a direction along which a part never goes, nor along others within an angle in degrees.
+    /// Adds a forbidden direction of a part, with all directions within an angle in degrees.
     ///
     /// # Errors
-    /// A direction of no length; an angle that is not between 0 and 180.
+    /// Returns an error if the direction is zero or not finite, or the angle is negative or at least 180 degrees.
     pub(crate) fn add_never(
         &mut self,
         part: usize,
@@ -155,7 +159,8 @@ impl Constraints {
         Ok(())
     }
 
-    /// That nothing leaves before itself, parts that stay together being one.
+    /// Checks that the order is acyclic if parts that stay together count as one. Returns the parts of a cycle as an
+    /// error.
     fn check<'a>(&self, name: impl Fn(usize) -> &'a str) -> Result<(), AssemblyError> {
         let count = self.before.iter().flatten().chain(self.units.iter().flat_map(|u| &u.parts));
         let mut one = UnionFind::new(count.max().map_or(0, |most| most + 1));
@@ -178,7 +183,7 @@ impl Constraints {
         Err(AssemblyError::Order { names })
     }
 
-    /// Whether anything is asked of the order of these, or of their directions.
+    /// Checks whether constraints concern these parts.
     pub(crate) fn concern(&self, parts: &[usize]) -> bool {
         let mut there = vec![false; parts.iter().max().map_or(0, |most| most + 1)];
         for &part in parts {
@@ -188,7 +193,7 @@ impl Constraints {
         kept || !self.arcs(&there).is_empty()
     }
 
-    /// The arcs of the order among the parts that are there, along every direction.
+    /// Returns the arcs of the constraints among the present parts. They hold along every direction.
     pub(crate) fn arcs(&self, there: &[bool]) -> Vec<(usize, usize)> {
         let ordered =
             self.before.iter().filter(|pair| pair.iter().all(|&part| is_there(there, part)));
@@ -197,7 +202,7 @@ impl Constraints {
         arcs
     }
 
-    /// All pairs of parts that are there and leave as one.
+    /// Returns all pairs of present parts that leave as one.
     pub(crate) fn pairs(&self, there: &[bool]) -> Vec<[usize; 2]> {
         let mut pairs = Vec::new();
         for unit in self.units.iter().filter(|unit| !unit.is_released(there)) {
@@ -212,13 +217,13 @@ impl Constraints {
         pairs
     }
 
-    /// How many units are to be taken apart now, as nothing else is there.
+    /// Returns the number of units that may be taken apart because nothing else is present.
     pub(crate) fn released(&self, there: &[bool]) -> usize {
         self.units.iter().filter(|unit| unit.is_released(there)).count()
     }
 
-    /// Whether a group had to wait until a part was gone: it comes before some of the group, or some of the group is of a
-    /// unit that is taken apart once all else is gone.
+    /// Checks whether the constraints require that a part is removed before a group: the part comes before one of the
+    /// group, or the group takes apart a unit that the part does not belong to.
     pub(crate) fn waits(&self, group: &[usize], part: usize) -> bool {
         let later = |pair: &[usize; 2]| pair[0] == part && group.contains(&pair[1]);
         let apart = |unit: &Unit| {
@@ -228,17 +233,18 @@ impl Constraints {
         self.before.iter().any(later) || self.units.iter().any(apart)
     }
 
-    /// Whether arcs run one way: then what holds along `d` does not hold along `-d` with all arcs turned round.
+    /// Checks whether present parts have order constraints. Their arcs have one direction, so results along `d` do
+    /// not transfer to `-d` by reversal of all arcs.
     pub(crate) fn is_ordered(&self, there: &[bool]) -> bool {
         self.before.iter().any(|pair| pair.iter().all(|&part| there[part]))
     }
 
-    /// Whether the order lets these leave all others that are there.
+    /// Checks whether the constraints allow a group to leave all other present parts.
     pub(crate) fn lets_go(&self, group: &[usize], there: &[bool]) -> bool {
         !self.arcs(there).iter().any(|(a, b)| group.contains(a) && !group.contains(b))
     }
 
-    /// Whether none of these is kept from a direction.
+    /// Checks whether no part of a group is forbidden to move along a direction.
     pub(crate) fn allows(&self, group: &[usize], d: DVec3) -> bool {
         let kept = |never: &&Never| {
             group.contains(&never.part)
@@ -247,18 +253,18 @@ impl Constraints {
         !self.never.iter().any(|never| kept(&never))
     }
 
-    /// Whether all of these stay together.
+    /// Checks whether these parts belong to one unit that stays together.
     pub(crate) fn keeps_together(&self, parts: &[usize]) -> bool {
         let mut units = self.units.iter().filter(|unit| !unit.apart);
         units.any(|unit| parts.iter().all(|part| unit.parts.contains(part)))
     }
 
-    /// Whether others have to leave after a part.
+    /// Checks whether other parts must leave after a part.
     pub(crate) fn is_first(&self, part: usize) -> bool {
         self.before.iter().any(|pair| pair[0] == part)
     }
 
-    /// What a group is called, if it is just a subassembly.
+    /// Returns the name of a group if its parts are exactly a named unit.
     pub fn name(&self, parts: &[usize]) -> Option<&str> {
         let mut named = self.units.iter().filter(|unit| unit.parts == parts);
         named.find_map(|unit| unit.name.as_deref())
@@ -266,7 +272,7 @@ impl Constraints {
 }
 
 impl Unit {
-    /// Whether it is to be taken apart now: nothing else is there.
+    /// Checks whether the unit may be taken apart because nothing else is present.
     pub(crate) fn is_released(&self, there: &[bool]) -> bool {
         let all = there.iter().filter(|there| **there).count();
         let own = self.parts.iter().filter(|&&part| is_there(there, part)).count();
@@ -274,7 +280,7 @@ impl Unit {
     }
 }
 
-/// Masks of some parts may be shorter than all.
+/// Checks whether a part is present. Masks may be shorter than the number of parts.
 fn is_there(there: &[bool], part: usize) -> bool {
     there.get(part).copied().unwrap_or(false)
 }
@@ -299,9 +305,9 @@ mod tests {
         assert!(matches!(refused, AssemblyError::Order { .. }));
         let refused = order.clone().add_before([&[3], &[3]], name).unwrap_err();
         assert!(matches!(refused, AssemblyError::Order { names } if names == ["d"]));
-        // Of all whose names begin so each is before all others, not before itself.
+        // Patterns may overlap: each part is before all others, but not before itself.
         order.clone().add_before([&[0, 3], &[3]], name).unwrap();
-        // A subassembly is taken apart later, in that order.
+        // The order of parts in a subassembly applies when it is taken apart.
         order.add_unit(unit_of(&[0, 1], true), name).unwrap();
         assert!(order.add_never(3, DVec3::ZERO, 10.0).is_err());
         assert!(order.add_never(3, DVec3::Z, 180.0).is_err());
@@ -319,7 +325,7 @@ mod tests {
         order.add_unit(unit_of(&[0, 1, 2, 3, 4], true), name).unwrap();
         let refused = order.clone().add_unit(unit_of(&[3, 4], true), name).unwrap_err();
         assert!(matches!(refused, AssemblyError::Subassemblies { .. }));
-        // Alone it is taken apart, but for what stays together.
+        // If a subassembly is alone, it may be taken apart, except for parts that stay together.
         let arcs = |there: [bool; 5]| order.arcs(&there).len();
         assert_eq!(arcs([true; 5]), 6 + 12);
         assert_eq!(arcs([true, true, true, true, false]), 6);

@@ -1,4 +1,4 @@
-//! All that is found out about an assembly, in one go: the same for the command line, Python, a page, tests.
+//! The complete analysis of an assembly, shared by the command line, Python, the web page and tests.
 
 use glam::DVec3;
 
@@ -14,76 +14,76 @@ use crate::start::Start;
 use crate::suggest::{Suggestion, loose_threads, suggestions};
 use crate::watch::Watch;
 
-/// Of so many parts every pair is asked at once; of more, pairs are asked as they are needed.
+/// Maximum number of parts for which all contacts are computed at once. Above it they are computed on demand.
 const MOST_AT_ONCE: usize = 256;
 
-/// What is asked of an assembly.
+/// A request for the analysis of an assembly.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Question {
-    /// Which directions are asked of all parts.
+    /// Choice of the directions that are tested for all parts.
     pub choice: Choice,
-    /// Of length 1, asked of what none of those moves, before others.
+    /// Directions of length 1 that are tested first for parts that none of the main directions moves.
     pub finer: Vec<DVec3>,
-    /// How it is planned.
+    /// Options of the plan.
     pub options: PlanOptions,
-    /// Parts that are to come out; all, if there are none.
+    /// Indices of the parts to remove; empty to remove all.
     pub wanted: Vec<usize>,
 }
 
-/// All that was found out about an assembly.
+/// The results of the analysis of an assembly.
 #[derive(Clone)]
 pub struct Findings<'a> {
-    /// The parts, with the fit.
+    /// The parts with their fit.
     pub bodies: &'a Bodies<'a>,
     /// Overlaps at the start.
     pub start: Start,
-    /// What overlaps may be, and threads with play that hold what does not come apart.
+    /// Suggested roles of overlapping pairs, and threads with play that block interlocked parts.
     pub suggestions: Vec<Suggestion>,
-    /// Who touches whom.
+    /// Contacts between parts.
     pub liaisons: Vec<Liaison>,
-    /// The directions asked, and why.
+    /// The tested directions and their sources.
     pub candidates: Candidates,
-    /// Who meets whom along the main ones: of few parts all of it, else as it is asked for.
+    /// Contacts along the main directions: complete for few parts, otherwise computed on demand.
     pub matrix: Matrix<'a>,
-    /// Rooms of all parts in more directions, by direction.
+    /// Free travel of all parts along further directions, for each direction.
     pub more: Vec<(DVec3, Vec<PartRoom>)>,
-    /// How it comes apart.
+    /// The disassembly plan.
     pub plan: Plan,
-    /// What its steps take.
+    /// The handling times by which the steps of the plan are timed.
     pub times: Times,
-    /// What is upwards, of length 1.
+    /// Direction opposite to gravity, of length 1.
     pub up: DVec3,
-    /// Removal maps, with the names they were asked by.
+    /// Removal maps, with the names by which they were requested.
     pub maps: Vec<(String, RemovalMap)>,
 }
 
 impl Question {
-    /// The same with directions chosen otherwise.
+    /// Returns the request with another choice of directions.
     #[must_use]
     pub fn with_choice(self, choice: Choice) -> Self {
         Self { choice, ..self }
     }
 
-    /// The same with other [finer](Self::finer) directions.
+    /// Returns the request with other [finer](Self::finer) directions.
     #[must_use]
     pub fn with_finer(self, finer: Vec<DVec3>) -> Self {
         Self { finer, ..self }
     }
 
-    /// The same planned otherwise.
+    /// Returns the request with other options of the plan.
     #[must_use]
     pub fn with_options(self, options: PlanOptions) -> Self {
         Self { options, ..self }
     }
 
-    /// The same for [some parts](Self::wanted).
+    /// Returns the request for the removal of [some parts](Self::wanted).
     #[must_use]
     pub fn with_wanted(self, wanted: Vec<usize>) -> Self {
         Self { wanted, ..self }
     }
 
-    /// The same with gravity along a direction, of any length but zero.
+    /// Returns the request with gravity along a direction of any nonzero length.
     #[must_use]
     pub fn with_gravity(mut self, gravity: DVec3) -> Self {
         self.choice.gravity = Some(gravity);
@@ -91,10 +91,11 @@ impl Question {
         self
     }
 
-    /// Asks it: overlaps, contacts, directions, who meets whom along them, and a plan.
+    /// Analyses the assembly: overlaps, contacts, directions, contacts along these, and a plan.
     ///
     /// # Errors
-    /// As [`Start::new`], [`liaisons`], [`candidates`], [`Matrix::new`], [`disassemble`] and [`remove`].
+    /// Returns the errors of [`Start::new`], [`liaisons`], [`candidates`], [`Matrix::new`], [`disassemble`] and
+    /// [`remove`].
     pub fn ask<'a>(
         &self,
         bodies: &'a Bodies<'a>,
@@ -112,10 +113,10 @@ impl Question {
         Ok(found)
     }
 
-    /// The same but for the plan, which is left empty.
+    /// Analyses the assembly without a plan, which is left empty.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
+    /// Returns the errors of [`ask`](Self::ask).
     pub fn look<'a>(
         &self,
         bodies: &'a Bodies<'a>,

@@ -1,7 +1,7 @@
-//! All directions along which a part or group can leave the others, proven.
+//! All directions along which a part or group can leave the others, with a proof.
 //!
-//! Parts keep their places, so the others are one solid, and the group is another: what blocks is a pair of facets of
-//! two parts, whatever solids these are in.
+//! Parts keep their poses, so the group is one solid and the others are another. A blocking pair of facets belongs to
+//! two parts, independent of how the solids combine them.
 
 use std::sync::atomic::AtomicBool;
 
@@ -12,19 +12,20 @@ use colltrans::{Pose, Solid};
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 
-/// A group and the others, each as one solid.
+/// A group and the other parts, each combined into one solid.
 #[derive(Debug, Clone)]
 pub struct Removal {
     solids: [Solid; 2],
-    /// The parts of either, and where the facets of each begin among those of all.
+    /// For each solid, its parts with the index of their first facet.
     parts: [Vec<(usize, u32)>; 2],
 }
 
 impl Removal {
-    /// A group against all parts that are not in it.
+    /// Combines a group and all parts outside of it.
     ///
     /// # Errors
-    /// A group of none or of all; parts that are to be kept apart; parts that are ignored, or that overlap where they are.
+    /// Returns an error if the group is empty or contains all parts, or if a pair has a minimum gap, is ignored, or
+    /// overlaps.
     pub fn new(bodies: &Bodies, group: &[usize]) -> Result<Self, AssemblyError> {
         let others: Vec<usize> = (0..bodies.len()).filter(|k| !group.contains(k)).collect();
         if group.is_empty() || others.is_empty() {
@@ -33,7 +34,7 @@ impl Removal {
         Self::among(bodies, group, &others)
     }
 
-    /// A group against others.
+    /// Combines a group and some other parts.
     pub(crate) fn among(
         bodies: &Bodies,
         group: &[usize],
@@ -49,10 +50,10 @@ impl Removal {
         Ok(Self { solids: [moving, fixed], parts: [own, rest] })
     }
 
-    /// The directions that are free. The tolerance is that of the bodies.
+    /// Computes the free directions, with the tolerance of the bodies. `cancel` stops the computation.
     ///
     /// # Errors
-    /// As [`FreeDirections::of`].
+    /// Returns the errors of [`FreeDirections::of`].
     pub fn directions(
         &self,
         options: FreeOptions,
@@ -67,7 +68,7 @@ impl Removal {
         })
     }
 
-    /// What was found as it is written; of several parts on a side with their names.
+    /// Returns the JSON record of the free directions. It contains part names for sides with several parts.
     pub fn record(&self, bodies: &Bodies, free: &FreeDirections) -> FreeRecord {
         let several = self.parts.each_ref().map(|parts| parts.len() > 1);
         let name = |part: usize| bodies.assembly().parts()[part].name().to_owned();
@@ -80,12 +81,12 @@ impl Removal {
         record
     }
 
-    /// Both as solids, as they are asked: shrunk by half the tolerance of the bodies.
+    /// Returns both solids, each shrunk by half of the tolerance of the bodies.
     pub const fn solids(&self) -> &[Solid; 2] {
         &self.solids
     }
 
-    /// The parts that two triangles of an answer belong to.
+    /// Returns the parts to which the two triangles of an answer belong.
     pub fn parts(&self, triangles: [u32; 2]) -> [usize; 2] {
         [0, 1].map(|k| {
             let facet = self.solids[k].facet_indices()[triangles[k] as usize].index() as u32;

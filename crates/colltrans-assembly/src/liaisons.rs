@@ -1,14 +1,14 @@
-//! Which parts touch which, and where (*liaisons*).
+//! Contacts between parts (*liaisons*).
 //!
-//! Two facets are in contact if their normals are nearly opposite, and somewhere over the common
-//! shadow, seen along the first one's normal, they lie within `reach` of each other. Curved fits are
-//! tessellated differently on either side: hence "nearly", and a reach of the tolerance. Facets of one plane are taken
-//! together, as faces (module `face`): of two that are level with each other a sweep finds what they have in common.
+//! Two facets are in contact if their normals are nearly opposite and they lie within `reach` of each other somewhere
+//! in their common projection along the first normal. Both sides of a curved fit are tessellated differently;
+//! therefore the normals need only be nearly opposite, and the reach is the tolerance. Coplanar facets are combined
+//! into faces (module `face`). The intersection of two coplanar faces is computed by a sweep.
 //!
-//! An area is the sum of what has been clipped, and its rounding is bounded (`rounding`). Which
-//! facets are in contact, at 25 degrees and at `reach`, is decided as it is computed.
-//! Notation: `n` is the unit normal of the first part's facet, outwards: from the first part to the
-//! second.
+//! The area of a contact is the sum of clipped pieces, and its rounding error is bounded (`area_error_bound`). The
+//! decision whether facets are in contact, within 25 degrees and `reach`, is subject to rounding.
+//!
+//! Notation: `n` is the outward unit normal of the first part's facet; it points from the first part to the second.
 
 mod face;
 
@@ -24,41 +24,41 @@ use colltrans::Aabb;
 
 use face::{Face, Swept, twice_area};
 
-/// Normals farther from opposite than this are no contact: the cosine of 25 degrees, a step of a
-/// round of 14 sides.
+/// Minimum cosine between a normal and the reversed other one in a contact: 25 degrees, a step of a round of 14
+/// sides.
 const OPPOSITE: f64 = 0.906;
 
 /// Two flat faces in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
-    /// Unit normal of the first part's face, from the first part to the second.
+    /// Unit normal of the first part's face. It points from the first part to the second.
     pub normal: DVec3,
-    /// Unit normal of the second part's face, turned round: from the first part to the second.
+    /// Reversed unit normal of the second part's face. It points from the first part to the second.
     pub other: DVec3,
-    /// Area of the common shadow, seen along the normal; of facets that are in contact.
+    /// Area of the common projection along `normal`, of the facets in contact.
     pub area: f64,
-    /// The area is off by no more than this.
+    /// Bound on the rounding error of `area`.
     pub area_error: f64,
-    /// Its centre, in the world, rounded.
+    /// Centroid of the area in the world frame, rounded.
     pub center: DVec3,
 }
 
-/// Two parts that touch.
+/// Two parts in contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Liaison {
-    /// Positions of the parts, the smaller first.
+    /// Indices of the parts, the smaller first.
     pub parts: [usize; 2],
-    /// Where.
+    /// The faces in contact.
     pub patches: Vec<Patch>,
 }
 
 impl Liaison {
-    /// The area of contact.
+    /// Returns the area of contact.
     pub fn area(&self) -> f64 {
         self.patches.iter().map(|p| p.area).sum()
     }
 
-    /// At least and at most the area of contact, exactly, of these patches.
+    /// Returns a lower and an upper bound of the exact area of these patches.
     pub fn area_bounds(&self) -> [f64; 2] {
         let (area, most) = (self.area(), self.patches.len() as f64);
         let error: f64 = self.patches.iter().map(|p| p.area_error).sum();
@@ -66,22 +66,22 @@ impl Liaison {
         [(area - error).next_down().max(0.0), (area + error).next_up()]
     }
 
-    /// The middle of the contact, weighted by area.
+    /// Returns the centroid of the contact, weighted by area.
     pub fn center(&self) -> DVec3 {
         let sum: DVec3 = self.patches.iter().map(|p| p.center * p.area).sum();
         sum / self.area()
     }
 }
 
-/// How far apart surfaces may be that touch: the tolerance, or the default one if that is larger.
+/// Returns the maximum distance of surfaces in contact: the tolerance, or the default tolerance if that is larger.
 pub fn reach(bodies: &Bodies) -> f64 {
     bodies.fit().tolerance().max(crate::Fit::negligible(bodies.assembly()))
 }
 
-/// All pairs that touch, as the files have them.
+/// Computes all contacts of the parts, with the geometry of the files.
 ///
 /// # Errors
-/// Cancelled; too many parts lie within each other's boxes.
+/// Returns an error if the run is cancelled or the boxes of too many parts overlap.
 pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyError> {
     let reach = reach(bodies);
     let pairs = bodies.neighbours(reach)?;
@@ -98,7 +98,7 @@ pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyE
 
 type Triangle = [DVec3; 3];
 
-/// Where parts touch, a patch for two faces that do.
+/// Returns a patch for each pair of faces of two solids in contact.
 fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
     let mut patches = Vec::new();
     touching(a, b, reach, &mut |[p, q]| {
@@ -109,13 +109,14 @@ fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
     patches
 }
 
-/// Corners of where a part touches another one with facets that look along `down`, within [`OPPOSITE`].
+/// Returns the corners of the areas in which a part touches another one with facets whose normals are along `down`,
+/// within [`OPPOSITE`].
 pub(crate) fn footprint(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DVec3> {
     let mut corners = Vec::new();
     touching(a, b, reach, &mut |[p, q]| {
         if p.normal.dot(down) >= OPPOSITE {
             common(p, q, reach, &mut |piece| {
-                // What is left between rims that agree but for rounding carries nothing.
+                // Pieces between boundaries that agree up to rounding carry nothing.
                 if piece.area > piece.error {
                     corners.extend(piece.outline());
                 }
@@ -125,7 +126,7 @@ pub(crate) fn footprint(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DV
     corners
 }
 
-/// Calls with all pairs of faces that look at each other and are near.
+/// Calls a function with all pairs of faces that face each other and are near.
 fn touching(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2])) {
     let (p, q) = (a.bounds().grown(reach), b.bounds().grown(reach));
     let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
@@ -140,15 +141,15 @@ fn touching(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2]))
     }
 }
 
-/// What has an area of no more than this share of a facet's, twice, does not touch it.
+/// Pieces of at most this fraction of twice a facet's area are no contact.
 const LEAST: f64 = 1e-9;
-/// Pairs of facets of two faces, from which on they are held against each other as wholes.
+/// Number of pairs of facets from which on two faces are compared as wholes.
 const MANY: usize = 64;
-/// Planes are level with each other if heights differ by no more than this share of the reach.
+/// Two faces are coplanar if the distances between their planes differ by at most this fraction of the reach.
 const LEVEL: f64 = 1.0 / 64.0;
 
-/// Calls with what two faces have in common, seen along the first one's normal, in pieces. By how much the sum of their
-/// areas may be off besides what they say.
+/// Calls a function with the pieces of the intersection of two faces, projected along the first normal. Returns the
+/// error of their total area beyond the errors of the pieces.
 fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 {
     let mut clipping = Clipping::default();
     let many = p.facets.len() * q.facets.len() >= MANY;
@@ -184,7 +185,8 @@ fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 
     0.0
 }
 
-/// The same of two faces that are level with each other.
+/// Calls a function with the pieces of the intersection of two coplanar faces, found by a sweep. Returns the error of
+/// their total area beyond the errors of the pieces.
 fn swept(p: &Face, q: &Face, clipping: &mut Clipping, call: &mut impl FnMut(&Piece)) -> f64 {
     let Some(plane) = Plane::of(&p.facets[0]) else { return 0.0 };
     let range = |face: &Face| span(face.corners().map(|at| plane.flat(at).x));
@@ -203,16 +205,16 @@ fn swept(p: &Face, q: &Face, clipping: &mut Clipping, call: &mut impl FnMut(&Pie
     rounding(off, [p.perimeter(), q.perimeter()])
 }
 
-/// The plane of a facet.
+/// The plane of a facet with its axes.
 struct Plane<'t> {
     facet: &'t Triangle,
     normal: DVec3,
     axes: [DVec3; 2],
-    /// The facet, in the plane.
+    /// The corners of the facet in plane coordinates.
     corners: [DVec2; 3],
 }
 
-/// A part of what two faces have in common, in the plane of the first.
+/// A piece of the intersection of two faces, in the plane of the first.
 struct Piece<'c> {
     origin: DVec3,
     axes: [DVec3; 2],
@@ -237,7 +239,7 @@ impl<'t> Plane<'t> {
         DVec2::new(from.dot(self.axes[0]), from.dot(self.axes[1]))
     }
 
-    /// Its own facet and another one, if they are in contact.
+    /// Returns the common piece of the plane's facet and another one, or `None` if they are not in contact.
     fn touches<'c>(
         &self,
         other: &Triangle,
@@ -249,14 +251,14 @@ impl<'t> Plane<'t> {
         if -n.dot(m) < OPPOSITE {
             return None;
         }
-        // The second runs clockwise, as seen along the first one's normal.
+        // The second facet is clockwise if seen along the first normal.
         let seen = [other[0], other[2], other[1]].map(|at| self.flat(at));
         let largest = perp_area(&self.corners);
         let mut piece = self.piece(&self.corners, &seen, 0.0, clipping)?;
         if piece.area <= largest * LEAST {
             return None;
         }
-        // Height of the second facet's plane over the first one's.
+        // Height of the second facet's plane above the first one.
         let height = |s: &DVec2| (other[0] - piece.place(*s)).dot(m) / n.dot(m);
         let heights = piece.shadow.iter().map(height);
         let [low, high] = span(heights);
@@ -265,7 +267,7 @@ impl<'t> Plane<'t> {
         (low <= reach && high >= -reach).then_some(piece)
     }
 
-    /// What two convex shapes in the plane have in common, both counter-clockwise, if it has an area.
+    /// Returns the intersection of two convex counter-clockwise polygons in the plane, or `None` if it has no area.
     fn piece<'c>(
         &self,
         first: &[DVec2],
@@ -278,10 +280,11 @@ impl<'t> Plane<'t> {
         Some(Piece { origin: self.facet[0], axes: self.axes, shadow, area, error, middle })
     }
 
-    /// How far flat coordinates of points may be off.
+    /// Returns a bound on the rounding error of the plane coordinates of some points.
     ///
-    /// Let `D` be how far one is from the facet, and `s` the inverse sine of the facet's angle there. The normal is off by
-    /// `8 u s` and the other two axes by that and `4 u`, so coordinates by `32 u D (1 + s)`.
+    /// Let `D` be the largest distance of a point from the facet's first corner, and `s` the inverse sine of the
+    /// facet's angle there. The normal has an error of `8 u s`, and the other two axes one of `8 u s + 4 u`.
+    /// Coordinates thus have an error of at most `32 u D (1 + s)`.
     fn displacement(&self, points: impl Iterator<Item = DVec3>) -> f64 {
         const U: f64 = f64::EPSILON / 2.0;
         let farthest = points.map(|p| p.distance(self.facet[0])).fold(0.0, f64::max);
@@ -306,27 +309,28 @@ impl Patch {
         Self { normal, other, area: 0.0, area_error: 0.0, center: DVec3::ZERO }
     }
 
-    /// Until it is finished, the centre is times the area.
+    /// Adds a piece. Until [`finished`](Self::finished), the centre is multiplied by the area.
     fn add(&mut self, piece: &Piece) {
         self.area += piece.area;
-        // And what the sum is rounded by.
+        // Includes the rounding of the sum.
         self.area_error += piece.error + f64::EPSILON * self.area;
         self.center += piece.place(piece.middle) * piece.area;
     }
 
-    /// If it has an area, more than `least`; `error` is how much that may be off besides.
+    /// Returns the finished patch, or `None` if its area is at most `least`. `error` is an additional error of the
+    /// area.
     fn finished(self, least: f64, error: f64) -> Option<Self> {
         let (center, area_error) = (self.center / self.area, 1.01 * (self.area_error + error));
         (self.area > least).then_some(Self { area_error, center, ..self })
     }
 }
 
-/// How far the area that two shapes have in common may be off, whose corners are displaced by so much.
+/// Returns a bound on the error of the area of the intersection of two polygons whose corners have an error of `off`.
 ///
-/// That far off are the boundaries of both, and, by the rounding of `side` over the length of the line, each of the
-/// cuts; a strip's ends lie on its rims but for `4 u D`. A convex shape all of whose boundary lies within `h` of another's
-/// has an area that differs by no more than `h` times the perimeter, to first order. Five such displacements; the sum
-/// over the corners takes less than as much again.
+/// The boundaries of both have this error. So does each cut, by the rounding of `side` divided by the length of the
+/// line. The ends of a strip lie on its boundary up to `4 u D`. If the boundary of a convex polygon lies within `h`
+/// of another one, the areas differ by at most `h` times the perimeter, to first order. The bound takes five such
+/// errors, and doubles them for the rounding of the sum over the corners.
 fn rounding(off: f64, perimeters: [f64; 2]) -> f64 {
     10.0 * off * (perimeters[0] + perimeters[1])
 }
@@ -335,12 +339,12 @@ fn perimeter(corners: &[DVec2]) -> f64 {
     (0..corners.len()).map(|k| corners[k].distance(corners[(k + 1) % corners.len()])).sum()
 }
 
-/// Twice the area of a triangle.
+/// Returns twice the area of a triangle.
 fn perp_area([a, b, c]: &[DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a).abs()
 }
 
-/// Memory for what is left of a shape while it is cut.
+/// Buffers for clipping polygons.
 #[derive(Default)]
 struct Clipping {
     kept: Vec<DVec2>,
@@ -348,7 +352,7 @@ struct Clipping {
 }
 
 impl Clipping {
-    /// What of a convex shape lies within another, both counter-clockwise.
+    /// Returns the intersection of two convex counter-clockwise polygons (Sutherland-Hodgman).
     fn common(&mut self, first: &[DVec2], second: &[DVec2]) -> &[DVec2] {
         self.kept.clear();
         self.kept.extend_from_slice(second);
@@ -361,7 +365,7 @@ impl Clipping {
         &self.kept
     }
 
-    /// Keeps what lies to the left of a line.
+    /// Keeps the part of the polygon to the left of a line.
     fn cut(&mut self, from: DVec2, to: DVec2) {
         let side = |p: DVec2| (to - from).perp_dot(p - from);
         self.next.clear();
@@ -379,7 +383,7 @@ impl Clipping {
     }
 }
 
-/// Area and centre of a convex polygon that has an area.
+/// Returns area and centroid of a convex polygon, or `None` if it has no area.
 fn centroid(polygon: &[DVec2]) -> Option<(f64, DVec2)> {
     let first = *polygon.first()?;
     let (mut twice, mut sum) = (0.0, DVec2::ZERO);
@@ -405,8 +409,8 @@ mod tests {
         patch.finished(0.0, 0.0)
     }
 
-    /// Triangles in parallel planes that have a vector for a normal which is not a number of this kind, the
-    /// second's shadow all of the first's, a part of it, or around it: areas are known in fractions.
+    /// Triangles in parallel planes whose unit normal has no floating-point representation. The second one's
+    /// projection covers the first, a part of it, or more. The areas are known as fractions.
     #[test]
     fn areas_lie_within_their_bounds() {
         let mut random = Random::new(5);
@@ -455,7 +459,7 @@ mod tests {
         assert!(contact(&low, &facing_away, 0.02).is_none());
     }
 
-    /// A sheet of squares of a grid, of which some are left out, each two facets.
+    /// Returns a sheet of the squares of a grid, each of two facets, with some squares left out.
     fn sheet(random: &mut Random, place: impl Fn(DVec2) -> DVec3, turned: bool) -> Solid {
         const SIDE: usize = 7;
         let at = |k: usize| DVec2::new((k % SIDE) as f64, (k / SIDE) as f64);
@@ -475,8 +479,8 @@ mod tests {
         Solid::from_open_mesh(&vertices, &faces).expect("a sheet")
     }
 
-    /// Sheets with holes face to face, in any plane, on grids that agree, are turned, or lie anyhow: the sweep finds the
-    /// area, its middle and its corners as all pairs of facets do.
+    /// Sheets with holes face each other, in any plane, on equal, rotated or arbitrary grids. The sweep finds the
+    /// same area, centroid and corners as all pairs of facets.
     #[test]
     fn faces_have_in_common_what_their_facets_have() {
         let mut random = Random::new(8);
@@ -533,8 +537,8 @@ mod tests {
         }
     }
 
-    /// Discs of a thousand long thin facets, all from one corner, which is another one of the other disc: as many pieces as
-    /// rims, not as pairs of facets that cross.
+    /// Discs of a thousand thin facets that share a corner, a different one in each disc. The number of pieces is
+    /// proportional to the boundary edges, not to the pairs of facets that cross.
     #[test]
     fn slivers_that_cross_are_not_held_against_each_other() {
         const SIDES: u32 = 1_000;

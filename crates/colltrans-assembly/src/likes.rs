@@ -1,9 +1,10 @@
-//! Parts that are alike: one shape in several places, as screws and nuts are.
+//! Identical parts: one shape in several poses, for example screws and nuts.
 //!
-//! Compared are numbers that do not depend on where a part stands: how many vertices and facets it has, its volume, its
-//! area, and its principal moments, each within what single precision may have rounded; and of a part without symmetry
-//! which of two mirror images it is. So mirror images of each other are alike if each is turned into itself, as a left-hand
-//! screw and a right-hand one, or nearly mirrors itself. It decides how a plan is ordered and told, never what is free.
+//! The comparison uses numbers that do not depend on the pose, within the rounding of single precision: the numbers
+//! of vertices and facets, the volume, the area, and the principal moments. For a part without symmetry it also uses
+//! the handedness, which distinguishes mirror images. Mirror images that are symmetric in themselves, or nearly so,
+//! count as identical, for example left-hand and right-hand screws. The result affects the order of a plan and its
+//! texts, never which directions are free.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,11 +14,10 @@ use glam::DVec3;
 use crate::inertia;
 use crate::part::Assembly;
 
-/// Numbers that differ by less than this share of the larger one are equal: some roundings of single precision, far from
-/// the origin.
+/// Relative difference below which two numbers are equal: some roundings of single precision, far from the origin.
 const EQUAL: f64 = 1e-4;
 
-/// For each part the first one, by position, that is like it; of a part that is like none before it itself.
+/// Returns for each part the index of the first identical part, which may be the part itself.
 pub fn likes(assembly: &Assembly) -> Vec<usize> {
     let shapes: Vec<Shape> = assembly.parts().iter().map(|p| Shape::of(p.solid())).collect();
     let mut seen: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
@@ -32,7 +32,7 @@ pub fn likes(assembly: &Assembly) -> Vec<usize> {
     shapes.iter().enumerate().map(first).collect()
 }
 
-/// What parts with these names are together: what their names begin with, without numbers; `None` if that is nothing.
+/// Returns the common beginning of some names without trailing numbers, or `None` if it is empty.
 pub fn common_name(names: &[&str]) -> Option<String> {
     let (first, rest) = names.split_first()?;
     let shared = rest.iter().fold(first.len(), |length, name| {
@@ -48,8 +48,8 @@ pub fn common_name(names: &[&str]) -> Option<String> {
     (!name.is_empty()).then(|| name.to_owned())
 }
 
-/// Pairs of parts of the same shapes and with the same key, as one: what is said of the first of them, and the parts of
-/// either side, increasing.
+/// Groups pairs of parts with the same shapes and key. Returns for each group the value of its first pair, and the
+/// parts of both sides in increasing order.
 pub(crate) fn pairs_alike<K: Ord, T>(
     likes: &[usize],
     all: impl Iterator<Item = ([usize; 2], K, T)>,
@@ -67,7 +67,7 @@ pub(crate) fn pairs_alike<K: Ord, T>(
     groups.into_values().collect()
 }
 
-/// What a part is compared by.
+/// The quantities by which parts are compared.
 struct Shape {
     counts: [usize; 2],
     volume: f64,
@@ -125,7 +125,7 @@ mod tests {
             let at = DVec3::new(random.unit(), random.unit(), random.unit()) * 100.0;
             let place = DAffine3::from_rotation_translation(random.rotation(), at);
             let shape = &shapes[k % 4];
-            // As a file in single precision has them.
+            // Coordinates are rounded to single precision, as in a file.
             let corner = |v: &DVec3| place.transform_point3(*v).as_vec3().as_dvec3();
             let mesh = Mesh::new(shape.vertices.iter().map(corner).collect(), shape.faces.clone());
             let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };

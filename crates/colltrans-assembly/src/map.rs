@@ -1,12 +1,13 @@
-//! The removal map of a part or group: its free travel (*room*) over the whole sphere of directions.
+//! Removal maps: the free travel of a part or group over the whole sphere of directions.
 //!
-//! What is free is the proven [`Cover`], with exact borders, where parts are closed and meet by rule; how far the
-//! group goes elsewhere is sampled on an icosahedron. Without a cover free directions are sampled too, and the map
-//! says so. Then samples are refined: triangles between a free corner and one that is
-//! not, until the border is known to the angle asked for; the surroundings of directions that go
-//! farthest, where a thin free region may hide; and the surroundings of candidate directions that are
-//! free. A candidate that is free though none of the samples around it is, is *isolated*: a tight
-//! fit. With a cover only the second is done.
+//! For closed parts without exceptions, the free directions are the proven [`Cover`] with exact borders. Travel along
+//! blocked directions is sampled on a subdivided icosahedron. Without a cover, free directions are sampled as well,
+//! and [`RemovalMap::cover`] contains the reason.
+//!
+//! Samples are refined in three places: around the directions of farthest travel, where a narrow free region may
+//! hide; around free candidate directions; and on triangles with free and blocked corners, until the border is known
+//! to the requested angle. With a cover only the first refinement is needed. A free candidate whose surrounding
+//! samples are all blocked is *isolated*, as for a tight fit.
 
 mod cover;
 #[cfg(feature = "report")]
@@ -35,15 +36,15 @@ pub use draw::{png, svg};
 pub use regions::Region;
 pub(crate) use way::way_out;
 
-/// Choices for a map.
+/// Options of a removal map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MapOptions {
-    /// At least so many samples before anything is refined.
+    /// Minimum number of samples before refinement.
     pub samples: usize,
-    /// The border of free regions is known to this angle, in radians.
+    /// Angle to which the border of free regions is refined, in radians.
     pub border: f64,
-    /// What overlaps at the start mean.
+    /// Treatment of overlaps at the start.
     pub start: StartOverlap,
 }
 
@@ -54,52 +55,54 @@ impl Default for MapOptions {
 }
 
 impl MapOptions {
-    /// The same with another [`samples`](Self::samples).
+    /// Returns the options with another number of [`samples`](Self::samples).
     #[must_use]
     pub fn with_samples(self, samples: usize) -> Self {
         Self { samples, ..self }
     }
 
-    /// The same with another [`border`](Self::border).
+    /// Returns the options with another [`border`](Self::border) angle.
     #[must_use]
     pub fn with_border(self, border: f64) -> Self {
         Self { border, ..self }
     }
 
-    /// The same with another [`start`](Self::start).
+    /// Returns the options with another treatment of overlaps at the [`start`](Self::start).
     #[must_use]
     pub fn with_start(self, start: StartOverlap) -> Self {
         Self { start, ..self }
     }
 }
 
-/// The rooms of a group over the sphere.
+/// The free travel of a group over the sphere of directions.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RemovalMap {
-    /// Positions of the parts of the group.
+    /// Indices of the parts of the group.
     pub group: Vec<usize>,
-    /// Directions and triangles.
+    /// The sampled directions and their triangles.
     pub sphere: Sphere,
-    /// The room in each direction of the sphere.
+    /// The free travel along each direction of the sphere.
     pub rooms: Vec<PartRoom>,
-    /// What is free, exactly; or why there are samples alone.
+    /// The exact free directions, or the reason why there are only samples.
     pub cover: Result<Cover, String>,
-    /// Connected sets of free directions, largest first: of the cover, if there is one, or sampled.
+    /// Connected sets of free directions, largest first; those of the cover if it exists, otherwise sampled.
     pub regions: Vec<Region>,
-    /// Free directions that lie in no region that can be seen: all around them is blocked but for less than a disc of
-    /// [`MapOptions::border`], or as far as was looked.
+    /// Free directions outside of all listed regions. Regions smaller than a disc of radius [`MapOptions::border`]
+    /// are listed here by their centre.
     pub isolated: Vec<DVec3>,
-    /// The size of the assembly, for a scale.
+    /// The diagonal of the assembly's bounding box, as a scale for pictures.
     pub size: f64,
 }
 
 impl RemovalMap {
-    /// Maps the room of a group against all parts that are not in it. The cover is of all closed parts that meet by
-    /// rule: of parts that are open, ignored, to be kept apart or overlap where they are there is none.
+    /// Computes the removal map of a group against all parts outside of it.
+    ///
+    /// The cover requires closed parts. There is none if a pair is ignored, has a minimum gap, or overlaps at the
+    /// start. `candidates` are directions that are tested in addition if there is no cover.
     ///
     /// # Errors
-    /// Cancelled.
+    /// Returns an error if the run is cancelled.
     pub fn new(
         bodies: &Bodies,
         group: &[usize],
@@ -113,7 +116,7 @@ impl RemovalMap {
         mapper.refine_farthest()?;
         let Aabb { low, high } = bodies.assembly().bounds();
         let size = (high - low).length();
-        // Smaller than the border is known: single directions.
+        // Regions smaller than the resolution of the border are listed as single directions.
         let smallest = std::f64::consts::PI * options.border * options.border;
         let group = group.to_vec();
         if let Ok(exact) = &cover {
@@ -142,7 +145,8 @@ impl RemovalMap {
         Ok(Self { group, sphere, rooms, cover, regions, isolated, size })
     }
 
-    /// The share of the sphere that is free: at least, of a cover, or as sampled.
+    /// Returns the fraction of the sphere that is free: a lower bound with a cover, an estimate from samples without
+    /// one.
     pub fn free_share(&self) -> f64 {
         if let Ok(cover) = &self.cover {
             return cover.free_share();
@@ -152,9 +156,9 @@ impl RemovalMap {
     }
 }
 
-/// Local farthest directions whose surroundings are refined, at most.
+/// Maximum number of local maxima of the travel that are refined in a round.
 const MOST_PEAKS: usize = 24;
-/// Rounds of refinement around each.
+/// Number of rounds of this refinement.
 const PEAK_ROUNDS: usize = 3;
 
 struct Mapper<'a> {
@@ -179,7 +183,7 @@ impl<'a> Mapper<'a> {
         Self { bodies, group, others, options, watch, sphere, rooms: Vec::new() }
     }
 
-    /// Asks the directions that have no room yet.
+    /// Computes the travel along the directions that have none yet.
     fn ask(&mut self) -> Result<(), AssemblyError> {
         let fresh = self.rooms_of(&self.sphere.directions[self.rooms.len()..])?;
         self.rooms.extend(fresh);
@@ -202,7 +206,7 @@ impl<'a> Mapper<'a> {
         Ok(free.map(|(d, _)| *d).collect())
     }
 
-    /// Cuts around the directions that go farther than all around them, if none of those is free.
+    /// Subdivides the triangles around local maxima of the travel, unless a neighbouring direction is free.
     fn refine_farthest(&mut self) -> Result<(), AssemblyError> {
         for _ in 0..PEAK_ROUNDS {
             let mut highest = vec![0.0_f64; self.rooms.len()];
@@ -233,8 +237,8 @@ impl<'a> Mapper<'a> {
         Ok(())
     }
 
-    /// Cuts towards free directions until the samples around them are free too, or as close as the
-    /// border is to be known.
+    /// Subdivides the triangles that contain free directions until a corner is free or the triangle is narrower than
+    /// the border angle.
     fn refine_around(&mut self, free: &[DVec3]) -> Result<(), AssemblyError> {
         loop {
             let wanted = |d: &DVec3| {
@@ -251,7 +255,7 @@ impl<'a> Mapper<'a> {
         }
     }
 
-    /// Cuts the triangles on the border of free regions.
+    /// Subdivides the triangles on the border of free regions down to the border angle.
     fn refine_border(&mut self) -> Result<(), AssemblyError> {
         loop {
             let mixed = |t: &usize| {

@@ -1,10 +1,12 @@
-//! The whole matrix: every ordered pair of parts, by direction.
+//! The contact matrix: for every direction and ordered pair of parts, whether and where the first blocks against the
+//! second.
 //!
-//! `A` moving along `d` meets `B` after as far as `B` moving along `-d` meets `A`. So of two opposite
-//! directions one is asked, and the other is its mirror image. Pairs that never meet are not stored.
+//! `A` meets `B` along `d` at the same distance as `B` meets `A` along `-d`. Therefore only one of two opposite
+//! directions is computed, and the other one is its mirror image. Pairs that never meet are not stored.
 //!
-//! Parts in a row meet in every pair. So a plan of many parts asks for *one* part in the way of another, or for what is near,
-//! best first over a tree of boxes, and for every pair only of those parts of which none leaves alone.
+//! In a row of parts every pair meets. A plan of many parts therefore computes on demand: *one* blocker of a part, or
+//! the parts nearby, by a best-first search of a tree of boxes. All pairs are computed only for parts of which none
+//! leaves alone.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -21,37 +23,37 @@ use crate::error::AssemblyError;
 use crate::rooms::PartRoom;
 use crate::watch::{Stage, Watch};
 
-/// Meetings that are kept, 130 bytes each.
+/// Maximum number of stored contacts, of 130 bytes each.
 const MOST_MEETINGS: usize = 1 << 24;
 
-/// The bits of a direction, to find it again by; both zeros are one.
+/// Returns the bits of a direction as a key. Both signs of zero have one key.
 pub(crate) fn bits(d: DVec3) -> [u64; 3] {
     d.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// One part meets another along a direction.
+/// A contact of two parts along a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
-    /// The part that moves.
+    /// Index of the moving part.
     pub moving: usize,
-    /// The part that stops it.
+    /// Index of the part that blocks it.
     pub fixed: usize,
-    /// Where; `None` if they overlap where they are.
+    /// The contact; `None` if the parts overlap at the start.
     pub stop: Option<Stop>,
 }
 
 impl Meeting {
-    /// How far it is safe to move; 0 if they overlap where they are.
+    /// Returns the proven safe travel; 0 if the parts overlap at the start.
     pub fn distance(&self) -> f64 {
         self.stop.map_or(0.0, |stop| stop.distance())
     }
 
-    /// How far the bodies go that were shrunk, or are to be kept apart: what decides who comes first.
+    /// Returns the travel of the bodies with their tolerance or gap applied. It decides which contact is first.
     pub fn displaced_distance(&self) -> f64 {
         self.stop.map_or(0.0, |stop| stop.displaced.value)
     }
 
-    /// The same meeting, as the other part sees it that moves along the opposite of `d`.
+    /// Returns the contact from the view of the other part, which moves along `-d`.
     fn mirrored(&self, d: DVec3) -> Self {
         let turn = |s: Stop| Stop {
             normal: -s.normal,
@@ -63,19 +65,19 @@ impl Meeting {
     }
 }
 
-/// Who meets whom along which directions.
+/// The contacts of all parts along a list of directions.
 ///
-/// Of many parts in a row each meets all others, so the whole has an entry for every pair. It is computed when it is first
-/// asked for ([`complete`](Self::complete)); what a plan asks of single parts is found without it.
+/// In a row of parts every pair meets, so the complete matrix has an entry for every pair. It is computed at first
+/// use ([`complete`](Self::complete)). The queries of a plan about single parts do not need it.
 #[derive(Clone)]
 pub struct Matrix<'a> {
     bodies: &'a Bodies<'a>,
     directions: Vec<DVec3>,
     among: Vec<bool>,
     start: StartOverlap,
-    /// By direction, sorted by moving and fixed part.
+    /// For each direction, the contacts sorted by moving and fixed part.
     whole: OnceLock<Arc<Vec<Vec<Meeting>>>>,
-    /// The parts among which it asks, once a room is asked for.
+    /// The parts of the matrix, for queries on demand.
     all: OnceLock<Arc<Living>>,
 }
 
@@ -95,10 +97,10 @@ impl PartialEq for Matrix<'_> {
 }
 
 impl<'a> Matrix<'a> {
-    /// Asks every ordered pair of the parts that are `true` in `among`, along unit directions.
+    /// Computes the contacts of all ordered pairs of the parts in the mask `among`, along directions of length 1.
     ///
     /// # Errors
-    /// Cancelled; more pairs meet than are kept.
+    /// Returns an error if the run is cancelled or more than 2^24 contacts would be stored.
     pub fn new(
         bodies: &'a Bodies<'a>,
         directions: &[DVec3],
@@ -111,7 +113,7 @@ impl<'a> Matrix<'a> {
         Ok(matrix)
     }
 
-    /// Asks nothing yet.
+    /// Creates a matrix that computes contacts on demand.
     pub fn on_demand(
         bodies: &'a Bodies<'a>,
         directions: &[DVec3],
@@ -122,10 +124,10 @@ impl<'a> Matrix<'a> {
         Self { bodies, directions, among, start, whole: OnceLock::new(), all: OnceLock::new() }
     }
 
-    /// Asks every ordered pair, if that has not been done yet.
+    /// Computes all contacts, unless they are computed already.
     ///
     /// # Errors
-    /// Cancelled; more pairs meet than are kept.
+    /// Returns an error if the run is cancelled or more than 2^24 contacts would be stored.
     pub fn complete(&self, watch: Watch) -> Result<(), AssemblyError> {
         if self.whole.get().is_none() {
             let whole = self.asked(MOST_MEETINGS, watch)?;
@@ -134,12 +136,13 @@ impl<'a> Matrix<'a> {
         Ok(())
     }
 
-    /// Checks whether every pair has been asked.
+    /// Checks whether all contacts are computed.
     pub fn is_complete(&self) -> bool {
         self.whole.get().is_some()
     }
 
-    /// Returns a complete matrix of at least some of the parts: this one, or one of them alone.
+    /// Returns a complete matrix that covers at least the parts of a mask: this one if it is complete, otherwise one
+    /// of these parts.
     pub(crate) fn of(&self, some: &[bool], watch: Watch) -> Result<Self, AssemblyError> {
         if self.is_complete() {
             return Ok(self.clone());
@@ -147,18 +150,18 @@ impl<'a> Matrix<'a> {
         Self::new(self.bodies, &self.directions, some, self.start, watch)
     }
 
-    /// Checks whether all of these parts are among those asked.
+    /// Checks whether the matrix covers all of these parts.
     pub(crate) fn has(&self, parts: &[usize]) -> bool {
         parts.iter().all(|&part| self.among[part])
     }
 
     fn whole(&self) -> &[Vec<Meeting>] {
-        // Nobody calls this off, and the limit is for those who can be told of it.
+        // Without a watch there is no cancellation. The limit applies only to callers that can receive its error.
         self.whole
             .get_or_init(|| Arc::new(self.asked(usize::MAX, Watch::default()).unwrap_or_default()))
     }
 
-    /// All meetings, by direction, unless they are more than `most`.
+    /// Computes all contacts for each direction. Returns an error if there are more than `most`.
     fn asked(&self, most: usize, watch: Watch) -> Result<Vec<Vec<Meeting>>, AssemblyError> {
         let Self { bodies, directions, among, start, .. } = self;
         let index: HashMap<[u64; 3], usize> =
@@ -195,22 +198,22 @@ impl<'a> Matrix<'a> {
         Ok(all)
     }
 
-    /// The directions, of length 1.
+    /// Returns the directions, of length 1.
     pub fn directions(&self) -> &[DVec3] {
         &self.directions
     }
 
-    /// The position of a direction, if it was asked.
+    /// Returns the index of a direction, or `None` if the matrix does not contain it.
     pub fn position(&self, direction: DVec3) -> Option<usize> {
         self.directions.iter().position(|d| bits(*d) == bits(direction))
     }
 
-    /// All meetings along a direction, sorted by moving and fixed part.
+    /// Returns all contacts along a direction, sorted by moving and fixed part. Computes the matrix if necessary.
     pub fn meetings(&self, direction: usize) -> &[Meeting] {
         &self.whole()[direction]
     }
 
-    /// What a part meets along a direction.
+    /// Returns the contacts of a moving part along a direction. Computes the matrix if necessary.
     pub fn of_part(&self, direction: usize, part: usize) -> &[Meeting] {
         let all = self.meetings(direction);
         let from = all.partition_point(|m| m.moving < part);
@@ -218,7 +221,8 @@ impl<'a> Matrix<'a> {
         &all[from..to]
     }
 
-    /// Returns the first of some parts that are left which a part meets along a direction, of whichever comes first.
+    /// Returns a present part that blocks a part along a direction: any one, found by the order of the search.
+    /// Returns `None` if the part is free.
     pub(crate) fn blocker(
         &self,
         direction: usize,
@@ -238,7 +242,7 @@ impl<'a> Matrix<'a> {
         bodies.first_ahead(part, d, living, meets)
     }
 
-    /// Returns the parts that are left which a part meets along a direction within a length, increasing.
+    /// Returns the present parts that block a part along a direction within a length, in increasing order.
     pub(crate) fn within(
         &self,
         direction: usize,
@@ -264,10 +268,10 @@ impl<'a> Matrix<'a> {
         found
     }
 
-    /// Asks one pair, as a whole matrix has it.
+    /// Computes the contact of one pair, equal to the entry of the complete matrix.
     fn meeting(&self, k: usize, [a, b]: [usize; 2], workspace: &mut Workspace) -> Option<Meeting> {
         let d = self.directions[k];
-        // Of two opposite directions the first one is asked.
+        // Only the first of two opposite directions is computed.
         let opposite = self.directions[..k].iter().find(|other| bits(**other) == bits(-d));
         match opposite {
             Some(&other) => meeting(self.bodies, [b, a], other, self.start, workspace)
@@ -276,7 +280,7 @@ impl<'a> Matrix<'a> {
         }
     }
 
-    /// The room of a part along a direction, against all others.
+    /// Returns the free travel of a part along a direction, against all other parts of the matrix.
     pub fn room(&self, direction: usize, part: usize) -> PartRoom {
         let key = |m: &Meeting| (m.stop.is_some(), m.displaced_distance());
         let before = |x: &Meeting, y: &Meeting| {
@@ -309,7 +313,8 @@ impl<'a> Matrix<'a> {
         }
     }
 
-    /// The matrix as CSV: a line for each ordered pair and direction that is not free.
+    /// Returns the matrix as CSV, with a line for each direction and ordered pair that meets. Computes it if
+    /// necessary.
     pub fn to_csv(&self, bodies: &Bodies) -> String {
         let parts = bodies.assembly().parts();
         let heads =

@@ -1,16 +1,14 @@
-//! Disassembly by straight moves, and turns of what is screwed: steps, what is left, and why.
+//! Disassembly plans: the removal steps, the parts that remain, and why they remain.
 //!
-//! All parts stand where they were, so what a part meets along a direction does not depend on what
-//! was taken out before: one matrix answers for every state, as the subgraph of the parts that are
-//! left. A step takes one of the smallest removable groups over all directions, in a natural order (module `order`),
-//! away from the *base* (what is fixed, or the largest part), which never moves: where a group with the base in it can
-//! leave, the others leave the other way. Each group is then taken apart by itself. Where no direction of the matrix
-//! helps, finer candidates of what is left are asked, then a sphere of samples, and then, for what is loose, that sphere
-//! refined where outcomes change. Then it is proven that no direction helps, or directions are asked of which that is
-//! not proven; and at last several moves are looked for.
+//! All parts keep their initial poses until they are removed. Which parts block a part along a direction therefore
+//! does not depend on earlier removals: the blocking graph of every state is a subgraph of one [`Matrix`]. Each step
+//! removes one of the smallest removable groups over all directions (module `order` chooses among them). The *base*
+//! never moves: the fixed parts, or else the largest part. If a removable group contains the base, the other parts
+//! move in the opposite direction. A removed group is then taken apart by itself.
 //!
-//! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
-//! looked at in a few places on its way for overlaps.
+//! If no direction of the matrix removes a group, these are tried in turn: finer candidates, samples of the sphere,
+//! samples refined for movable parts, a proof over the sphere, paths of several moves, and a turn followed by a move.
+//! Every step is replayed against the remaining parts before it is reported (module `replay`).
 
 mod bayonet;
 mod certify;
@@ -69,57 +67,62 @@ pub use step::{Leg, Step, Turn, TurnProof};
 pub use times::Times;
 pub use wanted::{Wanted, remove};
 
-/// Parts of which no group, moved as one by a translation, leaves the others: along any direction at all, where that is
-/// [proven](Self::proven), or else along any of those asked. Of several moves one after another none were found, or
-/// looked for. Parts that move at once, each its own way, may come apart all the same.
+/// Interlocked parts: no translation of a group as one body separates it from the other parts.
+///
+/// The statement holds for all directions if [`proven`](Self::proven) is set, otherwise for the tested directions.
+/// Field [`moves`](Self::moves) reports whether paths of several moves were searched. Parts that move at the same
+/// time, each in its own direction, may still come apart.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stuck {
-    /// Positions of the parts, in increasing order.
+    /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// How many different directions were asked of them.
+    /// Number of distinct directions that were tested.
     pub directions: usize,
-    /// The number of cells of the sphere in which it is proven that no translation of a group as one, in any direction,
-    /// takes it from the others. `None` where that is not proven; then nothing is known of directions not asked.
+    /// Number of cells of the sphere of directions in the proof that no group leaves the others by one translation,
+    /// in any direction. `None` without a proof; then directions that were not tested may separate the parts.
     pub proven: Option<usize>,
-    /// What is known of several moves.
+    /// Result of the search for paths of several moves.
     pub moves: Moves,
-    /// For each part, the least sets of others that hold it.
+    /// For each movable part, the smallest sets of other parts that block it.
     pub holds: Vec<Hold>,
-    /// Pairs that overlap with this fit, and so never move apart.
+    /// Pairs that overlap with this fit and therefore move as one body.
     pub overlapping: Vec<[usize; 2]>,
-    /// Whether parts that are fixed are among them.
+    /// Whether the group contains fixed parts.
     pub fixed: bool,
-    /// Whether an order, or where parts never go, is asked for of them: then all that is said is so with that.
+    /// Whether order or direction constraints concern these parts. All statements then hold under these constraints.
     pub constrained: bool,
 }
 
-/// How an assembly comes apart.
+/// A disassembly plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Plan {
-    /// What to do, in order; steps that take a group apart follow the one that took it out.
+    /// The steps in order. Steps that take a group apart follow the step that removed the group.
     pub steps: Vec<Step>,
-    /// What all else was taken away from and stays where it is: the base, or parts that stay together; nothing if parts
-    /// are left.
+    /// Parts from which all others were removed and which stay in place: the base, or parts that stay together. Empty
+    /// if parts are [left](Self::left).
     pub last: Vec<usize>,
-    /// Parts that stay: fixed, or not moved by any direction asked.
+    /// Parts that remain because they are fixed or because no tested direction moves them.
     pub left: Vec<usize>,
-    /// What does not come apart, and why.
+    /// Interlocked groups, with the reasons.
     pub stuck: Vec<Stuck>,
-    /// For each part the first one that is [like](crate::likes::likes) it.
+    /// For each part, the index of the first part with the same shape (see [`likes`](crate::likes::likes)).
     pub likes: Vec<usize>,
-    /// Of a plan for some parts, what else goes.
+    /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
+    /// parts.
     pub wanted: Option<Wanted>,
 }
 
-/// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
-/// move, finer ones. Of what is stuck it is proven, if there is a proof ([`Stuck::proven`]), that no translation of a
-/// group as one takes it from the others; parts that are open, ignored or kept apart, or very many, are not proven to be
-/// stuck.
+/// Computes a plan that takes all parts apart.
+///
+/// Uses the directions of a matrix of all parts, and finer directions for parts that those do not move. For
+/// interlocked groups, tries to prove that no translation direction separates them ([`Stuck::proven`]). The proof is
+/// not attempted for open surfaces, ignored pairs, pairs with a minimum gap, or groups of more than 40 parts.
 ///
 /// # Errors
-/// Cancelled; a direction upwards that is none; or a step does not pass its own check.
+/// Returns an error if the run is cancelled, if the up direction of the options is zero or not finite, or if a step
+/// fails its replay (a bug).
 pub fn disassemble<'a>(
     bodies: &'a Bodies<'a>,
     matrix: &Matrix<'a>,
@@ -133,11 +136,11 @@ pub fn disassemble<'a>(
     Ok(Plan { likes: likes.clone(), ..planner.plan })
 }
 
-/// Of the finer directions of what is stuck, at most so many are asked.
+/// Maximum number of finer directions that are tested for an interlocked group.
 const MOST_FINER: usize = 64;
-/// Of the parts that are stuck, a sphere is refined for at most so many.
+/// Maximum number of groups for which the sphere of samples is refined.
 const MOST_LOOSE: usize = 64;
-/// Worth a look is what can go this share of its own size along a main direction.
+/// A group counts as movable if it travels at least this fraction of its size along a main direction.
 const LOOSE: f64 = 0.125;
 
 struct Planner<'a> {
@@ -150,26 +153,26 @@ struct Planner<'a> {
     tally: Tally<'a>,
     plan: Plan,
     known: loose::Known,
-    /// Who meets whom, of all parts of which none could leave alone, once that was asked for.
+    /// The complete matrix of the remaining parts, once a state without a removable single part needed it.
     whole: Option<Matrix<'a>>,
-    /// Whether there are open surfaces among all parts.
+    /// Whether any part is an open surface.
     has_surfaces: bool,
-    /// Parts that are to come out, and nothing else if it need not.
+    /// The selected parts to remove; empty to remove all.
     wanted: &'a [usize],
-    /// Which parts may move for that, if not all.
+    /// The parts that may move, if the plan is limited to some.
     movable: Option<&'a [usize]>,
 }
 
-/// Work for the free directions of a group of which one was found, in pairs of boxes.
+/// Maximum number of box pairs visited for the free directions of a group with a known removal direction.
 const MIDDLE_LOOKS: u64 = 1_000_000;
 
-/// A group that can be taken out, and the direction.
+/// A removable group with its direction.
 struct Way {
     parts: Vec<usize>,
     direction: DVec3,
-    /// What is moved aside before, if anything is.
+    /// The path of several moves, if one move does not suffice.
     aside: Option<Aside>,
-    /// How it is turned before, and how far it goes then, if that has been looked for.
+    /// The turn before the straight move and the travel after it, if a turn is needed.
     bayonet: Option<(Leg, Bounded)>,
 }
 
@@ -179,11 +182,11 @@ impl Way {
     }
 }
 
-/// What has left a group.
+/// The parts that were removed from a group.
 struct Gone {
-    /// The step that took the group out, if it is not all parts.
+    /// The step that removed this group; `None` for the whole assembly.
     within: Option<usize>,
-    /// By part, the step that took it out.
+    /// For each removed part, the index of its step.
     steps: BTreeMap<usize, usize>,
 }
 
@@ -193,7 +196,8 @@ impl From<Choice> for Way {
     }
 }
 
-/// The best of the smallest groups that can be taken out.
+/// Returns the best of the smallest removable groups over all directions of a matrix. Returns `None` if no group may
+/// leave.
 fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice> {
     #[cfg(test)]
     GRAPHS.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
@@ -217,7 +221,7 @@ fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice
 
 #[cfg(test)]
 thread_local! {
-    /// Blocking graphs that were made.
+    /// Number of blocking graphs that were built.
     static GRAPHS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
@@ -251,14 +255,14 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// Takes all parts apart, or the wanted ones out.
+    /// Plans the removal of all parts, or of the selected ones.
     fn whole(&mut self, matrix: &Matrix<'a>) -> Result<(), AssemblyError> {
         let all: Vec<usize> = (0..self.bodies.len()).collect();
         self.plan.left = self.take_apart(&all, matrix, None)?;
         Ok(())
     }
 
-    /// Returns who meets whom of the parts that are left, at least.
+    /// Returns a complete matrix that covers at least the remaining parts. Reuses the stored one if it covers them.
     fn whole_of(
         &mut self,
         matrix: &Matrix<'a>,
@@ -271,7 +275,7 @@ impl<'a> Planner<'a> {
         Ok(self.whole.clone().unwrap_or_else(|| matrix.clone()))
     }
 
-    /// Takes a group apart; what of it is left, nothing if it comes apart wholly.
+    /// Takes a group apart. Returns the parts that remain; empty if the group comes apart completely.
     fn take_apart(
         &mut self,
         group: &[usize],
@@ -338,7 +342,7 @@ impl<'a> Planner<'a> {
                 self.explain(&left, among, (asked.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
-                    // All others are gone: what is left remains, as one.
+                    // All other parts are removed, so this group remains as the last one.
                     self.finish(left, within);
                     return Ok(Vec::new());
                 }
@@ -358,7 +362,7 @@ impl<'a> Planner<'a> {
         Ok(left)
     }
 
-    /// Takes a group out of what is left, and then apart.
+    /// Appends the step that removes a group, and then takes the group apart.
     fn take_out(
         &mut self,
         way: Way,
@@ -416,27 +420,29 @@ impl<'a> Planner<'a> {
         let wanted = |part: &usize| self.wanted.contains(part);
         let none = self.wanted.is_empty();
         if parts.len() > 1 && (none || parts.iter().any(wanted) && !parts.iter().all(wanted)) {
-            // What stays together is explained there.
+            // A group that stays together is handled by the recursive call.
             self.take_apart(&parts, matrix, Some(at))?;
         }
         Ok(())
     }
 
-    /// Whether all that was wanted has left.
+    /// Checks whether all selected parts are removed.
     fn is_out(&self, left: &[usize], within: Option<usize>) -> bool {
         let is_left = |part: &usize| left.contains(part);
         within.is_none() && !self.wanted.is_empty() && !self.wanted.iter().any(is_left)
     }
 
-    /// The last part or group, from which all else was taken away. Of a group that was taken apart it goes without
-    /// saying.
+    /// Stores the last part or group of the whole assembly. Does nothing for a group that was taken apart.
     fn finish(&mut self, left: Vec<usize>, within: Option<usize>) {
         if within.is_none() {
             self.plan.last = left;
         }
     }
 
-    /// The steps that took away what a group meets along its way, and the one that took the group out which it is of.
+    /// Returns the steps that must precede the removal of a group, in increasing order.
+    ///
+    /// These are the step that removed the enclosing group, the steps demanded by order constraints, and the steps
+    /// that removed parts in the way. A path of several moves must follow all earlier steps of its group.
     fn after(
         &self,
         group: &[usize],
@@ -474,7 +480,7 @@ impl<'a> Planner<'a> {
         after
     }
 
-    /// The surfaces of a group, and of what is left where the boxes of the group pass.
+    /// Returns the open surfaces of a group and those remaining ones whose boxes lie ahead of the group.
     fn surfaces(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
         let passed = |&part: &usize| self.bodies.ahead(part, direction).into_iter().map(|x| x.1);
         if !self.has_surfaces {
@@ -490,8 +496,8 @@ impl<'a> Planner<'a> {
         found
     }
 
-    /// A way along directions that the matrix does not have: of contacts of these parts, then of the
-    /// sphere. Adds them to those asked.
+    /// Searches for a removable group along directions that the matrix lacks: finer candidates first, then samples of
+    /// the sphere, then refined samples. Adds the tested directions to `asked`.
     fn search_finer(
         &mut self,
         order: &Order,
@@ -532,8 +538,9 @@ impl<'a> Planner<'a> {
         self.search_refined(order, left, matrix)
     }
 
-    /// A way for something loose, on a sphere that is refined where outcomes change: for single
-    /// parts and for those that overlap, and so move as one.
+    /// Searches for a removal direction of a movable group on a sphere of samples that is refined where outcomes
+    /// change. Groups are single parts, and parts that move as one because they overlap or are constrained to leave
+    /// together.
     fn search_refined(
         &self,
         order: &Order,
@@ -561,7 +568,7 @@ impl<'a> Planner<'a> {
         Ok(None)
     }
 
-    /// Whether a group can go [`LOOSE`] of its own size along a direction of the matrix.
+    /// Checks whether a group travels at least [`MIN_LOOSE_TRAVEL`] of its size along a direction of the matrix.
     fn is_loose(&self, group: &[usize], alive: &[bool], matrix: &Matrix) -> bool {
         let bounds = group.iter().map(|&k| self.bodies.bounds(k)).reduce(|a, b| a.join(&b));
         let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
@@ -572,7 +579,8 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// These parts, those that overlap, unless overlaps are ignored, or are asked to leave as one in one group.
+    /// Partitions parts into rigid groups: parts that overlap, unless the overlap is ignored, and parts that must
+    /// leave together.
     fn rigid(&self, left: &[usize]) -> Vec<Vec<usize>> {
         let mut sets = UnionFind::new(self.bodies.len());
         for &[a, b] in self.bodies.overlapping() {
@@ -591,7 +599,10 @@ impl<'a> Planner<'a> {
         groups.into_values().collect()
     }
 
-    /// A way along a direction that a proof leaves open, or the cells of a proof that there is none.
+    /// Tries to prove that no direction separates the parts. If the proof fails, tests the directions that it left
+    /// open.
+    ///
+    /// Returns the group found along such a direction, and the number of cells of a complete proof.
     fn prove(
         &mut self,
         order: &Order,
@@ -614,8 +625,10 @@ impl<'a> Planner<'a> {
         Ok((way, None))
     }
 
-    /// The best of the ways that are known of a group once one was found: that one, the opposite, and the middle of all
-    /// directions around it that are free, which is proven. If the base is in the group, the others leave the other way.
+    /// Returns the best direction for a group with a known removal direction.
+    ///
+    /// The candidates are that direction, its opposite, and the centre of the free region around it. If the base is
+    /// in the group, the other parts move instead.
     fn best_way(&self, order: &mut Order, left: &[usize], way: Way) -> Result<Way, AssemblyError> {
         let Some(parts) = order.moving(&way.parts, left) else { return Ok(way) };
         let found = if parts == way.parts { way.direction } else { DVec3::ZERO - way.direction };
@@ -633,14 +646,15 @@ impl<'a> Planner<'a> {
         Ok(order.best(&std::iter::once(group)).map_or(way, Way::from))
     }
 
-    /// The middle of the free region that a direction lies in, where there is a proof of it.
+    /// Returns the centre of the free region nearest to a direction. Returns `None` if the free directions cannot be
+    /// computed or no region is free.
     fn middle(
         &self,
         parts: &[usize],
         others: &[usize],
         direction: DVec3,
     ) -> Result<Option<DVec3>, AssemblyError> {
-        // What cannot be proven is asked as it was found.
+        // Without exact free directions the found direction is used.
         let Ok(removal) = Removal::among(self.bodies, parts, others) else { return Ok(None) };
         let options = FreeOptions::DEFAULT.with_looks(MIDDLE_LOOKS);
         let never = AtomicBool::new(false);
@@ -654,7 +668,7 @@ impl<'a> Planner<'a> {
         Ok(around.max_by(|a, b| near(a).total_cmp(&near(b))))
     }
 
-    /// A way in several moves, or what is known of them.
+    /// Searches for a removal path of several moves. Returns the path, or else the outcome of the search.
     fn several(
         &self,
         order: &Order,
@@ -743,7 +757,7 @@ mod tests {
         let axes: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&d| [d, -d]).collect();
         let mut steps = 0;
         for round in 0..12 {
-            // Stacks, of which every other time neighbours touch; some parts are smaller.
+            // Stacks of blocks, some of them smaller. Neighbours touch in every second round.
             let gap = [1.0, 1.3][round % 2];
             let mut parts = Vec::new();
             for cell in (0..48).filter(|_| random.unit() < 0.6).collect::<Vec<usize>>() {
@@ -789,7 +803,8 @@ mod tests {
             bodies.asked.store(0, Relaxed);
             let mut single = Single::new(&bodies, &matrix, &[], &all, |_, _| true, watch).unwrap();
             assert_eq!(single.entries(), 2 * count);
-            // Taken away in any order each watches about as many as there are records in it, log n.
+            // Parts are removed in random order. The expected number of parts that each part watches in turn is about
+            // `ln n`.
             let mut left: Vec<usize> = (0..count).collect();
             while !left.is_empty() {
                 let gone = left.swap_remove(random.index(left.len()));

@@ -1,40 +1,39 @@
-//! What two parts are to each other whose contact is not like the others: pressed, screwed, soft, snapped or glued.
+//! Roles of pairs whose contact differs from the others: press fits, threads, soft parts, snap fits and glued parts.
 //!
-//! A pair has bodies of its own, which are asked of each other and of nobody else; so what a pair tolerates lets nothing
-//! else pass, and its later contacts count like all others. What is tolerated is:
+//! A pair with a role has bodies of its own, which are used only for this pair. The role affects no other pair, and
+//! later contacts of the pair still count. A pair tolerates one of these:
 //!
-//! - a *tolerance* `L`: both are shrunk by `L / 2`, as of all parts by the general one. *Press* and *soft* are words for why;
-//!   without a length it is a little more than the overlap is deep;
-//! - a *thread*: the screw is taken as its core, what of it lies on the thread is moved inwards up to where the other one
-//!   begins ([`threads`](crate::threads)). So it may be pulled out of what it is screwed into; how it is turned out, and
-//!   whether that is proven, a step of a plan says by itself ([`Turn`](crate::plan::Turn));
-//! - a *snap* by `L`: contacts that begin before the part has gone by `L` are let pass, as it bends; those that begin later
-//!   count;
-//! - *glued*: the two leave as one, and are not taken apart.
+//! - a *tolerance* `L`: both parts are shrunk by `L / 2`, like all parts with the general tolerance. *Press* and
+//!   *soft* are reasons for one. Without a length the tolerance is slightly more than the depth of the overlap;
+//! - a *thread*: the screw is replaced by its core. Vertices of its thread move inwards to where the other part
+//!   begins ([`threads`](crate::threads)), so that the screw can be pulled out. The step of a plan contains the
+//!   unscrewing motion and its proof ([`Turn`](crate::plan::Turn));
+//! - a *snap* fit of length `L`: contacts that begin within a travel of `L` are tolerated, because the part deflects;
+//! - *glued* parts: they leave as one and are not taken apart.
 
 use crate::digits::short;
 
-/// What two parts are to each other.
+/// The role of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// They overlap on purpose, by a press fit.
+    /// A press fit: the parts overlap on purpose.
     Press,
-    /// One is screwed into the other.
+    /// A thread: one part is screwed into the other.
     Thread,
-    /// One is soft: a seal, a belt.
+    /// A soft part, for example a seal or a belt.
     Soft,
-    /// One snaps over the other.
+    /// A snap fit.
     Snap,
-    /// They stay together.
+    /// Glued parts, which stay together.
     Glued,
 }
 
 impl Role {
-    /// All of them.
+    /// All roles.
     pub const ALL: [Self; 5] = [Self::Press, Self::Thread, Self::Soft, Self::Snap, Self::Glued];
 
-    /// As it is written.
+    /// Returns the name of the role in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Press => "press",
@@ -45,38 +44,38 @@ impl Role {
         }
     }
 
-    /// The role with a name.
+    /// Returns the role with a name, or `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.name() == name)
     }
 }
 
-/// What is said of a pair.
+/// The fit of a pair as specified by the user.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PairFit {
-    /// What the two are to each other, if that is said.
+    /// The role of the pair, if specified.
     pub role: Option<Role>,
-    /// A tolerance of their own.
+    /// The tolerance of the pair, if specified.
     pub tolerance: Option<f64>,
 }
 
-/// How a pair is asked, if it has a fit of its own.
+/// The contacts that a pair with a fit of its own tolerates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tolerated {
-    /// Both shrunk by half of this length.
+    /// Both parts are shrunk by half of this length.
     Within(f64),
-    /// One taken as the core of its thread, of so large a radius; the other one as it is.
+    /// One part is replaced by the core of its thread, with this radius. The other is unchanged.
     Core(f64),
-    /// Contacts that begin within this length from the start let pass.
+    /// Contacts that begin within this travel are tolerated.
     Bent(f64),
-    /// What crosses at the start let pass: no tolerance ends their overlap, or no thread was found.
+    /// Crossings at the start are tolerated, because no tolerance ends the overlap or no thread was found.
     Crossing,
-    /// They leave as one.
+    /// The parts leave as one.
     AsOne,
 }
 
 impl Tolerated {
-    /// What is let pass of two parts, in words.
+    /// Returns a description of the tolerated contacts.
     pub fn words(&self, role: Option<Role>) -> String {
         let name = role.map_or("", Role::name);
         match (self, role) {

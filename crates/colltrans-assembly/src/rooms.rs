@@ -1,13 +1,12 @@
-//! How far one part, or a rigid group, can move in one direction against all others, and what stops
-//! it.
+//! Free travel of a part, or of a group that moves as one body, along a direction against all others.
 //!
-//! The others come in the order in which their boxes are met, from a tree; the best so far is handed
-//! on, and ends the walk once the next box lies beyond it.
+//! The other parts come from a tree in the order in which their boxes are met. The best distance so far limits each
+//! query and ends the traversal once the next box lies beyond it.
 //!
-//! Where overlaps are ignored, parts that overlap are the costly ones: all of what crosses now has to
-//! be passed over. So facets that stopped the part at once along another direction are asked first
-//! (`Witnesses`), and once something stops it within `Bodies::noise`, no more of those that it
-//! overlaps are asked: which of them stops it "at once" is a matter of the files' last digits.
+//! If overlaps are ignored, overlapping parts are the expensive ones, because all crossings at the start must be
+//! skipped. Therefore facets that stopped the part immediately along another direction are tested first
+//! ([`Witnesses`]). Once a part stops it within `Bodies::noise`, no further overlapping parts are tested. Which of
+//! them stops it first then depends only on the last digits of the file.
 
 use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
@@ -18,31 +17,31 @@ use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
 use crate::witness::Witnesses;
 
-/// The room (free travel) of a part, or of a group, in one direction.
+/// The free travel (*room*) of a part or group along a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PartRoom {
-    /// Nothing is in the way.
+    /// Nothing blocks it.
     Free,
-    /// Something is.
+    /// A part blocks it.
     Blocked {
-        /// Which part of the group is stopped.
+        /// Index of the part of the group that is stopped.
         part: usize,
-        /// By which part.
+        /// Index of the part that blocks it.
         by: usize,
-        /// How far, and where.
+        /// The travel and the contact.
         stop: Stop,
     },
-    /// It overlaps something where it is.
+    /// It overlaps another part at the start.
     Overlapping {
-        /// Which part of the group.
+        /// Index of the part of the group.
         part: usize,
-        /// With which part.
+        /// Index of the overlapped part.
         by: usize,
     },
 }
 
 impl PartRoom {
-    /// A word: free, blocked or overlapping.
+    /// Returns `free`, `blocked` or `overlapping`.
     pub const fn outcome(&self) -> &'static str {
         match self {
             Self::Free => "free",
@@ -51,7 +50,7 @@ impl PartRoom {
         }
     }
 
-    /// How far it is safe to move: infinite if free, 0 if overlapping.
+    /// Returns the proven safe travel: infinite if free, 0 if overlapping.
     pub const fn distance(&self) -> f64 {
         match self {
             Self::Free => f64::INFINITY,
@@ -60,7 +59,7 @@ impl PartRoom {
         }
     }
 
-    /// How far the bodies go that were shrunk, or are to be kept apart: what decides who comes first.
+    /// Returns the travel of the bodies with their tolerance or gap applied. It decides which contact is first.
     pub const fn displaced_distance(&self) -> f64 {
         match self {
             Self::Blocked { stop, .. } => stop.displaced.value,
@@ -68,12 +67,12 @@ impl PartRoom {
         }
     }
 
-    /// Whether nothing is in the way.
+    /// Checks whether nothing blocks the part.
     pub const fn is_free(&self) -> bool {
         matches!(self, Self::Free)
     }
 
-    /// The part that is in the way.
+    /// Returns the part that blocks or overlaps, or `None` if the part is free.
     pub const fn by(&self) -> Option<usize> {
         match self {
             Self::Free => None,
@@ -82,11 +81,12 @@ impl PartRoom {
     }
 }
 
-/// The room of a group of parts that move as one, against `others` (all that are `true`).
+/// Computes the free travel of a group that moves as one body along a direction, against the parts in the mask
+/// `others`.
 ///
-/// Of several stops at one distance the first part of the group, and the lowest number of the
-/// others, is named. With [`StartOverlap::Ignore`], of those parts that a part overlaps and that stop
-/// it within four times [`Fit::negligible`](crate::Fit), one is named, with its distance.
+/// Of several contacts at one distance, the result names the first part of the group and the lowest index of the
+/// others. With [`StartOverlap::Ignore`], of several overlapping parts that stop a part within four times
+/// [`Fit::negligible`](crate::Fit), the result names one, with its distance.
 pub fn room_of(
     bodies: &Bodies,
     group: &[usize],
@@ -111,7 +111,7 @@ fn room_with(
     for &part in group {
         let ahead = bodies.ahead(part, d);
         if start == StartOverlap::Ignore && best.displaced_distance() > bodies.noise() {
-            // What is farther away cannot overlap.
+            // Parts farther away cannot overlap.
             let near = ahead.iter().take_while(|x| x.0 <= bodies.noise()).map(|x| x.1);
             let mut near = near.filter(|&by| others[by] && !group.contains(&by));
             let noise = bodies.noise();
@@ -131,7 +131,7 @@ fn room_with(
             if !others[by] || group.contains(&by) || (overlapping && at_once) {
                 continue;
             }
-            // Of equal distances only those are let through that would be named instead.
+            // Of equal distances, only contacts that the result would name instead are accepted.
             let before = match best {
                 PartRoom::Blocked { part: p, by: b, stop } if (part, by) < (p, b) => {
                     Some(stop.displaced.value.next_up())
@@ -162,13 +162,13 @@ fn room_with(
     best
 }
 
-/// Directions that are asked of a part one after another.
+/// Number of directions that one task processes for a part.
 const CHUNK: usize = 64;
 
-/// The rooms of every part in every direction (rows: parts), against all others.
+/// Computes the free travel of every part (rows) along every direction, against all others.
 ///
 /// # Errors
-/// Cancelled.
+/// Returns an error if the run is cancelled.
 pub fn rooms(
     bodies: &Bodies,
     directions: &[DVec3],
@@ -181,7 +181,7 @@ pub fn rooms(
         let blocks: Result<Vec<Vec<PartRoom>>, AssemblyError> = directions
             .par_chunks(CHUNK)
             .map_init(Workspace::default, |workspace, chunk| {
-                // They belong to a chunk: so the answer is the same on any number of threads.
+                // The witnesses belong to a chunk, so that results do not depend on the number of threads.
                 let mut witnesses = Witnesses::default();
                 let mut room = |d: &DVec3| {
                     room_with(bodies, &[part], &all, *d, start, workspace, &mut witnesses)

@@ -1,7 +1,7 @@
-//! Directions: of length 1, the angle between two, and samples spread over the sphere: an icosahedron, its triangles halved as often as wanted.
+//! Directions on the unit sphere: normalisation, angles, and samples by subdivision of an icosahedron.
 //!
-//! Every vertex is the normalised middle of an edge, so the same edge gives the same bits whichever
-//! triangle asks.
+//! Invariant: a vertex is the normalised midpoint of an edge, and is stored once for each edge. Adjacent triangles
+//! share its bits.
 
 use std::collections::HashMap;
 
@@ -9,12 +9,12 @@ use glam::DVec3;
 
 use crate::error::AssemblyError;
 
-/// Triangles over the sphere, in a hierarchy.
+/// A hierarchy of triangles that covers the sphere.
 #[derive(Debug, Clone)]
 pub struct Sphere {
-    /// Directions of length 1.
+    /// The vertices, directions of length 1.
     pub directions: Vec<DVec3>,
-    /// Triangles, the 20 of the icosahedron first.
+    /// The triangles; the first 20 are those of the icosahedron.
     pub triangles: Vec<Triangle>,
     middles: HashMap<[u32; 2], u32>,
 }
@@ -22,14 +22,14 @@ pub struct Sphere {
 /// A spherical triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Triangle {
-    /// Its corners, counter-clockwise from outside.
+    /// Indices of its corners, counter-clockwise from outside.
     pub corners: [u32; 3],
-    /// The first of its four parts, which lie one after another; 0 if it is not cut.
+    /// Index of the first of its four consecutive parts; 0 if it is not subdivided.
     pub parts: u32,
 }
 
 impl Sphere {
-    /// The icosahedron, each triangle cut into four `levels` times: `10 * 4^levels + 2` directions.
+    /// Builds the icosahedron with each triangle subdivided `levels` times. It has `10 * 4^levels + 2` directions.
     pub fn new(levels: u32) -> Self {
         let (directions, corners) = icosahedron();
         let triangles = corners.iter().map(|&corners| Triangle { corners, parts: 0 }).collect();
@@ -43,7 +43,7 @@ impl Sphere {
         sphere
     }
 
-    /// At least `count` directions, as few as there are.
+    /// Builds the coarsest sphere with at least `count` directions, up to 9 levels.
     pub fn with_directions(count: usize) -> Self {
         let mut levels = 0;
         while 10 * 4_usize.pow(levels) + 2 < count && levels < 9 {
@@ -52,12 +52,12 @@ impl Sphere {
         Self::new(levels)
     }
 
-    /// Triangles that are not cut.
+    /// Returns the triangles that are not subdivided.
     pub fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.triangles.len()).filter(|&t| self.triangles[t].parts == 0)
     }
 
-    /// Cuts a triangle into four, if it is not cut.
+    /// Subdivides a triangle into four, unless it is subdivided already.
     pub fn cut(&mut self, triangle: usize) {
         if self.triangles[triangle].parts != 0 {
             return;
@@ -80,7 +80,7 @@ impl Sphere {
         index
     }
 
-    /// The uncut triangle that a direction points through, and the weights of its corners.
+    /// Returns the undivided triangle that contains a direction, and the barycentric weights of its corners.
     pub fn locate(&self, d: DVec3) -> (usize, DVec3) {
         let nearest = |range: std::ops::Range<usize>| {
             range
@@ -100,17 +100,17 @@ impl Sphere {
         let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
         let weights = DVec3::new(d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
         let sum = weights.element_sum();
-        // Behind the triangle's plane: nothing is farther away.
+        // Directions on the opposite side get weights below all others.
         if sum > 0.0 { weights / sum } else { DVec3::splat(-1e9) }
     }
 
-    /// The angle of a triangle's longest side, in radians.
+    /// Returns the angle of a triangle's longest side, in radians.
     pub fn widest(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
         angle(a, b).max(angle(b, c)).max(angle(c, a))
     }
 
-    /// The solid angle of a triangle.
+    /// Returns the solid angle of a triangle.
     pub fn area(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
         let volume = a.dot(b.cross(c));
@@ -118,10 +118,10 @@ impl Sphere {
     }
 }
 
-/// A direction of length 1; axes stay as they are.
+/// Returns the direction with length 1. Directions of axes keep their exact components.
 ///
 /// # Errors
-/// It is zero, not finite or out of range.
+/// Returns an error if the direction is zero, not finite or out of range.
 pub fn unit(direction: DVec3) -> Result<DVec3, AssemblyError> {
     let scale = direction.abs().max_element();
     let sound = scale.is_finite() && scale >= colltrans::MIN_MAGNITUDE;
@@ -130,7 +130,7 @@ pub fn unit(direction: DVec3) -> Result<DVec3, AssemblyError> {
     scaled.try_normalize().filter(|d| d.is_finite()).ok_or(refused)
 }
 
-/// The angle between two unit vectors, exact for small ones too.
+/// Returns the angle between two vectors of length 1, in radians. It is accurate for small angles too.
 pub fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
@@ -145,7 +145,7 @@ fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
             directions.push(d.normalize());
         }
     }
-    // Faces: triples of neighbours, whose dot product is 1 / sqrt(5); turned outwards.
+    // Faces are triples of neighbours, whose dot product is 1 / sqrt(5), oriented outwards.
     let close = |a: usize, b: usize| directions[a].dot(directions[b]) > 0.4;
     let mut faces = Vec::with_capacity(20);
     for a in 0..12 {

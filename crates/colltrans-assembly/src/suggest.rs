@@ -1,15 +1,19 @@
-//! What overlaps may be on purpose: candidates for [roles](crate::roles), found and said, never applied silently.
+//! Suggested [roles](crate::roles) of pairs that overlap on purpose. Suggestions are reported and never applied
+//! silently.
 //!
-//! A pair has one role at most. A ring that snaps into a groove is no thread of any part, whatever helix its gap looks like:
-//! a snap is known by its name and its groove, a helix only by its shape. All others are tried in the order that follows.
+//! Two overlapping parts are classified in this order:
 //!
-//! Two parts that overlap are, in this order: *soft*, if one of them is called so; a *thread*, if there is a helix; round,
-//! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
-//! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
-//! for which there may be a tolerance. A ring that is called circlip, or the like, *snaps* into the groove of a part that
-//! stops it either way. Of parts that do not come apart threads with play are found, too, which do not overlap. Nothing is
-//! proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as one: with a tolerance that
-//! lets them pass they would slip through what holds them.
+//! 1. *soft*, if the name of one says so;
+//! 2. a *thread*, if a helix is found. Rings that snap into a groove are excluded, because their gap may look like a
+//!    helix;
+//! 3. round, if one part lies in the other about an axis along their common length. This is a *press* fit if the
+//!    inner vertices lie farther out than the outer ones, otherwise chord errors of two tessellations;
+//! 4. a shallow overlap, for which a tolerance is suggested.
+//!
+//! A ring with a name such as circlip *snaps* into the groove of a part that stops it in both directions. Threads
+//! with play are searched among interlocked parts. A pair gets at most one role. None of this is proven. Deeper
+//! overlaps, such as balls in rings that are drawn too tight, get no suggestion: with a tolerance they would slip
+//! through their blockers.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,32 +33,33 @@ use crate::roles::{PairFit, Role};
 use crate::start::{Overlap, Start};
 use crate::threads::{Round, Thread};
 
-/// A part is soft if its name has one of these.
+/// Words in the names of soft parts.
 const SOFT: [&str; 8] =
     ["o-ring", "oring", "o_ring", "seal", "gasket", "belt", "rubber", "grommet"];
-/// A ring that snaps into a groove has one of these.
+/// Words in the names of rings that snap into a groove.
 const SNAPS: [&str; 7] =
     ["circlip", "snap ring", "snap_ring", "snapring", "retaining ring", "retaining_ring", "e-clip"];
-/// Facets of a round part of 16 sides lie so far inside of it, as a share of its thickness: what overlaps by more overlaps in
-/// the model, and what moves apart then need not be what is built.
+/// Maximum depth of a shallow overlap as a fraction of the thickness of both parts. This is the chord error of a
+/// round part of 16 sides. Deeper overlaps belong to the model, and a plan that ignores them need not apply to the
+/// real parts.
 const FACETS: f64 = 0.01;
-/// A tolerance beyond the depth of an overlap.
+/// Factor by which a tolerance exceeds the depth of an overlap.
 const BEYOND: f64 = 1.05;
 
-/// What two parts may be to each other.
+/// A suggested fit of a pair.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Suggestion {
-    /// Positions of the parts, the smaller first.
+    /// Indices of the parts, the smaller first.
     pub parts: [usize; 2],
-    /// What would be said of them.
+    /// The suggested fit.
     pub fit: PairFit,
-    /// What speaks for it.
+    /// The reason.
     pub why: String,
 }
 
-/// What speaks for a role or a tolerance of pairs that overlap with the fit of the bodies, and of rings that snap into a
-/// groove, of which nothing is said.
+/// Returns suggestions for pairs without a specified fit: pairs that overlap with the fit of the bodies, and rings
+/// that snap into a groove.
 pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
     let is_unsaid = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
     let snaps = snaps(bodies);
@@ -64,12 +69,13 @@ pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
     let unsaid = start
         .remaining()
         .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
-        // What is no more than nearer than the length to keep does not overlap.
+        // Pairs that only violate the minimum gap do not overlap.
         .filter(|o| !matches!(bodies.fit(), Fit::Apart(_)) || o.depth != Some(0.0));
     unsaid.filter_map(|overlap| suggestion(bodies, &rings, overlap)).chain(snaps.clone()).collect()
 }
 
-/// Finds rings by their names, each with the part in whose groove it is: that stops it either way along its axis at once.
+/// Finds rings by their names, each with the part in whose groove it lies. This part stops the ring in both
+/// directions along its axis, within its thickness.
 fn snaps(bodies: &Bodies) -> Vec<(usize, Suggestion)> {
     let parts = bodies.assembly().parts();
     let mut found = Vec::new();
@@ -152,7 +158,7 @@ fn suggestion(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> Op
     said(None, tolerance, "a shallow overlap".into())
 }
 
-/// The thread of two parts and its pitch, if there is a helix.
+/// Returns the thread of two parts and its pitch, or `None` if there is no helix.
 fn helix(solids: [&Solid; 2]) -> Option<(Thread, f64)> {
     let thread = Thread::of(solids)?;
     Some((thread, thread.pitch?))
@@ -164,12 +170,13 @@ fn helix_words(thread: &Thread, pitch: f64) -> String {
     format!("a helix of pitch {}{hand}, between radii of {hole} and {crest}", short(pitch.abs()))
 }
 
-/// Threads with play among parts that do not come apart: of pairs that do not overlap, and of which nothing is said. One is all
-/// around the helix of the other, and stops it either way along its axis within a turn. Rings that snap into a groove are
-/// left out.
+/// Returns the threads with play among interlocked parts, for pairs that do not overlap and have no specified fit.
+///
+/// One part surrounds the helix of the other, and stops it in both directions along its axis within one turn. Rings
+/// that snap into a groove are excluded.
 ///
 /// # Errors
-/// Too many parts lie within each other's boxes.
+/// Returns an error if the boxes of too many parts overlap.
 pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>, AssemblyError> {
     let among = bodies.mask(stuck);
     let mut pairs = bodies.neighbours(0.0)?;
@@ -188,7 +195,8 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
         };
         let mut held =
             |axis: DVec3, within| stops(axis, within) && stops(DVec3::ZERO - axis, within);
-        // What is screwed in goes no way at all; a helix is not looked for where something does.
+        // A screwed part cannot move along any axis. Pairs with a free axis are skipped, so that no helix is
+        // searched.
         if !DVec3::AXES.into_iter().all(|axis| held(axis, f64::INFINITY)) {
             return None;
         }
@@ -202,10 +210,10 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
     Ok(found.collect())
 }
 
-/// The assembly with what is suggested, and a note of each.
+/// Returns the assembly with all suggestions applied, and a note for each.
 ///
 /// # Errors
-/// As [`Assembly::with_pair`].
+/// Returns the errors of [`Assembly::with_pair`].
 pub fn applied(
     mut assembly: Assembly,
     suggestions: &[Suggestion],
@@ -220,7 +228,7 @@ pub fn applied(
     Ok(assembly)
 }
 
-/// In words; pairs of parts of the same shapes as one.
+/// Returns descriptions of the suggestions. Pairs of identical parts are combined.
 pub fn told(assembly: &Assembly, suggestions: &[Suggestion]) -> Vec<String> {
     let likes = likes(assembly);
     let mut groups: BTreeMap<([usize; 2], Option<Role>), Vec<&Suggestion>> = BTreeMap::new();

@@ -1,26 +1,26 @@
-//! Progress of a run for an observer, and a flag that cancels it.
+//! Progress reports of a run to an observer, and cancellation by a flag.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::error::AssemblyError;
 
-/// What is being done.
+/// A stage of the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// Overlaps at the start.
     Start,
-    /// Who touches whom.
+    /// Contacts between parts.
     Liaisons,
-    /// Rooms and blocking, by direction.
+    /// Free travel and contacts along directions.
     Rooms,
     /// The plan.
     Plan,
-    /// A removal map.
+    /// Removal maps.
     Map,
 }
 
 impl Stage {
-    /// A word for people.
+    /// Returns a short name for users.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Start => "overlaps",
@@ -32,10 +32,10 @@ impl Stage {
     }
 }
 
-/// Called with what is being done, how much of it is done, and how much there is.
+/// Callback with the stage, the number of finished items and their total number.
 pub(crate) type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 
-/// An observer of a run: none, by default.
+/// Observer of a run. The default neither reports nor cancels.
 #[derive(Clone, Copy, Default)]
 pub struct Watch<'a> {
     cancel: Option<&'a AtomicBool>,
@@ -43,19 +43,20 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Work ends with [`AssemblyError::Cancelled`] soon after the flag is set.
+    /// Returns a watch with a cancellation flag. Work ends with [`AssemblyError::Cancelled`] soon after the flag is
+    /// set.
     #[must_use]
     pub const fn with_cancel(self, cancel: &'a AtomicBool) -> Self {
         Self { cancel: Some(cancel), ..self }
     }
 
-    /// Calls back, from any thread, in no certain order.
+    /// Returns a watch with a progress callback. It is called from any thread and in no particular order.
     #[must_use]
     pub const fn with_progress(self, progress: Progress<'a>) -> Self {
         Self { progress: Some(progress), ..self }
     }
 
-    /// What is set to cancel.
+    /// Returns the cancellation flag, or `None` if the run cannot be cancelled.
     pub(crate) const fn flag(&self) -> Option<&'a AtomicBool> {
         self.cancel
     }
@@ -65,7 +66,7 @@ impl<'a> Watch<'a> {
         if cancelled { Err(AssemblyError::Cancelled) } else { Ok(()) }
     }
 
-    /// Counts up to `total`.
+    /// Starts a stage with a total number of items.
     pub(crate) fn stage(&self, stage: Stage, total: usize) -> Tally<'a> {
         let tally = Tally { watch: *self, stage, total, done: AtomicUsize::new(0) };
         tally.tell(0);
@@ -73,7 +74,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Work of one stage.
+/// Progress of one stage.
 pub(crate) struct Tally<'a> {
     watch: Watch<'a>,
     stage: Stage,
@@ -82,7 +83,7 @@ pub(crate) struct Tally<'a> {
 }
 
 impl Tally<'_> {
-    /// One more is done; or it is to end.
+    /// Counts a finished item. Returns an error if the run is cancelled.
     pub(crate) fn step(&self) -> Result<(), AssemblyError> {
         self.tell(self.done.fetch_add(1, Ordering::Relaxed) + 1);
         self.watch.check()

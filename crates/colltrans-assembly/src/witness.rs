@@ -1,9 +1,9 @@
-//! Pairs of facets that met, kept to be asked again.
+//! Memory of facet pairs that met, so that they are tested again first.
 //!
-//! What blocks is a pair of facets, whatever else the bodies have: if the pair blocks along another
-//! direction, so do the bodies, there or earlier. A cast of two facets costs about a hundredth of one
-//! of two bodies, and what stopped a part along one direction stops it along many. So where it is
-//! enough to know that something is in the way, known pairs are asked first. They never say "free".
+//! A pair of facets that blocks along another direction also blocks the bodies there, at this distance or earlier. A
+//! cast of two facets costs about a hundredth of a cast of two bodies. A pair that stops a part along one direction
+//! stops it along many. If only the existence of a blocker matters, known pairs are tested first. They never prove
+//! that a direction is free.
 
 use std::collections::HashMap;
 
@@ -12,24 +12,24 @@ use glam::DVec3;
 
 use crate::bodies::{Bodies, Room, Stop};
 
-/// Facets of two parts that met along some direction.
+/// A pair of facets that met along some direction.
 struct Witness {
     triangles: [u32; 2],
     /// The contact normal.
     normal: DVec3,
 }
 
-/// Kept for an ordered pair of parts, at most.
+/// Maximum number of facet pairs that are stored for an ordered pair of parts.
 const MOST: usize = 24;
-/// Cosine below which a contact is not asked again: along it, it hardly blocks.
+/// Cosine between normal and direction below which a pair is not tested, because it hardly blocks there.
 const ASKEW: f64 = 0.02;
 
-/// Facets that met, by ordered pairs of parts.
+/// The facet pairs that met, for each ordered pair of parts.
 #[derive(Default)]
 pub(crate) struct Witnesses(HashMap<[usize; 2], Vec<Witness>>);
 
 impl Witnesses {
-    /// Keeps the facets of a stop.
+    /// Stores the facets of a contact.
     pub(crate) fn keep(&mut self, pair: [usize; 2], stop: &Stop) {
         let kept = self.0.entry(pair).or_default();
         if kept.len() >= MOST || kept.iter().any(|w| w.triangles == stop.triangles) {
@@ -38,7 +38,7 @@ impl Witnesses {
         kept.push(Witness { triangles: stop.triangles, normal: stop.normal });
     }
 
-    /// A stop along `d` not beyond a distance, if known facets show one.
+    /// Returns a contact along `d` within a distance from the stored facets, or `None` if they give none.
     pub(crate) fn stop(
         &self,
         bodies: &Bodies,
@@ -53,7 +53,7 @@ impl Witnesses {
     }
 }
 
-/// What is kept from one question to the next, where it is asked only whether something is in the way.
+/// State that is reused between queries that only ask for the existence of a blocker.
 #[derive(Default)]
 pub(crate) struct Memory {
     workspace: Workspace,
@@ -61,7 +61,7 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    /// Whether a part ever meets another one along a unit direction.
+    /// Checks whether a part ever meets another one along a direction of length 1.
     pub(crate) fn meets(
         &mut self,
         bodies: &Bodies,
@@ -80,7 +80,7 @@ impl Memory {
         room != Room::Free
     }
 
-    /// Whether a group never meets any part that is there, and not of the group.
+    /// Checks whether a group never meets a present part outside of it.
     pub(crate) fn is_free(
         &mut self,
         bodies: &Bodies,

@@ -1,4 +1,5 @@
-//! How what is asked grows with the number of parts: counted, not timed, so that no machine disturbs it.
+//! Growth of the number of queries with the number of parts. Queries are counted, not timed, so that the load of the
+//! machine has no effect.
 
 use std::path::Path;
 use std::sync::atomic::Ordering::Relaxed;
@@ -18,18 +19,18 @@ use crate::start::Start;
 use crate::watch::Watch;
 use colltrans::Aabb;
 
-/// Along each axis.
+/// Number of cubes along each axis.
 const GRID: [usize; 3] = [20, 15, 10];
 const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
     4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
-/// 3,000 cubes two apart.
+/// Returns an assembly of 3,000 unit cubes at distances of 2.
 fn grid() -> Assembly {
     let at = |k: usize| [k % GRID[0], k / GRID[0] % GRID[1], k / GRID[0] / GRID[1]];
     cubes((0..GRID.iter().product()).map(|k| at(k).map(|x| 2 * x)))
 }
 
-/// Unit cubes at places.
+/// Returns an assembly of unit cubes at the given positions.
 fn cubes(places: impl Iterator<Item = [usize; 3]>) -> Assembly {
     let mesh = colltrans_mesh::parse(Format::Off, CUBE.into(), Path::new("cube.off")).unwrap();
     let parts = places.enumerate().map(|(k, place)| {
@@ -49,7 +50,7 @@ fn parts_in_a_row_are_planned_by_a_few_pairs_each() {
         asked();
         let found = Question::default().ask(&bodies, Watch::default()).unwrap();
         assert_eq!((found.plan.steps.len(), found.plan.last.len()), (count - 1, 1));
-        // Either way along the row one each; all leave upwards.
+        // Each part needs about one query for each direction of the row; all leave upwards.
         let asked = asked();
         assert!(asked <= 4 * count, "{asked} pairs of {count} parts");
         assert!(!found.matrix.is_complete());
@@ -67,13 +68,13 @@ fn each_step_of_a_row_looks_at_a_few_parts() {
         let (matrix, finer) = (&found.matrix, &found.candidates.finer);
         let plan = disassemble(&bodies, matrix, finer, question.options, watch).unwrap();
         assert_eq!((plan.steps.len(), plan.last.len()), (count - 1, 1));
-        // Looks at parts, pairs and nodes of the tree over the parts, which is so deep.
+        // Visits of parts, pairs and nodes of the tree over the parts, whose depth this is.
         let (looks, depth) = (bodies.looks.load(Relaxed), count.ilog2() as usize);
         assert!(looks <= 16 * count * depth, "{looks} of {count} parts");
     }
 }
 
-/// Ordered pairs of boxes of which the first meets the second along a direction, one by one.
+/// Counts the ordered pairs of boxes of which the first meets the second along a direction, by testing all pairs.
 fn pairs_ahead(boxes: &[Aabb], d: DVec3) -> usize {
     let meets = |a: &Aabb, b: &Aabb| {
         let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
@@ -101,12 +102,12 @@ fn of_3_000_parts_only_those_in_each_others_way_are_asked_about() {
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let asked = || bodies.asked.swap(0, Relaxed);
     assert_eq!(bodies.len(), 3_000);
-    // Nobody is near: nothing is asked of overlaps and contacts.
+    // No two cubes are near, so overlaps and contacts need no query.
     assert!(bodies.neighbours(0.5).unwrap().is_empty());
     assert!(Start::new(&bodies, watch).unwrap().overlaps.is_empty());
     assert!(liaisons(&bodies, watch).unwrap().is_empty());
     assert_eq!(asked(), 0);
-    // The matrix asks each pair in a row once, for both directions.
+    // The matrix computes each pair in a row once for both directions.
     let axes: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&d| [d, -d]).collect();
     let all = vec![true; 3_000];
     let start = StartOverlap::Refuse;
@@ -115,12 +116,12 @@ fn of_3_000_parts_only_those_in_each_others_way_are_asked_about() {
     assert_eq!(asked(), in_rows);
     let met: usize = (0..6).map(|k| matrix.meetings(k).len()).sum();
     assert_eq!(met, 2 * in_rows);
-    // Rooms ask the nearest, and what its box may be as near as.
+    // Free travel queries the nearest part, and parts whose boxes may be equally near.
     rooms(&bodies, &axes, start, watch).unwrap();
     let nearest = asked();
     let blocked: usize = GRID.iter().map(|n| 2 * 3_000 / n * (n - 1)).sum();
     assert!((blocked..=blocked + blocked / 10).contains(&nearest), "{nearest} of {blocked}");
-    // Aslant no more than have boxes that meet on the way.
+    // Along oblique directions, at most the pairs whose boxes meet are queried.
     let boxes: Vec<Aabb> = (0..3_000).map(|k| bodies.bounds(k)).collect();
     for d in [DVec3::new(0.6, 0.0, -0.8), DVec3::new(2.0, -3.0, 6.0) / 7.0] {
         rooms(&bodies, &[d], start, watch).unwrap();

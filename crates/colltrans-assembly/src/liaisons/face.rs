@@ -1,33 +1,33 @@
-//! Flat faces: facets in one plane, that hang together, as one.
+//! Flat faces: connected facets in one plane, and the sweep that intersects two of them.
 //!
-//! Two flat faces of many facets have as many common shadows as pairs of facets that cross, which for long thin facets are
-//! their product. So what they have in common is found by a sweep over their *rims*, the edges that only one facet of the
-//! face has: along an axis of the plane both are cut into strips, convex, between one rim and another, each strip as wide
-//! as rims there have no end; and strips of the one are held against those of the other that are at the same place.
+//! Two faces of many thin facets have about as many crossing pairs of facets as the product of their numbers.
+//! Therefore the intersection is found by a sweep over their *rims*, the edges that only one facet of the face has.
+//! Along an axis of the plane, both faces are divided into convex strips between two rims. A strip ends where a rim
+//! begins or ends. Strips of both faces at the same position are then intersected.
 //!
-//! Notation: `n` is the unit normal of a face, that of its largest facet; `x, y` are places in its plane, and the sweep is
-//! along `x`. Facets run counter-clockwise, so that inside is above a rim that runs along `x`, and below one that runs
-//! against it; where faces fold, inside is what is to be counted at least once.
+//! Notation: `n` is the unit normal of a face, that of its largest facet. `x, y` are coordinates in its plane; the
+//! sweep is along `x`. Facets are counter-clockwise, so the interior is above a rim that runs along `x` and below one
+//! that runs against it. Where a face folds over itself, points covered at least once are inside.
 
 use colltrans::{Aabb, Solid};
 use glam::{DVec2, DVec3};
 
 use super::Triangle;
 
-/// How far corners may lie beside the plane of a face, as a share of the reach of contacts.
+/// Maximum distance of corners from the plane of a face, as a fraction of the reach of contacts.
 const FLAT: f64 = 1.0 / 1024.0;
-/// Cosine of how far a facet of a face may be turned from it.
+/// Minimum cosine between the normals of a facet and its face.
 const TURNED: f64 = 0.5;
-/// No neighbour.
+/// Marks a side without a unique neighbour.
 const NONE: usize = usize::MAX;
 
-/// Facets of one plane.
+/// A face: connected facets of one plane.
 pub(super) struct Face {
-    /// The largest first.
+    /// The facets, the largest first.
     pub(super) facets: Vec<Triangle>,
     pub(super) bounds: Aabb,
     pub(super) normal: DVec3,
-    /// As their facets have them.
+    /// The boundary edges, with the orientation of their facets.
     rims: Vec<[DVec3; 2]>,
 }
 
@@ -39,7 +39,7 @@ impl Face {
         edges.sort_unstable();
         let alone = edges.chunk_by(|a, b| a.0 == b.0).filter_map(|same| {
             let turned = same.iter().filter(|(_, turned)| *turned).count();
-            // Those that run both ways are inside; of a fold more may run one way.
+            // Edges with both orientations are interior. In a fold more facets may have one orientation.
             let more = same.len().abs_diff(2 * turned);
             let ([a, b], turned) = (same[0].0.map(corner), 2 * turned > same.len());
             (more > 0).then(|| std::iter::repeat_n(if turned { [b, a] } else { [a, b] }, more))
@@ -50,7 +50,7 @@ impl Face {
         Self { facets, bounds, normal, rims }
     }
 
-    /// The faces of what lies in a region, the largest facets' first.
+    /// Returns the faces of the facets that meet a region, those of the largest facets first.
     pub(super) fn all_in(solid: &Solid, region: &Aabb, reach: f64) -> Vec<Self> {
         let corner = |v: u32| solid.vertices()[v as usize];
         let within = |t: &[u32; 3]| Aabb::of_points(t.map(corner)).meets(region);
@@ -86,7 +86,8 @@ impl Face {
         faces
     }
 
-    /// Corners of its rims, or of its facets if there are fewer.
+    /// Returns points whose convex hull contains the face: starts of its rims, or corners of its facets if these are
+    /// fewer.
     pub(super) fn corners(&self) -> impl Iterator<Item = DVec3> {
         let few = 3 * self.facets.len() < self.rims.len();
         let facets = self.facets.iter().flatten().filter(move |_| few);
@@ -94,18 +95,18 @@ impl Face {
         facets.chain(rims).copied()
     }
 
-    /// The length of its rims.
+    /// Returns the total length of its rims.
     pub(super) fn perimeter(&self) -> f64 {
         self.rims.iter().map(|[a, b]| a.distance(*b)).sum()
     }
 }
 
-/// The sides of a facet, the smaller vertex first, and whether the facet has it the other way.
+/// Returns the sides of a facet, the smaller vertex first, and whether the facet has the reversed orientation.
 fn sides([a, b, c]: [u32; 3]) -> [([u32; 2], bool); 3] {
     [[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], a > b))
 }
 
-/// Across each side the facet that has it too, if one only has.
+/// Returns for each side the other facet that has it, if there is exactly one, otherwise [`NONE`].
 fn neighbours(facets: &[[u32; 3]]) -> Vec<[usize; 3]> {
     let mut edges: Vec<([u32; 2], usize, usize)> = Vec::with_capacity(3 * facets.len());
     for (k, facet) in facets.iter().enumerate() {
@@ -123,12 +124,12 @@ fn neighbours(facets: &[[u32; 3]]) -> Vec<[usize; 3]> {
     across
 }
 
-/// Along its normal, twice its area long.
+/// Returns the normal of a triangle, with twice its area as length.
 pub(super) fn twice_area(t: &Triangle) -> DVec3 {
     (t[1] - t[0]).cross(t[2] - t[0])
 }
 
-/// What of a face lies between two rims and two places along `x`.
+/// The part of a face between two rims and two positions along `x`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Strip {
     x: [f64; 2],
@@ -137,7 +138,7 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// Its corners, counter-clockwise.
+    /// Returns its corners, counter-clockwise.
     pub(super) fn corners(&self) -> [DVec2; 4] {
         let ([l, r], low, high) = (self.x, self.low, self.high);
         [(l, low[0]), (r, low[1]), (r, high[1]), (l, high[0])].map(|(x, y)| DVec2::new(x, y))
@@ -150,11 +151,12 @@ impl Strip {
     }
 }
 
-/// A face as it is swept: its strips in the order of their places, those of one place from below.
+/// The strips of a face in the order of `x`; those of one position from below.
 pub(super) struct Swept(Vec<Strip>);
 
 impl Swept {
-    /// Within a range of `x`. `flat` is where a point is in the plane; `way` is 1, or -1 if facets run clockwise there.
+    /// Divides a face into strips within a range of `x`. `flat` returns plane coordinates of a point. `way` is 1, or
+    /// -1 if facets are clockwise in these.
     pub(super) fn new(
         face: &Face,
         flat: impl Fn(DVec3) -> DVec2,
@@ -167,7 +169,7 @@ impl Swept {
                 rim.swap(0, 1);
             }
         }
-        // From left to right; what runs along the other axis bounds nothing.
+        // Sort from left to right. Rims parallel to `y` bound nothing.
         let mut lines: Vec<([DVec2; 2], i32)> = rims
             .into_iter()
             .filter(|[a, b]| a.x != b.x)
@@ -193,7 +195,7 @@ impl Swept {
         Self(strips)
     }
 
-    /// Calls with all pairs of strips that may have something in common.
+    /// Calls a function with all pairs of strips that may intersect.
     pub(super) fn each_pair(&self, other: &Self, mut call: impl FnMut(&Strip, &Strip)) {
         let (mut first, all) = (0, &other.0);
         for own in &self.0 {
@@ -209,7 +211,7 @@ impl Swept {
     }
 }
 
-/// The strips between lines that have no end between two places.
+/// Adds the strips between lines that have no end between two positions.
 fn between(active: &[([DVec2; 2], i32)], x: [f64; 2], strips: &mut Vec<Strip>) {
     let at = |[a, b]: [DVec2; 2], x: f64| {
         let share = ((x - a.x) / (b.x - a.x)).clamp(0.0, 1.0);

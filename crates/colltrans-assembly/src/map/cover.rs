@@ -1,4 +1,4 @@
-//! What is free of a map, exactly: the proven cover of the sphere, where bodies are closed and meet by rule.
+//! Exact free directions of a removal map: a proven cover of the sphere, for closed parts without exceptions.
 
 use std::sync::atomic::AtomicBool;
 
@@ -13,27 +13,28 @@ use crate::error::AssemblyError;
 use crate::free::Removal;
 use crate::watch::Watch;
 
-/// Pairs of boxes that are looked at for a map, at most.
+/// Maximum number of box pairs that are visited for a map.
 const LOOKS: u64 = 5_000_000;
 
-/// The directions that are free, exactly, and what is not known.
+/// The exact free directions, and the undecided cells.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Cover {
-    /// As `--free` tells it: shares, regions with their corners and margins, what blocks.
+    /// The JSON record of the free directions: fractions, regions with corners and margins, and blocking facets.
     pub record: FreeRecord,
-    /// Connected regions, the largest first.
+    /// Connected regions, largest first.
     pub regions: Vec<FreeRegion>,
-    /// Arcs with no region beside them, in stretches of less than half a turn, by their ends.
+    /// Free arcs that border no region, by their ends, in pieces shorter than half a turn.
     pub arcs: Vec<[DVec3; 2]>,
-    /// Free directions with no other beside them, and those that casts found where all is not known.
+    /// Isolated free directions, and those found by casts if some cells are undecided.
     pub points: Vec<DVec3>,
-    /// Cells of which not all is known, by their corners.
+    /// Undecided cells, by their corners.
     pub undecided: Vec<[DVec3; 4]>,
 }
 
 impl Cover {
-    /// Of a group against the parts that are not in it; or why there is none.
+    /// Computes the cover of a group against all parts outside of it. The inner error is the reason why there is
+    /// none.
     pub(super) fn new(
         bodies: &Bodies,
         group: &[usize],
@@ -72,17 +73,18 @@ impl Cover {
         }))
     }
 
-    /// The share that is free, without what is not known.
+    /// Returns the fraction of the sphere that is proven free.
     pub fn free_share(&self) -> f64 {
         self.record.free_share.map_or(0.0, |share| share[0])
     }
 
-    /// The share of which nothing is known, at most.
+    /// Returns an upper bound of the undecided fraction of the sphere.
     pub fn undecided_share(&self) -> f64 {
         self.record.undecided_share.unwrap_or(1.0)
     }
 
-    /// Its regions and its single directions, of length 1; what is smaller than a solid angle is a single direction.
+    /// Returns the regions, and the single directions of length 1. Regions below the solid angle `smallest` are
+    /// reported as single directions.
     pub(super) fn told(&self, smallest: f64) -> (Vec<Region>, Vec<DVec3>) {
         let (large, small): (Vec<_>, Vec<_>) =
             self.regions.iter().partition(|region| region.area >= smallest);

@@ -1,5 +1,7 @@
-//! Removal maps as pictures, in Mollweide's projection: equal areas, the poles `+z` and `-z` at top and
-//! bottom, `+x` in the middle. What is free is drawn from the cover, with its borders, if there is one.
+//! Removal maps as pictures, in the Mollweide projection.
+//!
+//! The projection preserves areas. The poles `+z` and `-z` are at the top and bottom, `+x` is in the middle. Free
+//! directions are drawn from the cover, with exact borders, if it exists.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
@@ -11,7 +13,7 @@ use super::trace::{arcs, is_inside, outlines};
 use super::{Cover, RemovalMap};
 use crate::rooms::PartRoom;
 
-/// Colours of blocked directions, from stopped at once to stopped far away.
+/// Colours of blocked directions, from short travel to long.
 const BLOCKED: [[u8; 3]; 8] = [
     [22, 32, 72],
     [30, 55, 110],
@@ -27,7 +29,7 @@ const RIM: [u8; 3] = [140, 70, 0];
 const UNKNOWN: [u8; 3] = [120, 120, 120];
 const OVERLAP: [u8; 3] = [150, 60, 60];
 
-/// The direction at a place of the map, whose half-axes are 2 and 1; `None` outside.
+/// Returns the direction at a point of the map, an ellipse of semi-axes 2 and 1. Returns `None` outside.
 fn direction(at: DVec2) -> Option<DVec3> {
     if at.x * at.x / 4.0 + at.y * at.y >= 1.0 {
         return None;
@@ -39,12 +41,12 @@ fn direction(at: DVec2) -> Option<DVec3> {
     Some(DVec3::new(c * latitude.cos(), s * latitude.cos(), latitude.sin()))
 }
 
-/// Where a direction is on the map.
+/// Returns the point of a direction on the map.
 pub(super) fn place(d: DVec3) -> DVec2 {
     let latitude = d.z.clamp(-1.0, 1.0).asin();
     let longitude = d.y.atan2(d.x);
     let mut theta = latitude;
-    // Newton's method; at the poles the equation is flat, and its solution the latitude.
+    // Newton's method. At the poles the equation has zero slope, and its solution is the latitude.
     for _ in 0..32 {
         let slope = 2.0 + 2.0 * (2.0 * theta).cos();
         if slope < 1e-9 {
@@ -57,11 +59,11 @@ pub(super) fn place(d: DVec3) -> DVec2 {
 }
 
 impl RemovalMap {
-    /// The class of a direction: 0 to 7 blocked, 8 free, 9 overlapping.
+    /// Returns the class of a direction: 0 to 7 blocked, 8 free, 9 overlapping.
     fn class(&self, d: DVec3) -> usize {
         let (t, weights) = self.sphere.locate(d);
         let corners = self.sphere.triangles[t].corners;
-        // What is free is drawn over it, from a cover: else it is what the nearest corner is.
+        // Free regions of a cover are drawn over this, so the nearest blocked corner decides.
         let hidden = |k: &usize| self.cover.is_ok() && self.rooms[corners[*k] as usize].is_free();
         let weight = |k: usize| if hidden(&k) { -1.0 } else { weights[k] };
         let nearest = (1..3).fold(0, |best, k| if weight(k) > weight(best) { k } else { best });
@@ -74,7 +76,7 @@ impl RemovalMap {
     }
 }
 
-/// Eight steps, each twice as far as the one before, the last one from half the size on.
+/// Returns one of eight classes of distance. Each spans a factor of two, and the last one starts at half the size.
 fn step(share: f64) -> usize {
     (8.0 + share.max(1e-9).log2()).floor().clamp(0.0, 7.0) as usize
 }
@@ -91,8 +93,9 @@ fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// The map as a PNG picture of `width` times half that many pixels, transparent outside the map;
-/// isolated directions are white discs with a dark rim.
+/// Renders the map as a PNG picture of `width` by `width / 2` pixels, transparent outside of the map.
+///
+/// Isolated directions are white discs with a dark edge. The width is at least 16.
 pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
     let (width, height) = (width.max(16), width.max(16) / 2);
     let mut pixels = vec![0_u8; (width * height * 4) as usize];
@@ -124,17 +127,17 @@ pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
-    // Writing to memory fails only for sizes that do not match, which they do.
+    // Writing to memory fails only if the sizes do not match, and they match.
     if let Ok(mut writer) = encoder.write_header() {
         let _ = writer.write_image_data(&pixels);
     }
     bytes
 }
 
-/// Half as wide as arcs are in a picture, whose half-axes are 2 and 1.
+/// Half of the width of arcs in a picture with semi-axes 2 and 1.
 const ARC: f64 = 0.009;
 
-/// What a cover has at each pixel: free, or not known, which is striped.
+/// Returns the colour of the cover at each pixel: free, or undecided (striped), or `None`.
 fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
     let mut pixels = vec![None; (width * height) as usize];
     let scale = f64::from(width) / 4.0;
@@ -172,14 +175,14 @@ fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
     pixels
 }
 
-/// Cells of the map, from left to right.
+/// Number of cells of the map in each direction.
 const COLUMNS: usize = 480;
 const ROWS: usize = 240;
-/// Size of the map in the picture, and where it begins.
+/// Scale of the map in the picture, and its centre.
 const SCALE: f64 = 170.0;
 const MIDDLE: DVec2 = DVec2::new(360.0, 190.0);
 
-/// The map as an SVG picture with axes, marks and a legend.
+/// Renders the map as an SVG picture with axes, marks and a legend.
 pub fn svg(map: &RemovalMap, title: &str) -> String {
     let mut text = String::from(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -14 720 470\" \
@@ -219,7 +222,7 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     text
 }
 
-/// Closed or open lines in the picture.
+/// Returns the SVG path of closed or open lines.
 fn lines(parts: &[Vec<DVec2>], close: bool) -> String {
     let mut path = String::new();
     for part in parts {
@@ -231,7 +234,7 @@ fn lines(parts: &[Vec<DVec2>], close: bool) -> String {
     path
 }
 
-/// What a cover has: regions with their borders and centres, arcs, and what is not known, hatched.
+/// Draws a cover: regions with their borders and centres, arcs, and undecided cells (hatched).
 fn exactly(text: &mut String, cover: &Cover) {
     let rgb = hex(FREE);
     for region in &cover.regions {
@@ -277,7 +280,7 @@ fn in_picture(at: DVec2) -> DVec2 {
     MIDDLE + DVec2::new(at.x, -at.y) * SCALE
 }
 
-/// For each class, the cells of the map as runs along rows.
+/// Returns for each class the SVG path of its cells, as runs along rows.
 fn runs(map: &RemovalMap) -> Vec<String> {
     let mut paths = vec![String::new(); 10];
     let (w, h) = (4.0 * SCALE / COLUMNS as f64, 2.0 * SCALE / ROWS as f64);
@@ -303,7 +306,7 @@ fn runs(map: &RemovalMap) -> Vec<String> {
     paths
 }
 
-/// Meridians and parallels every 30 degrees.
+/// Draws meridians and parallels every 30 degrees.
 fn graticule(text: &mut String) {
     let line = |points: Vec<DVec3>| {
         let mut path = String::new();
@@ -334,7 +337,7 @@ fn graticule(text: &mut String) {
     );
 }
 
-/// Names of axes, beside dots.
+/// Draws the names of the axes, next to dots that they would hide.
 fn axes(text: &mut String, dots: &[DVec2]) {
     let names = [
         (DVec3::X, "+x"),
@@ -355,7 +358,7 @@ fn axes(text: &mut String, dots: &[DVec2]) {
         );
     };
     for (d, name) in names {
-        // Names of the poles stay inside.
+        // Names of the poles are moved inside.
         label(in_picture(place(d)) + DVec2::Y * 12.0 * d.z, name);
     }
     label(in_picture(DVec2::new(-2.0, 0.0)), "−x");
@@ -406,7 +409,7 @@ fn legend(text: &mut String, map: &RemovalMap) {
     );
 }
 
-/// A share as a percentage, small ones by their exponent.
+/// Formats a fraction as a percentage; small ones with an exponent.
 fn percent(share: f64) -> String {
     let x = 100.0 * share;
     match x {
@@ -416,7 +419,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// Three digits.
+/// Formats a number with three significant digits.
 fn rounded(x: f64) -> String {
     let digits = (2 - x.abs().max(1e-12).log10().floor() as i32).max(0) as usize;
     format!("{x:.digits$}")

@@ -1,7 +1,7 @@
-//! Connected sets of free directions.
+//! Connected sets of sampled free directions.
 //!
-//! Free corners that share an edge of an uncut triangle belong together. A triangle counts for the
-//! share of its corners that are free.
+//! Free corners that share an edge of an uncut triangle are connected. Each free corner contributes a third of the
+//! area of its triangles.
 
 use glam::DVec3;
 
@@ -11,11 +11,13 @@ use crate::sphere::Sphere;
 /// A connected set of free directions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// Its solid angle, in steradians.
+    /// Solid angle in steradians.
     pub solid_angle: f64,
-    /// Its mean direction, of length 1; one of its samples if the mean is none.
+    /// Mean direction, of length 1, or one of the samples if the mean is zero. For a region of a cover, the free
+    /// direction farthest from the border.
     pub center: DVec3,
-    /// Directions half-way between free samples and others on its rim, by angle around the centre.
+    /// Directions halfway between free and blocked samples, sorted by angle around the centre. For a region of a
+    /// cover, its corners.
     pub border: Vec<DVec3>,
 }
 
@@ -74,7 +76,7 @@ impl Gathered {
     }
 }
 
-/// Disjoint sets of numbers.
+/// Disjoint sets of indices (union-find).
 struct Sets(Vec<u32>);
 
 impl Sets {

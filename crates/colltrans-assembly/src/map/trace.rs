@@ -1,21 +1,21 @@
-//! Convex polygons, arcs and cells of directions on the plane of a map.
+//! Outlines of convex polygons, arcs and cells of directions on the plane of a map.
 //!
-//! Sides are parts of great circles, drawn in short steps. Polygons are cut along the meridian where the map ends, so
-//! each half is on one side of it.
+//! Sides are arcs of great circles, drawn in short steps. Polygons are split along the meridian at which the map
+//! ends, so that each half lies on one side of it.
 
 use glam::{DVec2, DVec3};
 
 use super::draw::place;
 
-/// Sides are drawn in steps of at most this angle, in radians.
+/// Maximum step along a side, in radians.
 const STEP: f64 = 0.03;
 
-/// The outlines of a convex polygon on the map, by its corners in order.
+/// Returns the outlines of a convex polygon on the map, given its corners in order.
 pub(super) fn outlines(corners: &[DVec3]) -> Vec<Vec<DVec2>> {
     [1.0, -1.0].into_iter().filter_map(|sign| half(corners, sign)).collect()
 }
 
-/// The part of a polygon where `y` has a sign.
+/// Returns the outline of the part of a polygon where `y` has the given sign, or `None` if it has no area.
 fn half(corners: &[DVec3], sign: f64) -> Option<Vec<DVec2>> {
     let mut kept: Vec<DVec3> = Vec::new();
     for (k, &a) in corners.iter().enumerate() {
@@ -34,18 +34,18 @@ fn half(corners: &[DVec3], sign: f64) -> Option<Vec<DVec2>> {
     Some(sides.map(|d| place(on_side(d, sign))).collect())
 }
 
-/// With a `y` of a sign, zero included.
+/// Returns the direction with its `y` clamped to the given sign.
 fn on_side(d: DVec3, sign: f64) -> DVec3 {
     DVec3::new(d.x, (d.y * sign).max(0.0) * sign, d.z)
 }
 
-/// Directions of length 1 along an arc, without its end.
+/// Returns directions of length 1 along an arc, without its end.
 fn steps(a: DVec3, b: DVec3) -> Vec<DVec3> {
     let count = (a.angle_between(b) / STEP).ceil().max(1.0) as usize;
     (0..count).map(|k| (a + (b - a) * (k as f64 / count as f64)).normalize()).collect()
 }
 
-/// An arc on the map, in parts that do not cross the meridian where it ends.
+/// Returns an arc on the map, in pieces that do not cross the meridian at which the map ends.
 pub(super) fn arcs(a: DVec3, b: DVec3) -> Vec<Vec<DVec2>> {
     let mut parts = vec![Vec::new()];
     let mut last: Option<DVec2> = None;
@@ -61,7 +61,7 @@ pub(super) fn arcs(a: DVec3, b: DVec3) -> Vec<Vec<DVec2>> {
     parts
 }
 
-/// Whether a place is inside an outline.
+/// Checks whether a point is inside an outline.
 pub(super) fn is_inside(outline: &[DVec2], at: DVec2) -> bool {
     let mut inside = false;
     for (k, p) in outline.iter().enumerate() {
@@ -77,7 +77,7 @@ pub(super) fn is_inside(outline: &[DVec2], at: DVec2) -> bool {
 mod tests {
     use super::*;
 
-    /// The area of an outline.
+    /// Returns the area of an outline.
     fn area(outline: &[DVec2]) -> f64 {
         let turn = |k: usize| outline[k].perp_dot(outline[(k + 1) % outline.len()]);
         ((0..outline.len()).map(turn).sum::<f64>() / 2.0).abs()
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn the_six_sides_of_a_cube_are_the_map() {
-        // An ellipse of half-axes 2 and 1; the map keeps areas.
+        // The map is an ellipse of semi-axes 2 and 1, and preserves areas.
         let mut whole = 0.0;
         for axis in 0..3 {
             for sign in [-1.0, 1.0] {

@@ -1,14 +1,14 @@
-//! A way out for what is loose, where no sample of the sphere is one.
+//! Search for a removal direction of a movable group that no sample of the sphere separates.
 //!
-//! Of closed parts that meet by rule all directions are known: the way out is the direction of the free regions that is
-//! farthest from a border. Of others, and where not all is decided, samples are refined.
+//! For closed parts without exceptions, all free directions are computed. The result is the free direction farthest
+//! from the border of its region. Otherwise, and if the computation leaves directions undecided, samples are refined.
 //!
-//! The triangles of the sphere are cut where outcomes change: where other parts are in the way at
-//! their corners, or at other distances. First those that are wide and reach far: a gap that leads out
-//! is a place between two obstacles, and what goes there goes far before it is stopped.
+//! Triangles of the sphere are subdivided where outcomes change: where different parts block their corners, or at
+//! different distances. Wide triangles with long travel come first, because an exit lies between two obstacles and a
+//! motion near it travels far before it is blocked.
 //!
-//! What is held closely is found to be so without its rooms: along each sample one contact that is
-//! near enough will do, and mostly it is of facets that met before ([`Witnesses`]).
+//! Closely held groups are rejected without computing their travel: one close contact along each sample is enough.
+//! Mostly this contact is between facets that met before ([`Witnesses`]).
 
 use std::sync::atomic::AtomicBool;
 
@@ -25,25 +25,26 @@ use crate::rooms::PartRoom;
 use crate::watch::Watch;
 use crate::witness::Witnesses;
 
-/// What goes less far than this share of its own size along all samples is held, not loose.
+/// A group counts as held if its travel along all samples is below this fraction of its size.
 const FAR: f64 = 0.5;
-/// And after each round some sample has to go farther by this share: a ball that rolls a little in its
-/// groove is no way out.
+/// Increase of this fraction after each round. A part that moves a little further in its groove does not continue the
+/// search.
 const FARTHER: f64 = 0.125;
-/// Distances that differ by less than this share are no change.
+/// Relative difference below which two distances are equal.
 const CHANGE: f64 = 0.1;
-/// Triangles that are cut in one round, and rounds.
+/// Maximum number of triangles that are subdivided in a round, and number of rounds.
 const CUTS: usize = 128;
 const ROUNDS: usize = 8;
-/// Triangles are cut down to this width, in radians.
+/// Minimum width of a triangle that is subdivided, in radians.
 const NARROWEST: f64 = 0.01;
 
-/// Pairs of boxes that are looked at for all directions, at most.
+/// Maximum number of box pairs that are visited for the exact free directions.
 const LOOKS: u64 = 2_000_000;
 
-/// A direction in which a group is free of `others`. `None` if there is none that can be seen; of what is not decided
-/// exactly, if there is none among those looked at, some 2,000 at most, or if the group is held too closely for a
-/// look, or for one more.
+/// Returns a direction along which a group is free of `others`.
+///
+/// If the free directions are decided exactly, `None` means that no region of free directions exists. Otherwise it
+/// means that none of the tested directions (about 2,000 at most) is free, or that the group is held too closely.
 pub(crate) fn way_out(
     bodies: &Bodies,
     group: &[usize],
@@ -79,7 +80,8 @@ pub(crate) fn way_out(
     Ok(free.map(|k| mapper.sphere.directions[k]))
 }
 
-/// The direction farthest from the borders of what is free, or that none is; nothing of what is not decided.
+/// Returns the free direction farthest from the borders of its region. The inner `None` means that there is none, the
+/// outer one that the exact computation does not decide it.
 #[expect(clippy::option_option, reason = "none at all, or not known")]
 fn exactly(
     bodies: &Bodies,
@@ -106,17 +108,17 @@ fn exactly(
 }
 
 impl Mapper<'_> {
-    /// Whether the group goes so far along any of the samples.
+    /// Checks whether the group travels at least `far` along any of the samples.
     fn reaches(&self, far: f64) -> Result<bool, AssemblyError> {
         let look = |(workspace, witnesses): &mut (Workspace, Witnesses), d: &DVec3| {
             self.watch.check().map(|()| !self.is_held(*d, far, workspace, witnesses))
         };
         let reached = self.sphere.directions.par_iter().map_init(Default::default, look);
-        // What ends the look: a direction that reaches, or a call to stop.
+        // The search ends with a direction that reaches `far` or with a cancelled run.
         reached.find_any(|r| !matches!(r, Ok(false))).unwrap_or(Ok(false))
     }
 
-    /// Whether something stops the group before it has gone so far.
+    /// Checks whether a contact stops the group before it has travelled `far`.
     fn is_held(
         &self,
         d: DVec3,
@@ -145,7 +147,7 @@ impl Mapper<'_> {
         })
     }
 
-    /// The triangles to be cut next.
+    /// Returns the triangles to subdivide next.
     fn changes(&self) -> Vec<usize> {
         let score = |t: usize| {
             let rooms = self.sphere.triangles[t].corners.map(|k| &self.rooms[k as usize]);

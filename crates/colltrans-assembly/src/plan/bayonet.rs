@@ -1,8 +1,9 @@
-//! Bayonets: where no straight moves take anything out, a turn about an axis of a part and then a straight move along it.
+//! Bayonet motions: a turn about an axis of a part, followed by a straight move along the axis.
 //!
-//! A part turns either way until something stops it, which is proven. At angles before that, even ones and others that
-//! come near the stop, it is asked whether it is free along the axis; the middle of the longest run of these is taken,
-//! and the turn up to there and the way on are proven against all that is left.
+//! They are searched if no straight moves remove anything. A part turns in either sense until a proven stop. At
+//! evenly spaced angles before the stop, and at further ones close to it, the part is tested for being free along the
+//! axis. The middle of the longest free run is chosen. The turn to this angle and the move are then proven against
+//! all remaining parts.
 
 use std::cell::Cell;
 
@@ -20,31 +21,32 @@ use crate::threads::is_round;
 use crate::watch::Watch;
 use crate::{cylinders, inertia};
 
-/// Parts among which a turn is looked for, axes of each, at most.
+/// Maximum number of parts of a group that is searched, and of axes of each part.
 const MOST_PARTS: usize = 24;
 const MOST_AXES: usize = 3;
-/// Pairs of parts of bodies that are looked at, at most, of what is stuck together; a cast counts as so many.
+/// Maximum number of visited pairs for a group, and the number of pairs for which a cast counts.
 const LOOKS: u64 = 1_000_000;
 const CAST: u64 = 500;
-/// Even angles, in a turn and at least, and those that halve the way to the stop.
+/// Number of evenly spaced angles for a full turn, their minimum number, and the number of angles that halve the
+/// distance to the stop.
 const IN_A_TURN: f64 = 360.0;
 const FEWEST: f64 = 48.0;
 const HALVES: i32 = 12;
-/// What is so round, as a share of its radius, is the same turned.
+/// Maximum deviation from a round shape, as a fraction of the radius, for which turning is pointless.
 const ROUND: f64 = 0.02;
-/// A turn that is shorter than this is none.
+/// Minimum number of turns that is considered.
 const LEAST: f64 = 1e-4;
-/// Roundings of a vertex that was turned, with those of the sums that follow.
+/// Number of rounding errors of a turned vertex and of the sums that follow.
 const SUMS: f64 = 32.0;
 
-/// A part that is turned, and then leaves.
+/// A part that is turned and then leaves.
 pub(super) struct Bayonet {
     pub(super) turn: Leg,
     pub(super) direction: DVec3,
     pub(super) travel: Bounded,
 }
 
-/// The first part of those that are left which a turn lets go.
+/// Returns the first remaining part that a turn releases. Returns `None` if no turn is found or a limit is exceeded.
 pub(super) fn search(
     bodies: &Bodies,
     order: &Order,
@@ -86,7 +88,7 @@ pub(super) fn search(
     Ok(None)
 }
 
-/// Axes of a part through its middle: of its cylinders, then of inertia.
+/// Returns axes through the middle of a part: those of its cylinders, then principal axes of inertia.
 fn axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut found: Vec<DVec3> = Vec::new();
@@ -108,7 +110,7 @@ fn axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
     found.into_iter().map(middle).collect()
 }
 
-/// A part among others.
+/// A part that may turn among others.
 #[derive(Clone, Copy)]
 struct About<'a> {
     bodies: &'a Bodies<'a>,
@@ -127,14 +129,14 @@ impl About<'_> {
         self.bodies.lets_pass(self.part, other, self.options.start)
     }
 
-    /// A turn by so many turns about an axis; not proven yet.
+    /// Returns a leg with a number of turns about an axis, without a proof.
     fn leg(&self, [point, axis]: [DVec3; 2], turns: f64) -> Leg {
         let (aside, proof) = (DVec3::ZERO, Err(String::new()));
         let turn = Turn { point, turns, phase: 0.0, aside, proof };
         Leg { parts: vec![self.part], direction: axis, travel: 0.0, turn: Some(turn) }
     }
 
-    /// The way out after a turn in one sense, along the axis.
+    /// Searches for a turn in one sense after which the part leaves along the axis.
     fn turned(&self, about: [DVec3; 2], sense: f64) -> Option<Bayonet> {
         let stop = self.stop(about, sense)?;
         if stop < LEAST {
@@ -163,11 +165,12 @@ impl About<'_> {
             first += length.max(1);
         }
         let [from, to] = longest?;
-        // If the middle is between two samples and not free, the first one is.
+        // If the middle of the run is between samples and not free, its first angle is used.
         [from.midpoint(to), from].into_iter().find_map(|turns| self.proven(about, sense * turns))
     }
 
-    /// After how many turns the part is stopped, at most one.
+    /// Returns the number of turns, at most one, before the part is stopped. Returns `None` if the motion is invalid
+    /// or a query fails.
     fn stop(&self, about: [DVec3; 2], sense: f64) -> Option<f64> {
         let mut stop = 1.0_f64;
         let motion = self.leg(about, sense).motion().ok()?;
@@ -185,7 +188,7 @@ impl About<'_> {
         Some(stop)
     }
 
-    /// Whether it is free along the axis once it is turned.
+    /// Checks whether the part is free along the axis after a number of turns.
     fn leaves(&self, about: [DVec3; 2], turns: f64) -> bool {
         let Ok(motion) = self.leg(about, turns).motion() else { return false };
         let free = |&other: &usize| {
@@ -198,7 +201,7 @@ impl About<'_> {
         self.others.iter().all(free)
     }
 
-    /// The same with the turn up to there, if all of it is proven.
+    /// Proves the turn and the move along the axis. Returns `None` if a pair is not proven free.
     fn proven(&self, about: [DVec3; 2], turns: f64) -> Option<Bayonet> {
         let mut leg = self.leg(about, turns);
         let motion = leg.motion().ok()?;

@@ -1,12 +1,13 @@
-//! A proof over the whole sphere that no group, moved as one by a translation, leaves the others along *any* direction.
-//! Parts that move at once, each its own way, are not covered.
+//! Proof that no group leaves the others by one translation in *any* direction.
 //!
-//! The sphere is cut into cells. In a cell, one part blocks another all over it if one pair of their facets, or of boxes
-//! inside them, blocks the whole cell, which is decided exactly. If such arcs make one component, no group leaves along
-//! any direction of the cell; with parts that are fixed, if every component that no arc leaves has one of them. An order
-//! that is asked for has arcs that hold everywhere. Arcs of
-//! a cell hold in its quarters. As in [`loose`](super::loose) arcs are asked as needed: out of components that none leaves, towards
-//! parts that are ahead of the middle of the cell.
+//! The proof does not cover parts that move at the same time in different directions.
+//!
+//! The sphere is divided into cells. In a cell, one part blocks another if a pair of their facets, or of boxes inside
+//! the parts, blocks all directions of the cell; this is decided exactly. If these arcs make all parts one strongly
+//! connected component, no group leaves along any direction of the cell. With fixed parts it suffices that every
+//! component without leaving arcs contains a fixed part. Arcs of order constraints hold in all cells. Arcs of a cell
+//! also hold in its quarters. Arcs are computed on demand, as in [`loose`](super::loose): from components without
+//! leaving arcs to parts ahead of them along the cell's centre.
 
 use std::collections::HashMap;
 
@@ -20,24 +21,24 @@ use crate::error::AssemblyError;
 use crate::roles::Tolerated;
 use crate::watch::Watch;
 
-/// Sides of the cube are halved no more often.
+/// Maximum number of subdivisions of a side of the cube.
 const DEEPEST: u32 = 14;
-/// Cells that are looked at, at most.
+/// Maximum number of cells that are processed.
 const MOST_CELLS: usize = 20_000;
-/// Parts, at most: memory goes with pairs.
+/// Maximum number of parts, because memory grows with the number of pairs.
 const MOST_PARTS: usize = 40;
-/// Of cells that are not proven, so many middles are handed back.
+/// Maximum number of centres of unproven cells that are returned.
 const MOST_OPEN: usize = 48;
 
-/// What came of a proof.
+/// Outcome of a proof over the sphere.
 pub(super) enum Proof {
-    /// No direction takes them apart, in so many cells.
+    /// No direction separates the parts. The value is the number of cells.
     Proven(usize),
-    /// Along some of these directions perhaps.
+    /// Not proven. Some of these directions may separate the parts.
     Open(Vec<DVec3>),
 }
 
-/// A cell, and the arcs that hold all over it.
+/// A cell with the arcs that hold in all of it.
 struct Task {
     cell: DirectionCell,
     arcs: Vec<(usize, usize)>,
@@ -47,7 +48,7 @@ struct Certifier<'a> {
     bodies: &'a Bodies<'a>,
     parts: &'a [usize],
     among: Vec<bool>,
-    /// `None` of parts that cannot be asked.
+    /// `None` for pairs that do not support the query.
     blockers: HashMap<[usize; 2], Option<CellBlocker<'a>>>,
 }
 
@@ -63,7 +64,8 @@ pub(super) fn certify(
     }
     let among = bodies.mask(parts);
     let mut certifier = Certifier { bodies, parts, among, blockers: HashMap::new() };
-    // Along -d all arcs are turned round, which leaves one component one; those of an order are not.
+    // Along `-d` all arcs are reversed, which preserves a single component, so half of the sphere suffices. Arcs of
+    // order constraints are not reversed, and fixed parts need all cells.
     let constraints = bodies.assembly().constraints();
     let all = certifier.is_any_fixed(parts) || constraints.is_ordered(&certifier.among);
     let sides = if all { 6 } else { 3 };
@@ -93,7 +95,7 @@ pub(super) fn certify(
     Ok(if open.is_empty() { Proof::Proven(cells) } else { Proof::Open(open) })
 }
 
-/// Whether all pairs stop each other as they are: closed bodies, none ignored, none kept apart.
+/// Checks whether all pairs block each other without exceptions: closed solids, no ignored pair, no minimum gap.
 fn is_plain(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
     let assembly = bodies.assembly();
     let lets_pass = |a, b| {
@@ -108,7 +110,7 @@ fn is_plain(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
 }
 
 impl<'a> Certifier<'a> {
-    /// Whether no group leaves along any direction of a cell; adds the arcs that were found.
+    /// Checks whether no group leaves along any direction of a cell. Adds the arcs that it computes to the task.
     fn holds(&mut self, task: &mut Task) -> bool {
         let middle = task.cell.center().normalize();
         let mut asked = Vec::new();
@@ -128,7 +130,8 @@ impl<'a> Certifier<'a> {
         }
     }
 
-    /// An arc from a group to a part outside that holds all over a cell.
+    /// Returns an arc from a group to a part outside that holds in the whole cell. Returns `None` if no untested pair
+    /// gives one.
     fn leaving(
         &mut self,
         group: &[usize],

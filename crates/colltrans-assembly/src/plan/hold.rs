@@ -1,6 +1,8 @@
-//! What holds parts that do not come apart, and the words for it: one table ([`Claim`]) for all texts.
+//! Explanations of interlocked groups: what blocks their parts, and the sentences about it.
 //!
-//! A proof covers translations of a *group as one*. It does not cover parts that move at once, each its own way, nor turns.
+//! All sentences about a group are made from one table ([`Claim`]), so that no text claims more than another. A proof
+//! covers translations of a *group as one body*. It covers neither turns nor parts that move at the same time in
+//! different directions.
 
 use glam::DVec3;
 
@@ -10,22 +12,22 @@ use crate::bodies::{Bodies, Fit};
 use crate::digits::short;
 use crate::matrix::Matrix;
 
-/// Least sets are listed up to this many for a part.
+/// Maximum number of smallest blocking sets that are listed for a part.
 const MOST_SETS: usize = 4;
-/// In a sentence so many parts are named, and one more.
+/// Number of names in a sentence before the rest is counted; one more is named if it is the last.
 const MOST_NAMES: usize = 3;
 
-/// The least that would have to go for a part to come out.
+/// The smallest sets of parts that block a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hold {
-    /// The part.
+    /// Index of the part.
     pub part: usize,
-    /// The smallest sets of other parts without which it is free along one of the directions asked,
-    /// each with such a direction; some, if there are many.
+    /// The smallest sets of other parts without which the part is free along a tested direction, each with such a
+    /// direction. At most 4 sets are listed.
     pub by: Vec<(Vec<usize>, DVec3)>,
 }
 
-/// Why these parts do not come apart along any direction: the least sets over those of the matrix.
+/// Builds the description of an interlocked group. The blocking sets are taken over the directions of the matrix.
 pub(super) fn explain(
     bodies: &Bodies,
     left: &[usize],
@@ -79,18 +81,18 @@ fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
     }
 }
 
-/// What is established about a stuck group, in words. Every text about such a group is made of these.
+/// The established facts about an interlocked group, as text. Every sentence about such a group is made from these.
 struct Claim {
-    /// A line above the group.
+    /// Heading of the group in a list.
     heading: &'static str,
-    /// Which motions lead nowhere, without the full stop.
+    /// The motions that separate nothing, as a sentence without its full stop.
     sentence: String,
-    /// How that is known, a sentence.
+    /// The evidence, as a sentence.
     evidence: String,
 }
 
 impl Stuck {
-    /// Returns the reason in one sentence.
+    /// Returns the reason why the parts do not come apart, in one sentence.
     pub fn reason(&self, bodies: &Bodies) -> String {
         if let Some(near) = self.near(bodies) {
             return near;
@@ -106,13 +108,13 @@ impl Stuck {
         }
     }
 
-    /// Returns the line that stands above the group in a list.
+    /// Returns the heading of the group in a list.
     pub fn heading(&self, bodies: &Bodies) -> &'static str {
         self.claim(bodies).heading
     }
 
-    /// Returns what is established. Only translations of a group as one are covered: parts that each move their own way
-    /// at the same time may come apart although no group leaves.
+    /// Returns the established facts. They cover only translations of a group as one body: parts that move at the
+    /// same time in different directions may come apart although no group leaves.
     fn claim(&self, bodies: &Bodies) -> Claim {
         let along = match (self.proven, self.directions) {
             (Some(_), _) => "in any direction".into(),
@@ -149,7 +151,8 @@ impl Stuck {
         Claim { heading, sentence, evidence }
     }
 
-    /// Which parts overlap with this fit, or are nearer than the length to keep, if any do.
+    /// Returns a sentence about the parts that overlap with this fit or violate the minimum gap. Returns `None` if
+    /// there are none.
     fn near(&self, bodies: &Bodies) -> Option<String> {
         let [first, rest @ ..] = &self.overlapping[..] else { return None };
         let names = bodies.assembly().names(first).join(" and ");
@@ -183,7 +186,7 @@ impl Stuck {
         format!("{} {}", self.reason(bodies), self.details(bodies))
     }
 
-    /// Returns how the reason is known, what it does not cover and what may help, in sentences.
+    /// Returns sentences with the evidence, its limits, and possible remedies.
     pub fn details(&self, bodies: &Bodies) -> String {
         let overlaps = !self.overlapping.is_empty();
         let Claim { sentence, evidence, .. } = self.claim(bodies);
@@ -200,7 +203,7 @@ impl Stuck {
         if self.constrained {
             said.push("What is asked of their order and directions counts.".into());
         }
-        // The reason names them all if they are few.
+        // If they are few, the reason already names them all.
         let held = self.easiest().filter(|(_, by)| overlaps || by.len() > MOST_NAMES + 1);
         if let Some((part, by)) = held {
             let names = bodies.assembly().names(by).join(", ");
@@ -212,7 +215,7 @@ impl Stuck {
         said.join(" ")
     }
 
-    /// What becomes of parts that overlap.
+    /// Returns a sentence about the treatment of overlapping parts.
     fn as_one(&self, bodies: &Bodies) -> String {
         let parts = bodies.assembly().parts();
         let open = self.parts.iter().filter(|&&part| parts[part].is_surface()).count();
@@ -230,14 +233,14 @@ impl Stuck {
         format!("Parts that {near} move as one, unless a role or a tolerance lets them pass{open}.")
     }
 
-    /// The part that the fewest others hold, and those.
+    /// Returns the part with the smallest blocking set, and this set. Returns `None` if no part is blocked.
     fn easiest(&self) -> Option<(usize, &[usize])> {
         let held = self.holds.iter().filter_map(|hold| Some((hold.part, &hold.by.first()?.0[..])));
         held.filter(|(_, by)| !by.is_empty()).min_by_key(|(_, by)| by.len())
     }
 }
 
-/// Names in a sentence, of many the first ones.
+/// Joins the names of parts for a sentence. Of many parts only the first are named.
 fn listed(bodies: &Bodies, parts: &[usize]) -> String {
     let names = bodies.assembly().names(parts);
     match &names[..] {
@@ -253,7 +256,7 @@ fn listed(bodies: &Bodies, parts: &[usize]) -> String {
 }
 
 impl Moves {
-    /// What is known of several moves, in a sentence.
+    /// Returns a sentence about the search for removal paths of several moves.
     fn words(&self) -> String {
         match self {
             Self::NotAsked(why) => {

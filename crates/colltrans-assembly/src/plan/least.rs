@@ -1,12 +1,16 @@
-//! The least that has to go for some parts to come out.
+//! The smallest set of parts whose removal takes selected parts out.
 //!
-//! Notation: `N` are parts that go, the *wanted* ones among them. `N` is *enough* if, taking away whatever of it can
-//! leave, again and again, the wanted parts have left; as what can leave stays able to leave, one try decides it. If it
-//! is not, `n` in `N` that has not left, along `k`, meets some parts outside of `N`; of whatever is enough and holds `N`,
-//! some `n` first leaves along some `k`, and all that it meets then goes too. (Did each leave along a direction in which
-//! it meets only parts of `N`, the first of them could have left with `N` alone.) So adding what one `n` meets along one
-//! `k`, of all `n` and `k` in turn, misses nothing, and of two such additions the larger one need not be tried if it holds
-//! the other. Of a subassembly that is not to be taken apart before all else is gone all else is one addition more. Sets are tried in the order of their size, so the first one that is enough is a least one.
+//! Notation: `N` is a set of parts that contains the selected ones. `N` is *sufficient* if the selected parts leave
+//! when all removable subsets of `N` are removed repeatedly. A removable subset stays removable, so one trial decides
+//! this.
+//!
+//! Branching rule: let `N` be insufficient, and `S` a sufficient superset. In a removal of `S`, some part `n` of `N`
+//! that the trial could not remove leaves along a direction `k` in which parts outside of `N` block it. (If each left
+//! along a direction in which only parts of `N` block it, the first could have left with `N` alone.) All parts that
+//! block `n` along `k` then belong to `S`. Adding these to `N`, for all `n` and `k`, misses no sufficient set. An
+//! addition that contains another one is skipped. For a subassembly that must stay whole until all other parts are
+//! gone, all other parts are one more addition. Sets are tried in order of size, so the first sufficient set is a
+//! smallest one.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
@@ -18,18 +22,21 @@ use crate::constraints::Unit;
 use crate::matrix::Matrix;
 use crate::part::Part;
 
-/// Sets that are tried, and 64-bit words that all of them may take.
+/// Maximum number of sets that are tried, and of 64-bit words that they take together.
 const MOST_SETS: usize = 20_000;
 const MOST_WORDS: usize = 1 << 22;
 
-/// Parts that are enough.
+/// A sufficient set of parts.
 pub(super) struct Enough {
     pub(super) parts: Vec<usize>,
-    /// That no fewer are, along the directions of the matrix.
+    /// Whether no smaller set suffices along the directions of the matrix.
     pub(super) least: bool,
 }
 
-/// Fewest parts with these that take them out, along the directions of a matrix; `None` if none do.
+/// Returns a smallest set that contains the selected parts and suffices to take them out along the directions of a
+/// matrix.
+///
+/// Returns `None` if no set suffices. After [`MAX_SETS`] sets the search becomes greedy, and `least` is false.
 pub(super) fn enough(bodies: &Bodies, matrix: &Matrix, wanted: &[usize]) -> Option<Enough> {
     if wanted.len() >= bodies.len() {
         return None;
@@ -47,7 +54,8 @@ pub(super) fn enough(bodies: &Bodies, matrix: &Matrix, wanted: &[usize]) -> Opti
         };
         let over = seen.len() >= MOST_SETS || seen.len() * words >= MOST_WORDS;
         if over {
-            // From here on only the smallest addition: that is quick, and need not be the least.
+            // From here on only the smallest addition is followed. This is fast, but the result need not be a
+            // smallest set.
             best = Some(set.clone());
             queue.clear();
         }
@@ -63,7 +71,7 @@ pub(super) fn enough(bodies: &Bodies, matrix: &Matrix, wanted: &[usize]) -> Opti
     None
 }
 
-/// Parts, a bit each.
+/// A set of parts, with one bit for each part.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Set(Vec<u64>);
 
@@ -99,15 +107,16 @@ impl Set {
 
 enum Tried {
     Enough,
-    /// Parts of the set that cannot leave, while those are there that are listed as `true`.
+    /// The mask of present parts when no further part of the set can leave.
     Left(Vec<bool>),
 }
 
 struct Search<'a> {
     wanted: &'a [usize],
-    /// By direction and part, whom it meets, and who has to go before it; `None` where it never goes.
+    /// For each direction and part, its blockers and the parts that must leave before it. `None` if the part must not
+    /// move along the direction.
     met: Vec<Vec<Option<Vec<usize>>>>,
-    /// Parts that leave as one.
+    /// Parts that leave as one body.
     units: &'a [Unit],
     fixed: Vec<bool>,
 }
@@ -132,7 +141,7 @@ impl<'a> Search<'a> {
         Self { wanted, met, units: constraints.units(), fixed }
     }
 
-    /// Takes away what of a set can leave, again and again.
+    /// Removes the removable subsets of a set repeatedly, and checks whether the selected parts leave.
     fn tried(&self, set: &Set) -> Tried {
         let mut there = vec![true; self.fixed.len()];
         let parts = set.parts();
@@ -169,8 +178,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The set with what one of its parts that are left meets along one direction, or waits for, the smallest first; of
-    /// those that hold another one nothing.
+    /// Returns the supersets of the branching rule, smallest first. Omits sets that contain another one.
     fn additions(&self, set: &Set, there: &[bool]) -> Vec<Set> {
         let mut found: Vec<Set> = Vec::new();
         let mut add = |parts: &mut dyn Iterator<Item = usize>| {
@@ -179,7 +187,7 @@ impl<'a> Search<'a> {
                 larger.add(part);
                 free &= !self.fixed[part];
             }
-            // Something has to stay.
+            // At least one part must stay.
             if free && larger != *set && larger.len() < there.len() && !found.contains(&larger) {
                 found.push(larger);
             }

@@ -1,14 +1,12 @@
-//! More directions for parts that none of the matrix moves: the finer candidates of these parts, then
-//! samples of the sphere.
+//! Search for removable groups along directions that the matrix does not contain.
 //!
-//! Here only one thing is asked of a direction: is there a group, not of all parts, that no arc
-//! leaves? So arcs are asked as needed. Of the arcs known, take a strongly connected component that
-//! none leaves, and ask its pairs with the parts outside: if one blocks, there is one arc more; if
-//! none does, the group is removable. Once all parts are one component there is none. For parts that
-//! hold each other, that takes about as many casts as parts, not as pairs; and most of them are of two
-//! facets that met along another direction ([`Memory`]). That changes no answer, so each thread may
-//! keep its own. Parts stay where they are while others are taken out, so what a pair does is asked
-//! once, whatever is left ([`Known`]).
+//! For one direction, the only question is whether some proper group has no arc that leaves it. Therefore arcs are
+//! computed on demand. Take a strongly connected component of the known arcs that no arc leaves, and test its pairs
+//! with parts outside. If one pair blocks, it gives one more arc. If none blocks, the group is removable. If all
+//! parts are one component, no group is removable. For interlocked parts this needs about as many casts as parts, not
+//! as pairs. Most of these are casts of two facets that met along another direction ([`Memory`]). The memory changes
+//! no answer, so each thread has its own. Results are cached across states of a plan, because parts keep their poses
+//! ([`ContactCache`]).
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
@@ -25,7 +23,7 @@ use crate::matrix::bits;
 use crate::watch::Watch;
 use crate::witness::Memory;
 
-/// What was asked: whether one part meets another, by direction.
+/// Cached contacts: for each direction, whether one part blocks another.
 #[derive(Default)]
 pub(super) struct Known(HashMap<[u64; 3], Answers>);
 
@@ -42,11 +40,11 @@ impl Known {
     }
 }
 
-/// The group of the fewest parts that can be taken out along one of the directions, and of equal ones that of the first
-/// direction; `allowed` says how many parts move for it along a direction, if it may go at all.
+/// Returns the removable group for which the fewest parts move, over some directions. Ties go to the first direction.
 ///
-/// Along `-d` all arcs are turned round, so what is one component along `d` is one along `-d`, and
-/// need not be asked, unless an order has arcs of its own, which are not.
+/// `allowed` returns the number of parts that move for a group along a direction, or `None` if it may not move.
+/// Returns `None` if no allowed group is removable. Along `-d` all arcs are reversed, so one component along `d` is
+/// one along `-d`. The opposite direction is then skipped, unless order constraints add arcs, which are not reversed.
 pub(super) fn smallest(
     bodies: &Bodies,
     directions: &[DVec3],
@@ -69,7 +67,7 @@ pub(super) fn smallest(
         for k in std::iter::once(k).chain(opposite(k)) {
             let d = directions[k];
             let search = |g: &[usize]| allowed(g, d).is_some();
-            // Each direction is looked at by one thread.
+            // Each direction is processed by one thread.
             let mut known = answers[k].lock().unwrap_or_else(PoisonError::into_inner);
             let asked = Asked { bodies, d, start, known: &mut known, memory };
             match removable(asked, &order, alive, search) {
@@ -92,10 +90,10 @@ pub(super) fn smallest(
     Ok(best.map(|((_, k), parts)| Way::straight(parts, directions[k])))
 }
 
-/// A group with how many parts move for it, and the position of its direction.
+/// The number of parts that move and the index of the direction, with the group.
 type Ranked = ((usize, usize), Vec<usize>);
 
-/// Questions along one direction.
+/// Contact queries along one direction.
 struct Asked<'a> {
     bodies: &'a Bodies<'a>,
     d: DVec3,
@@ -105,7 +103,7 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Whether one part ever meets another.
+    /// Checks whether one part ever meets another, at any distance.
     fn meets(&mut self, pair: [usize; 2]) -> bool {
         if let Some(known) = self.known.get(&pair) {
             return *known;
@@ -117,14 +115,14 @@ impl Asked<'_> {
 }
 
 enum Search {
-    /// All parts hold each other.
+    /// All parts are one component.
     OneComponent,
-    /// There are groups that could be taken out, but they are fixed.
+    /// Removable groups exist, but none is allowed to move.
     NoneAllowed,
     Found(Vec<usize>),
 }
 
-/// A group that can be taken out along a direction and is allowed to; the smallest that was come across.
+/// Searches for an allowed removable group along one direction. Smaller groups are tried first.
 fn removable(
     mut asked: Asked,
     order: &[(usize, usize)],
@@ -161,7 +159,8 @@ fn removable(
     }
 }
 
-/// An arc from the group to a part outside, of the pairs that were not asked before.
+/// Returns an arc from the group to a part outside, from pairs that were not tested before. Returns `None` if no pair
+/// blocks.
 fn leaving(
     asked: &mut Asked,
     group: &[usize],

@@ -1,24 +1,25 @@
-//! Choices.
+//! Options of a plan.
 
 use colltrans::solid::StartOverlap;
 use glam::DVec3;
 
-/// Choices for a plan.
+/// Options of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PlanOptions {
-    /// What overlaps at the start mean: parts that overlap move as one, or what they do later counts.
+    /// Treatment of overlaps at the start: overlapping parts move as one body, or only later contacts count.
     pub start: StartOverlap,
-    /// How many directions to sample for what no other direction moves; 0 for none.
+    /// Minimum number of sampled directions for parts that no other direction moves; 0 disables sampling.
     pub samples: usize,
-    /// How many moves, one after another, may take out what no single one does; 1 for none.
+    /// Maximum number of moves of a removal path; 1 disables the search for paths.
     pub legs: usize,
-    /// Whether to prove of what is stuck that no translation of a group as one takes it from the others.
+    /// Whether to try to prove that no translation separates an interlocked group.
     pub prove: bool,
-    /// Work for those of what is stuck together, each time: a fortieth of so many pairs of nodes, as of
-    /// [`WayOptions`](colltrans::ways::WayOptions), and 500 casts, for each of `legs`.
+    /// Work limit of each search for removal paths. For each of the `legs`, a fortieth of this number of node pairs
+    /// may be visited, as of [`WayOptions`](colltrans::ways::WayOptions), and 500 casts may be made.
     pub looks: u64,
-    /// Against gravity, of any length but zero; `None` for that of the [assembly](crate::Assembly::up).
+    /// Direction opposite to gravity, of any nonzero length. `None` selects that of the
+    /// [assembly](crate::Assembly::up).
     pub up: Option<DVec3>,
 }
 
@@ -36,37 +37,37 @@ impl Default for PlanOptions {
 }
 
 impl PlanOptions {
-    /// The same with another [`start`](Self::start).
+    /// Returns the options with another treatment of overlaps at the [`start`](Self::start).
     #[must_use]
     pub fn with_start(self, start: StartOverlap) -> Self {
         Self { start, ..self }
     }
 
-    /// The same with another [`samples`](Self::samples).
+    /// Returns the options with another number of [`samples`](Self::samples).
     #[must_use]
     pub fn with_samples(self, samples: usize) -> Self {
         Self { samples, ..self }
     }
 
-    /// The same with another number of [`legs`](Self::legs).
+    /// Returns the options with another maximum number of [`legs`](Self::legs).
     #[must_use]
     pub fn with_legs(self, legs: usize) -> Self {
         Self { legs, ..self }
     }
 
-    /// The same with [proofs](Self::prove) or without.
+    /// Returns the options with [proofs](Self::prove) enabled or disabled.
     #[must_use]
     pub fn with_proofs(self, prove: bool) -> Self {
         Self { prove, ..self }
     }
 
-    /// The same with another amount of [work](Self::looks).
+    /// Returns the options with another [work limit](Self::looks).
     #[must_use]
     pub fn with_looks(self, looks: u64) -> Self {
         Self { looks, ..self }
     }
 
-    /// The same with another [`up`](Self::up).
+    /// Returns the options with another [`up`](Self::up) direction.
     #[must_use]
     pub fn with_up(self, up: DVec3) -> Self {
         Self { up: Some(up), ..self }

@@ -1,16 +1,18 @@
-//! A natural order: which of the groups that can leave goes next, and along which direction.
+//! Choice of the next step: which removable group leaves, and along which direction.
 //!
-//! What can leave stays able to leave, since nothing is put back: so any choice leads as far as any other, and what is
-//! chosen is a matter of work. A mechanic takes away what carries nothing, by the shortest way, does likes one after
-//! another, keeps the direction, and lifts rather than drops.
+//! A removable group stays removable, because removed parts do not return. Every choice therefore leads equally far,
+//! and the choice only affects the effort. As a mechanic would, the cost prefers groups that carry nothing, short
+//! travel, identical parts one after another, an unchanged direction, and lifting.
 //!
-//! Notation: `up` is against gravity. A part *rests on* those that it meets at once along `-up`; what rests on nothing
-//! that is left *falls*, unless it stands on the ground, as the lowest parts do, or is held: the *base* and parts that
-//! are fixed. The *travel* of a group along `d` is how far it goes until it is beyond all that is left and in the shadow
-//! of whose box it is ([`Bodies::past`]). Of a group's directions those count whose travel is at most [`LONGER`] times
-//! the least. Among all of these the one of least [cost](Order::cost) is taken, of equal ones that of the first part. Before
-//! it is, it is asked whether the group can leave by a much shorter way, along samples of the sphere: of several like parts
-//! in one housing each may have a gap of its own.
+//! Notation:
+//! - `up` is opposite to gravity. A part *rests on* the parts that block it at once along `-up`.
+//! - A part *falls* if nothing that remains carries it. The lowest parts, the *base* and fixed parts never fall.
+//! - The *travel* of a group along `d` is the distance after which it is beyond all remaining parts whose boxes
+//!   overlap its shadow ([`Bodies::past`]).
+//!
+//! A direction is considered if its travel is at most [`TRAVEL_SLACK`] times the shortest one. The choice of least
+//! [cost](Order::step_cost) wins; ties go to the first part. Before a choice is accepted, samples of the sphere are
+//! searched for a much shorter direction, because each of several identical parts may have an exit of its own.
 
 use std::collections::BTreeMap;
 
@@ -31,80 +33,81 @@ use crate::matrix::{Matrix, bits};
 use crate::sphere::Sphere;
 use crate::witness::Memory;
 
-/// Ways that are up to so much longer than the shortest one are as good.
+/// Maximum ratio of a considered travel to the shortest one.
 const LONGER: f64 = 1.1;
-/// A way that is so much longer than one along a sample is not taken, ...
+/// Ratio of travels above which a shorter sampled direction replaces the chosen one, ...
 const MUCH_LONGER: f64 = 1.5;
-/// ... unless it is shorter than this share of the assembly's size.
+/// ... unless the chosen travel is at most this fraction of the assembly's size.
 const SHORT: f64 = 1e-3;
-/// A part rests on what it meets within so many reaches of contacts: both are shrunk, and touch at a slant.
+/// A part rests on the parts that block it within this multiple of the contact reach. Both are shrunk, and they may
+/// touch at a slant.
 const RESTS: f64 = 4.0;
-/// Directions with a larger product are one: 0.8 degrees.
+/// Two directions are equal if their dot product exceeds this: 0.8 degrees.
 const SAME: f64 = 0.9999;
 
-/// What a step costs, beside its travel as a share of the assembly's size: each part that falls, ...
+/// Costs that are added to the travel as a fraction of the assembly's size. For each part that falls, ...
 const FALL: f64 = 2.0;
-/// ... each part that is off balance then, ...
+/// ... for each part that is then off balance, ...
 const TIP: f64 = 1.0;
-/// ... each part of another shape than the one before: another tool, ...
+/// ... for another shape than in the step before, because it needs another tool, ...
 const OTHER_SHAPE: f64 = 0.8;
-/// ... and that while others of its shape cannot leave yet, so that there will be a third time, ...
+/// ... in addition, if other parts of the new shape cannot leave yet, because the shape then needs a third turn, ...
 const NOT_ALL: f64 = 0.4;
-/// ... another direction than before, ...
+/// ... for another direction than in the step before, ...
 const TURN: f64 = 0.3;
-/// ... down, rather than up, ...
+/// ... for a direction down (half of it for a horizontal one), ...
 const DOWN: f64 = 0.3;
-/// ... along no axis of the world, ...
+/// ... for a direction that is not along an axis of the world, ...
 const OBLIQUE: f64 = 0.2;
-/// ... and a group of all, of a smaller one its share.
+/// ... and for a group of all parts; a smaller group costs its fraction.
 const GROUP: f64 = 0.3;
 
-/// What was chosen: some parts, and a direction.
+/// The chosen group and its direction.
 pub(super) struct Choice {
     pub(super) parts: Vec<usize>,
     pub(super) direction: DVec3,
 }
 
-/// What decides about the order, among some of the parts.
+/// The state by which steps are chosen, for some of the parts.
 pub(super) struct Order<'a> {
     bodies: &'a Bodies<'a>,
     up: DVec3,
     size: f64,
-    /// The first part of the same shape, by part.
+    /// For each part, the first part with the same shape.
     likes: &'a [usize],
     living: Living,
-    /// By shape, that is its first part: how many of those that move are there.
+    /// For each shape (named by its first part), the number of present parts that may move.
     counts: Vec<usize>,
-    /// What does not move: the base, and what is not to be moved.
+    /// Mask of the parts that do not move: the base, and parts that must not be moved.
     stays: Vec<bool>,
-    /// By part: what rests on it, of all parts.
+    /// For each part, the parts that rest on it, of all parts.
     carried: Vec<Vec<usize>>,
-    /// By part: on what it rests; `None` if it does not fall whatever goes.
+    /// For each part, what it rests on; `None` if it cannot fall.
     bases: Vec<Option<Base>>,
-    /// By direction, those of the matrix first.
+    /// One for each direction; the directions of the matrix come first.
     shadows: Vec<Shadow>,
     last: Option<(DVec3, usize)>,
     shortcuts: Shortcuts,
-    /// Parts whose own share of a cost has changed since they were ranked.
+    /// Parts whose own cost has changed since they were ranked.
     changed: Vec<usize>,
 }
 
-/// What is asked for much shorter ways.
+/// State of the search for much shorter directions.
 #[derive(Default)]
 struct Shortcuts {
-    /// How many samples, at least, and what overlaps at the start mean.
+    /// Minimum number of samples, and the treatment of overlaps at the start.
     samples: usize,
     start: StartOverlap,
-    /// Along the samples, once they are asked.
+    /// Shadows along the samples, filled at first use.
     shadows: Vec<Shadow>,
-    /// By group: the positions of directions that were found.
+    /// For each group, the indices of the shorter directions that were found.
     found: BTreeMap<Vec<usize>, Vec<usize>>,
     memory: Memory,
 }
 
 impl<'a> Order<'a> {
-    /// Of the parts of a group that are there; of these `movable` ones move, if not all but the base, which none of
-    /// the `wanted` ones is.
+    /// Builds the state for the parts of a mask. If `movable` is given, only these parts move. Otherwise all move
+    /// except the base, which contains none of the `wanted` parts.
     pub(super) fn new(
         bodies: &'a Bodies,
         matrix: &Matrix,
@@ -148,18 +151,18 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Much shorter ways are looked for along so many samples of the sphere, beside all directions that are known.
+    /// Enables the search for much shorter directions, over at least this number of samples of the sphere.
     pub(super) fn with_shortcuts(self, samples: usize, start: StartOverlap) -> Self {
         let shortcuts = Shortcuts { samples, start, ..self.shortcuts };
         Self { shortcuts, ..self }
     }
 
-    /// By part, whether it is still there.
+    /// Returns the mask of present parts.
     pub(super) fn there(&self) -> &[bool] {
         self.living.there()
     }
 
-    /// The arcs of the order that is asked for.
+    /// Returns the arcs of the order constraints among the present parts.
     pub(super) fn arcs(&self) -> Vec<(usize, usize)> {
         self.constraints().arcs(self.there())
     }
@@ -168,8 +171,10 @@ impl<'a> Order<'a> {
         self.bodies.assembly().constraints()
     }
 
-    /// What moves if a group goes one way, or the others the other way, increasing: what nothing that stays is in; `None`
-    /// if such is in both, or the order does not let it go.
+    /// Returns the parts that move if a group is separated from the others, in increasing order.
+    ///
+    /// This is the group, or all others if the group contains stationary parts. Returns `None` if both contain
+    /// stationary parts, or if the order constraints forbid the motion.
     pub(super) fn moving(&self, group: &[usize], left: &[usize]) -> Option<Vec<usize>> {
         let stays = |&part: &usize| self.stays[part];
         let mut moving = group.to_vec();
@@ -180,35 +185,37 @@ impl<'a> Order<'a> {
         (may && self.constraints().lets_go(&moving, self.there())).then_some(moving)
     }
 
-    /// What moves, and where to, if a group goes along `d`, or the others along `-d`; `None` if nothing may.
+    /// Returns the parts that move and their direction if a group is separated along `d`: the group along `d`, or the
+    /// others along `-d`. Returns `None` if constraints forbid both.
     pub(super) fn way(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<Choice> {
         let parts = self.moving(group, left)?;
         let direction = if parts == group { d } else { DVec3::ZERO - d };
         self.constraints().allows(&parts, direction).then_some(Choice { parts, direction })
     }
 
-    /// How many parts move so, if any may.
+    /// Returns the number of parts that move if a group is separated along `d`, or `None` if it may not be.
     pub(super) fn how_many(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<usize> {
         self.way(group, left, d).map(|way| way.parts.len())
     }
 
-    /// Whether a part stays where it is, for others to be taken from it.
+    /// Checks whether a part is stationary.
     pub(super) fn stays(&self, part: usize) -> bool {
         self.stays[part]
     }
 
-    /// These parts have gone, along a direction.
+    /// Updates the state after parts have left along a direction.
     pub(super) fn remove(&mut self, parts: &[usize], direction: DVec3) {
         for &part in parts {
             self.bodies.remove(&mut self.living, part);
-            // Parts that stay are not counted. They leave only where some of them are moved against others.
+            // Stationary parts are not counted. They leave only if some of them move against others.
             let count = &mut self.counts[self.likes[part]];
             *count = count.saturating_sub(1);
             self.changed.extend(self.shadows.iter_mut().flat_map(|shadow| shadow.remove(part)));
             for shadow in &mut self.shortcuts.shadows {
                 shadow.remove(part);
             }
-            // What it rests on, and what carries the same parts as it does, now unsettles others when it leaves.
+            // The removal of these parts now unsettles others: the parts below it, and those that carry the same
+            // parts.
             let below = |part: usize| self.bases[part].iter().flat_map(Base::below);
             let beside = self.carried[part].iter().flat_map(|&above| below(above));
             self.changed.extend(below(part).chain(beside));
@@ -216,7 +223,7 @@ impl<'a> Order<'a> {
         self.last = parts.first().map(|&part| (direction, self.likes[part]));
     }
 
-    /// The best of the parts that can leave alone.
+    /// Returns the best of the parts that can leave alone, with its direction. Returns `None` if no part can.
     pub(super) fn alone(&mut self, single: &mut Single) -> Option<Choice> {
         let mut changed = std::mem::take(&mut self.changed);
         changed.append(&mut single.changed);
@@ -239,7 +246,7 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Ranks a part anew among those that can leave alone, if it is one of them.
+    /// Recomputes the rank of a part. Drops it if it cannot leave alone.
     fn rank(&mut self, single: &mut Single, part: usize) {
         single.ranking.remove(part);
         let Some(ways) = single.ways(part) else { return };
@@ -247,7 +254,8 @@ impl<'a> Order<'a> {
         single.ranking.insert(part, self.likes[part], ways);
     }
 
-    /// The best of some groups, each with positions of directions along which it can leave.
+    /// Returns the best of some groups, each given with the indices of its free directions. Returns `None` if there
+    /// are none.
     pub(super) fn best<'g>(
         &mut self,
         groups: &(impl Iterator<Item = (&'g [usize], &'g [usize])> + Clone),
@@ -265,7 +273,8 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// The group of least cost, and the position of its direction; `ready` is by shape how many groups can leave.
+    /// Returns the group of least cost and the index of its direction. `ready` maps a shape to its number of
+    /// removable groups.
     fn cheapest<'g>(
         &mut self,
         groups: impl Iterator<Item = (&'g [usize], &'g [usize])>,
@@ -286,8 +295,8 @@ impl<'a> Order<'a> {
         best.map(|(_, parts, k)| (parts, k))
     }
 
-    /// The ways of a group that are not much longer than the shortest one, each with what it costs whatever was taken
-    /// away before: what falls then, and the travel. Shortcuts that were found are ways as well.
+    /// Returns the considered directions of a group, each with its own cost: the travel, and the parts that fall or
+    /// lose balance. This cost does not depend on the steps before. Shorter directions that were found are included.
     fn own_costs(&mut self, parts: &[usize], ways: &[usize]) -> Vec<OwnCost> {
         self.bodies.count_look();
         let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);
@@ -302,14 +311,16 @@ impl<'a> Order<'a> {
         near.into_iter().map(|(k, travel)| (k, falls + travel / self.size)).collect()
     }
 
-    /// Looks for a shortcut of a group that is to go along `k`, and keeps it as a way; checks whether there is one.
+    /// Searches for a much shorter direction of a group that would leave along direction `k`, and stores it. Returns
+    /// whether one was found.
     fn find_shortcut(&mut self, parts: &[usize], k: usize) -> bool {
         let Some(shortcut) = self.shortcut(parts, k) else { return false };
         self.shortcuts.found.entry(parts.to_vec()).or_default().push(shortcut);
         true
     }
 
-    /// The position of the direction of the shortest way of a group, if that along `k` is [`MUCH_LONGER`].
+    /// Returns the index of the shortest free direction of a group, if the travel along `k` is more than
+    /// [`SHORTCUT_RATIO`] times as long.
     fn shortcut(&mut self, parts: &[usize], k: usize) -> Option<usize> {
         let Self { bodies, living, shadows, shortcuts, .. } = self;
         let there = living.there();
@@ -339,7 +350,8 @@ impl<'a> Order<'a> {
         Some(self.position(direction))
     }
 
-    /// How far a group that has gone goes along a direction until it is beyond all that are left, with bounds.
+    /// Returns bounds of the distance that a removed group travels along a direction until it is beyond all remaining
+    /// parts.
     pub(super) fn bounded_travel(&self, parts: &[usize], direction: DVec3) -> Bounded {
         let known = self.shadows.iter().find(|s| bits(s.direction) == bits(direction));
         let new = || Shadow::new(self.bodies, self.there(), direction);
@@ -347,7 +359,7 @@ impl<'a> Order<'a> {
         known.map_or_else(|| travel(&new()), travel)
     }
 
-    /// The position of a direction, which need not be one of the matrix.
+    /// Returns the index of a direction, which is added if it is new.
     pub(super) fn position(&mut self, direction: DVec3) -> usize {
         let known = self.shadows.iter().position(|s| bits(s.direction) == bits(direction));
         known.unwrap_or_else(|| {
@@ -356,7 +368,7 @@ impl<'a> Order<'a> {
         })
     }
 
-    /// What it costs to take a group of so many parts away.
+    /// Returns the cost of removing a group of `count` parts.
     fn cost(&self, count: usize, ShapeState { other, all }: ShapeState, (k, own): OwnCost) -> f64 {
         let when = |what: bool, cost: f64| if what { cost } else { 0.0 };
         let d = self.shadows[k].direction;
@@ -369,8 +381,8 @@ impl<'a> Order<'a> {
             + GROUP * (count - 1) as f64 / self.likes.len() as f64
     }
 
-    /// Of the parts that are left once these have gone: which then rest on nothing, and which are then off balance, if they
-    /// stood before.
+    /// Returns the parts that fall after a group is removed, and the parts that are then off balance but were not
+    /// before.
     pub(super) fn unsettled(&self, parts: &[usize]) -> [Vec<usize>; 2] {
         if parts.iter().all(|&part| self.carried[part].is_empty()) {
             return [Vec::new(), Vec::new()];
@@ -398,20 +410,23 @@ impl<'a> Order<'a> {
     }
 }
 
-/// The parts that stay: those that are fixed, or the largest one, by its box and then its volume, and of equal ones the
-/// lowest; none that `moves`, nor, if there are others, any that has to leave before others.
+/// Returns the mask of the base: the fixed parts, or else the largest part.
+///
+/// Parts are compared by the volume of their boxes, then the area of these, their own volume, and their height (the
+/// lower part wins). A part for which `moves` holds is never the base. A part that must leave before others is the
+/// base only if all are such parts.
 fn base(bodies: &Bodies, there: &[bool], up: DVec3, moves: impl Fn(usize) -> bool) -> Vec<bool> {
     let parts = bodies.assembly().parts();
     let mut base: Vec<bool> = parts.iter().zip(there).map(|(p, t)| *t && p.fixed()).collect();
     if base.contains(&true) {
         return base;
     }
-    // Digits of single precision do not decide.
+    // Differences below single precision do not decide.
     let digits = |x: f64| x as f32;
     let key = |k: usize| {
         let bounds = parts[k].solid().bounds();
         let size = bounds.size();
-        // Boxes of flat sheets have no volume.
+        // Boxes of flat sheets have zero volume.
         let area = size.x * size.y + size.y * size.z + size.z * size.x;
         let height = bounds.center().dot(up);
         [size.element_product(), area, parts[k].solid().volume(), -height].map(digits)
@@ -430,7 +445,7 @@ fn base(bodies: &Bodies, there: &[bool], up: DVec3, moves: impl Fn(usize) -> boo
     base
 }
 
-/// By part, what rests on it, and on what it rests.
+/// Returns for each part the parts that rest on it, and what it rests on.
 fn supports(
     bodies: &Bodies,
     matrix: &Matrix,

@@ -1,28 +1,28 @@
-//! What a step lets pass of pairs with a fit of their own.
+//! Contacts that a step tolerates, of pairs with a fit of their own.
 
 use crate::bodies::Bodies;
 use crate::part::Assembly;
 use crate::roles::{Role, Tolerated};
 
-/// What a step lets pass of two parts.
+/// A contact of two parts that a step tolerates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passed {
-    /// The first part moves, the second stays.
+    /// Indices of the moving and the stationary part.
     pub parts: [usize; 2],
-    /// What is said of them.
+    /// The role of the pair, if it has one.
     pub role: Option<Role>,
-    /// What is let pass.
+    /// The tolerated contact.
     pub tolerated: Tolerated,
 }
 
 impl Passed {
-    /// In words, with the parts.
+    /// Returns a description with the names of the parts.
     pub fn words(&self, assembly: &Assembly) -> String {
         let names = assembly.names(&self.parts).join(" and ");
         format!("{names}: {}", self.tolerated.words(self.role))
     }
 
-    /// All of a group that goes and others that are there.
+    /// Returns the tolerated contacts between a moving group and present parts.
     pub(crate) fn between(bodies: &Bodies, group: &[usize], there: &[bool]) -> Vec<Self> {
         let passed = |parts: [usize; 2]| {
             let tolerated = bodies.tolerated(parts)?;

@@ -1,4 +1,4 @@
-//! What comes before what: the partial order of a plan, its reverse, and tables of both.
+//! Precedence of steps: the partial order of a plan, its reverse for assembly, and tables of both.
 
 use serde_json::{Value, json};
 
@@ -7,12 +7,12 @@ use crate::csv::{Cell, Table};
 use crate::matrix::Matrix;
 use crate::part::Assembly;
 
-/// Ways out of a part are listed up to so many.
+/// Maximum number of alternatives that are listed for a part.
 const MOST_WAYS: usize = 16;
 
 impl Plan {
-    /// The steps in rounds: each waits for some of the round before it, so all of a round may go at once, if there are
-    /// hands enough.
+    /// Returns the steps in rounds. Each step waits for a step of the round before, so the steps of one round are
+    /// independent.
     pub fn rounds(&self) -> Vec<Vec<usize>> {
         let mut round = vec![0; self.steps.len()];
         let mut rounds: Vec<Vec<usize>> = Vec::new();
@@ -26,10 +26,11 @@ impl Plan {
         rounds
     }
 
-    /// How it is put together: the steps that are walked backwards, in order, each with the positions in this list of those
-    /// that have to come before it. What takes a group apart comes before the group is put in.
+    /// Returns the assembly sequence: the steps in reverse order, each with the indices in this list of its
+    /// predecessors.
     ///
-    /// A move can be walked backwards as forwards, by the same proof; what is unscrewed is screwed in.
+    /// A group is put together before it is inserted. Each move is valid in reverse by the same proof; parts that a
+    /// step unscrews are screwed in.
     pub fn assembly(&self) -> Vec<(usize, Vec<usize>)> {
         let last = self.steps.len().saturating_sub(1);
         let mut before = vec![Vec::new(); self.steps.len()];
@@ -41,8 +42,8 @@ impl Plan {
         before.into_iter().enumerate().rev().collect()
     }
 
-    /// The steps as CSV, numbered from 1: what leaves, where to and how far, after which steps, in which round, and how
-    /// long it takes.
+    /// Returns the steps as CSV, numbered from 1. The columns are the parts, direction, travel, turns, number of
+    /// moves, enclosing step, preceding steps, round, and seconds.
     pub fn to_csv(&self, assembly: &Assembly, times: &Times) -> String {
         let heads = [
             "step",
@@ -87,9 +88,11 @@ impl Plan {
     }
 }
 
-/// The precedence of all parts as a graph of AND and OR, along the directions of a matrix: a part is out of the way of
-/// all others if for one of its ways (OR) all parts of that way have gone or go along (AND). Of ways that hold another one
-/// nothing is told. Parts that hold each other, and those of a subassembly, stand in each other's ways: they leave as a group.
+/// Returns the precedence of all parts as an AND/OR graph, along the directions of a matrix.
+///
+/// A part can leave if for one of its alternatives (OR) all parts that it lists (AND) have left or leave with it.
+/// Alternatives that contain another one are omitted, as are fixed parts. Interlocked parts, and the parts of a
+/// subassembly, list each other and leave as a group.
 pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
     let parts = assembly.parts();
     let constraints = assembly.constraints();

@@ -1,34 +1,35 @@
-//! Parts that can leave alone, ranked by what it costs to take them away.
+//! Parts that can leave alone, ranked by the cost of their removal.
 //!
-//! The cost of a way has a share of its own, which changes only with what is near the part, and one that depends on the
-//! direction, on whether the step before took another shape, and on whether all of its shape can leave. So ways for which
-//! the second share is the same are sorted by the first one, and the best of all is among the first ones of each of these
-//! classes. A step costs a look at the classes and at the parts whose own share it changes, not at all parts.
+//! The cost of a removal has two terms. The *own* cost changes only with parts nearby. The other term depends on the
+//! direction, on whether the step before removed another shape, and on whether all parts of the shape can leave.
+//! Removals with an equal second term form a class, sorted by own cost. The best removal is therefore among the first
+//! of each class. A step examines the classes and the parts whose own cost it changes, not all parts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Costs that differ by less are equal: far more than the rounding of a sum, far less than any choice differs by.
+/// Costs that differ by less than this are equal. This is far above the rounding of a sum and far below any real
+/// difference.
 const EQUAL: f64 = 1e-9;
 
-/// Checks whether a way is better than the best of those before it.
+/// Checks whether a removal is better than the best one before it.
 pub(super) fn is_better(cost: f64, best: Option<f64>) -> bool {
     best.is_none_or(|best| cost < best - EQUAL)
 }
 
-/// The position of a way's direction, and its own share of the cost, which is not negative.
+/// The index of a direction, and the own cost of the removal along it, which is not negative.
 pub(super) type OwnCost = (usize, f64);
 
-/// How the shape of a part compares with others.
+/// The state of a shape that affects the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ShapeState {
-    /// Whether the step before took another shape.
+    /// Whether the step before removed another shape.
     pub(super) other: bool,
     /// Whether all parts of this shape can leave.
     pub(super) all: bool,
 }
 
-/// Ways along one direction: by the bits of their own share of the cost, which are in the order of the numbers, each part
-/// with the position of the way among its ways.
+/// Removals along one direction. The key is the bits of the own cost, which sort like the numbers. Each entry is a
+/// part and the index of the removal among those of the part.
 #[derive(Default)]
 struct Class(BTreeMap<u64, BTreeSet<(usize, usize)>>);
 
@@ -47,21 +48,21 @@ impl Class {
     }
 }
 
-/// The ways of parts that can leave alone.
+/// The removals of parts that can leave alone.
 #[derive(Default)]
 pub(super) struct Ranking {
-    /// By whether all of their shape can leave, and by direction.
+    /// Classes by whether all parts of the shape can leave, and by direction.
     ways: BTreeMap<(bool, usize), Class>,
-    /// The same ways by shape and direction.
+    /// Classes of the same removals by shape and direction.
     of_shape: BTreeMap<(usize, usize), Class>,
-    /// By part, its shape and ways.
+    /// For each part, its shape and removals.
     parts: BTreeMap<usize, (usize, Vec<OwnCost>)>,
-    /// By shape, its parts, and whether all can leave.
+    /// For each shape, its parts, and whether all can leave.
     shapes: BTreeMap<usize, (BTreeSet<usize>, bool)>,
 }
 
 impl Ranking {
-    /// Adds a part of a shape with its ways.
+    /// Adds a part of a shape with its removals.
     pub(super) fn insert(&mut self, part: usize, shape: usize, ways: Vec<OwnCost>) {
         let (parts, all) = self.shapes.entry(shape).or_default();
         parts.insert(part);
@@ -72,7 +73,7 @@ impl Ranking {
         self.parts.insert(part, (shape, ways));
     }
 
-    /// Takes a part away, if it is there.
+    /// Removes a part if it is ranked.
     pub(super) fn remove(&mut self, part: usize) {
         let Some((shape, ways)) = self.parts.remove(&part) else { return };
         let (parts, all) = self.shapes.entry(shape).or_default();
@@ -83,14 +84,14 @@ impl Ranking {
         }
     }
 
-    /// Updates whether all parts of a shape can leave, of which there are `count`.
+    /// Updates whether all `count` parts of a shape can leave.
     pub(super) fn set_count(&mut self, shape: usize, count: usize) {
         let (parts, all) = self.shapes.entry(shape).or_default();
         let can_all = parts.len() >= count;
         if *all == can_all {
             return;
         }
-        // Ways move to another class; mostly this happens once to each shape.
+        // Removals move to another class. Mostly this happens once for each shape.
         let ways = |part: &usize| Some((*part, self.parts.get(part)?.1.clone()));
         let moved: Vec<(usize, Vec<OwnCost>)> = parts.iter().filter_map(ways).collect();
         for (part, _) in &moved {
@@ -102,18 +103,22 @@ impl Ranking {
         }
     }
 
-    /// Returns the best part and the position of its direction, as a scan of all parts in order would find them in which
-    /// a way has to be [better](is_better) than the best before it. `last` is the shape that was taken last; `cost` grows
-    /// with the own share of a way, and is larger by far more than [`EQUAL`] for another shape.
+    /// Returns the best part and the index of its direction. Returns `None` if no part is ranked.
     ///
-    /// The scan ends with one of the ways whose costs follow each other from the least one in steps of no more than
-    /// twice [`EQUAL`]: the first of these is better than any other way. Of several with one own share the first counts.
+    /// The result equals that of a scan over all parts in order in which a removal must be [better](is_better) than
+    /// the best before it. `last` is the shape of the step before. `cost` must increase with the own cost, and must
+    /// be larger by far more than [`EQUAL`] for another shape.
+    ///
+    /// Sort the removals by cost, and take the chain from the cheapest one on in steps of at most twice [`EQUAL`].
+    /// The first removal of the chain that the scan meets is better than all removals outside. The scan therefore
+    /// ends in the chain, and only the chain is examined; it ends at a step of more than three times [`EQUAL`]. Of
+    /// several removals with one own cost the first counts.
     pub(super) fn best(
         &self,
         last: Option<usize>,
         cost: impl Fn(ShapeState, OwnCost) -> f64,
     ) -> Option<(usize, usize)> {
-        // Ways of the last shape are listed twice: as of another shape they cost more than as they are, and do not count.
+        // Removals of the last shape are listed twice. As those of another shape they cost more and are never chosen.
         let listed = self.ways.iter().map(|(&(all, direction), class)| {
             (ShapeState { other: last.is_some(), all }, direction, class)
         });
@@ -156,7 +161,7 @@ mod tests {
 
     use super::*;
 
-    /// The best of all parts that are there, one by one.
+    /// Returns the best of all parts by a scan.
     fn scanned(
         all: &BTreeMap<usize, (usize, Vec<OwnCost>)>,
         cost: impl Fn(usize, OwnCost) -> f64,
@@ -178,7 +183,7 @@ mod tests {
         let mut random = Random::new(21);
         for round in 0..400 {
             let (mut ranking, mut all) = (Ranking::default(), BTreeMap::new());
-            // Costs of few values, or in steps of about what counts as equal.
+            // Costs take few values, or differ by about the limit of equality.
             let step = [0.1, 0.4e-9, 0.9e-9, 1.1e-9, 1e-16][round % 5];
             let along: Vec<f64> = (0..4).map(|_| [0.0, 0.3, 0.4e-9][random.index(3)]).collect();
             let cost = |ShapeState { other, all }: ShapeState, (k, own): OwnCost| {

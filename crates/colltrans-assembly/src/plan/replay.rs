@@ -1,4 +1,4 @@
-//! A step, checked once more before it is reported.
+//! Check of a step before it is reported, independent of the search that found it.
 
 use colltrans::Bounded;
 use colltrans::solid::{StartOverlap, Workspace};
@@ -11,13 +11,13 @@ use super::shadow::{NOTHING, larger};
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 
-/// Places on the way, as shares of the travel.
+/// Positions that are tested for overlaps, as fractions of the travel.
 const PLACES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
 
-/// How far the group, which has gone, must go until it never meets the others again.
+/// Returns the distance that a removed group travels until it is beyond the other parts.
 ///
 /// # Errors
-/// Something is in the way after all.
+/// Returns [`AssemblyError::Replay`] if a part blocks the step.
 pub(super) fn checked(
     bodies: &Bodies,
     way: &Way,
@@ -30,7 +30,7 @@ pub(super) fn checked(
     }
 }
 
-/// Of a single move.
+/// Checks a single move by casts of all pairs ahead and by overlap tests at a few positions.
 fn straight(
     bodies: &Bodies,
     way: &Way,
@@ -56,7 +56,7 @@ fn straight(
     Ok(travel)
 }
 
-/// Of several moves, whose proofs have been checked: each is looked at in a few places.
+/// Checks a path of several moves by overlap tests at a few positions. Its proofs were checked before.
 fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, AssemblyError> {
     let mut all = [&aside.parts[..], others].concat();
     all.sort_unstable();
@@ -67,7 +67,7 @@ fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, 
         moving.iter().flat_map(|&a| outside.iter().map(move |&b| [a, b])).collect::<Vec<_>>()
     };
     let look = |[a, b]: [usize; 2], by: DVec3, motion: DVec3| {
-        // Parts that overlap as they are moved as one, or the step was refused.
+        // Parts that overlap at the start move as one, or the step was rejected.
         let met = |share: &&f64| bodies.overlaps_displaced(a, by + motion * **share, b);
         let found = PLACES.iter().find(met);
         let length = motion.length();

@@ -1,13 +1,13 @@
-//! Several moves, where no single one takes anything out.
+//! Removal paths of several moves, for groups that no single move removes.
 //!
-//! [`WaysOut`] looks for legs that take some parts away from the others, and proves them. What was moved aside goes
-//! back along the same lines, the last leg first, once they have left. Back along a leg each pair of parts is in the
-//! same places as along it, so the same proofs hold: of what is still there and, by itself, of what has left. So all
-//! parts stand where they stood, and one matrix answers for every state of a plan. Nothing is lost by that: whatever
-//! the parts that are left can do with others there, they can do without them.
+//! [`WaysOut`] searches for legs that separate some parts from the others, and proves them. Parts that were moved to
+//! make room return along the same legs in reverse order after the group has left. On its way back a leg has the same
+//! relative poses as on its way out, so the same proofs hold for the remaining parts. Therefore all parts are in
+//! their initial poses after each step, and one matrix serves every state of a plan. This loses no solution: any
+//! motion that is possible among other parts is also possible without them.
 //!
-//! The search moves any group against the others. If that group has the base in it, the plan moves the *complement*
-//! instead, all other parts, the opposite way: pairs of parts take the same relative ways, so the proofs hold.
+//! The search moves any group against the others. If that group contains the base, the plan moves the *complement*,
+//! all other parts, in the opposite direction. The relative motions are equal, so the proofs hold.
 
 use colltrans::ways::{self, Searched, WayOptions, WayOut, WaysOut, of_large_facets};
 use colltrans::{Placed, Pose, Solid, free::FreeError, solid::StartOverlap};
@@ -21,56 +21,58 @@ use crate::error::AssemblyError;
 use crate::matrix::Matrix;
 use crate::watch::Watch;
 
-/// Axes that are tried, at most.
+/// Maximum number of axes that are tried.
 const MOST_AXES: usize = 13;
-/// Where what was found does not keep what is asked, it is looked for once more, so often, with the parts that do not in their
-/// places.
+/// Maximum number of repeated searches after a path violates the constraints. The violating parts are fixed in each
+/// repetition.
 const MOST_TRIES: usize = 3;
-/// Parts, at most.
+/// Maximum number of parts of a group that is searched.
 const MOST_PARTS: usize = 24;
-/// Casts for each move that is asked for, and the share of the work that goes to it.
+/// Number of casts for each leg, and the divisor of the work limit for each leg.
 const CASTS: usize = 500;
 const SHARE: u64 = 40;
-/// Axes whose cross product is shorter are one.
+/// Two axes are equal if their cross product is shorter than this.
 const ALIKE: f64 = 1e-6;
 
-/// What is known of several moves, one after another, where no single one takes anything out.
+/// Outcome of the search for removal paths of several moves.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Moves {
-    /// They were not looked for, and why.
+    /// No search, with the reason.
     NotAsked(&'static str),
-    /// Of two parts, which is proven: no translations one after another take one from the other.
+    /// For two parts: it is proven that no sequence of translations separates them.
     Proven {
-        /// Cells of displacements that prove it.
+        /// Number of cells of displacements in the proof.
         cells: usize,
     },
-    /// Of up to so many moves none were found. That is no proof that there are none.
+    /// No path of up to `legs` moves was found. This does not prove that there is none.
     NotFound {
-        /// Moves, the last one included.
+        /// Maximum number of moves, including the last one.
         legs: usize,
-        /// What was searched.
+        /// Extent of the search.
         searched: Searched,
     },
-    /// Those that were found do not keep the order, or the directions, that are asked for.
+    /// The paths that were found violate the order or direction constraints.
     NotKept,
 }
 
-/// Moves that take a group out, the last one apart.
+/// A removal path: the legs before the last one, and the direction of the last one.
 pub(super) struct Aside {
-    /// Those before the last one.
+    /// The legs before the last one.
     pub(super) legs: Vec<Leg>,
-    /// The same, as vectors.
+    /// The displacement of each of these legs.
     pub(super) motions: Vec<DVec3>,
-    /// What goes back afterwards.
+    /// The legs that return other parts to their initial poses.
     pub(super) back: Vec<Leg>,
-    /// The group, and where to.
+    /// The group that leaves, and its direction.
     pub(super) parts: Vec<usize>,
     pub(super) direction: DVec3,
 }
 
-/// Finds moves that take some of the parts that are left out, or what is known of them; of two parts, unless not wanted, a
-/// proof that there are none. No part for which `stays` holds moves, unless such parts are moved against each other.
+/// Searches for a path that removes some of the remaining parts.
+///
+/// Returns the path, or else the outcome of the search. For two parts the search may prove that no path exists,
+/// unless proofs are disabled. Parts for which `is_stationary` holds do not move, except against each other.
 pub(super) fn search(
     bodies: &Bodies,
     (left, matrix): (&[usize], &Matrix),
@@ -132,8 +134,10 @@ pub(super) fn search(
 }
 
 impl Aside {
-    /// What does not do as is asked: parts that leave before others, parts of what stays together that are moved without
-    /// the rest of it, and parts that go where they never go, on the way back, too.
+    /// Returns the parts that violate the constraints, in increasing order.
+    ///
+    /// These are parts that leave too early, parts of a unit that moves incompletely, and parts that move along a
+    /// forbidden direction. Return legs are checked as well.
     fn against(&self, constraints: &Constraints, there: &[bool]) -> Vec<usize> {
         let mut found = Vec::new();
         for (a, b) in constraints.arcs(there) {
@@ -163,7 +167,8 @@ fn refused(error: FreeError) -> AssemblyError {
     }
 }
 
-/// Why several moves are not looked for: parts that do not stop each other as they are, among others.
+/// Returns the reason why no path is searched, for example because a pair is ignored. Returns `None` if the search
+/// applies.
 fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'static str> {
     let assembly = bodies.assembly();
     let pairs = || left.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
@@ -186,7 +191,7 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
     }
 }
 
-/// Axes of large facets, and those of the matrix.
+/// Returns the axes normal to large facets, and then directions of the matrix that are not parallel to them.
 fn directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
     let mut axes = of_large_facets(placed);
     for &d in matrix.directions() {
@@ -197,7 +202,7 @@ fn directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
     axes
 }
 
-/// Whether a group can go by a step along a direction of the matrix: if none can, no cast is asked for.
+/// Checks whether some group can travel one search step along a direction of the matrix. If not, no cast is needed.
 fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
     let among = bodies.mask(left);
     let size = |&k: &usize| bodies.bounds(k).size().max_element();
@@ -210,8 +215,8 @@ fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
     })
 }
 
-/// Returns the parts that a leg moves and the sign of their motion: those of the leg, or all others the opposite way if
-/// something that stays is among the former only.
+/// Returns the parts that a leg moves, and the sign of their motion. These are the parts of the leg, or all others in
+/// the opposite direction if only the leg's group contains stationary parts.
 fn moved(leg: &ways::Leg, left: &[usize], stays: &impl Fn(usize) -> bool) -> (Vec<usize>, f64) {
     let group: Vec<usize> = leg.bodies.iter().map(|&k| left[k]).collect();
     let others: Vec<usize> = left.iter().copied().filter(|k| !group.contains(k)).collect();
@@ -219,7 +224,8 @@ fn moved(leg: &ways::Leg, left: &[usize], stays: &impl Fn(usize) -> bool) -> (Ve
     if holds(&group) && !holds(&others) { (others, -1.0) } else { (group, 1.0) }
 }
 
-/// Returns the moves with the numbers of all parts, and how what made room goes back.
+/// Converts a path of the search to part indices of the assembly, and adds the legs that return the parts moved
+/// aside.
 fn aside(count: usize, left: &[usize], stays: &impl Fn(usize) -> bool, way: &WayOut) -> Aside {
     let turned = |v: DVec3, sign: f64| if sign < 0.0 { DVec3::ZERO - v } else { v };
     let (last, before) = way.legs.split_last().expect("a way has a leg");
@@ -235,7 +241,7 @@ fn aside(count: usize, left: &[usize], stays: &impl Fn(usize) -> bool, way: &Way
         motions.push(motion);
     }
     let (gone, sign) = moved(last, left, stays);
-    // What left as it stood need not go back.
+    // Parts of a group that left without relative displacement need not return.
     let as_it_stood = gone.iter().all(|&part| at[part] == at[gone[0]]);
     for leg in legs.iter().rev() {
         let mut parts = leg.parts.clone();

@@ -1,9 +1,9 @@
-//! Parts as seen along a direction, and how far it is there until one is beyond all others.
+//! Projections of the parts along a direction, and the travel until a part is beyond all others.
 //!
-//! The tree over the boxes of all parts serves every direction: each has its own bounds of the nodes, so that only what
-//! lies over a part is looked at, not all parts.
+//! One tree over the boxes of all parts serves every direction. Each direction has its own bounds of the nodes, so
+//! that only parts that overlap laterally are visited.
 //!
-//! Invariant: a travel that is kept names the part that it ends behind, and is dropped once that part has gone.
+//! Invariant: a cached travel refers to the part behind which it ends, and is dropped when that part is removed.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -15,16 +15,17 @@ use crate::bodies::Bodies;
 use crate::boxes::Living;
 use crate::part::Part;
 
-/// The parts that are there as seen along a direction.
+/// The projections of the present parts along a direction.
 pub(super) struct Shadow {
     pub(super) direction: DVec3,
-    /// In a frame whose third axis is the direction; nothing of parts that were not there at first.
+    /// Bounding boxes of the parts in a frame whose third axis is the direction; empty for parts that were absent at
+    /// first.
     boxes: Vec<Aabb>,
-    /// By node of the tree over all parts.
+    /// Bounding box of each node of the tree over all parts.
     bounds: Vec<Aabb>,
-    /// The travels of single parts that were asked for.
+    /// Cached travels of single parts.
     travels: HashMap<usize, f64>,
-    /// By part, those whose travel is kept and ends behind it.
+    /// For each part, the parts whose cached travel ends behind it.
     behind: HashMap<usize, Vec<usize>>,
 }
 
@@ -42,7 +43,8 @@ impl Shadow {
         Self { direction, boxes, bounds, travels, behind }
     }
 
-    /// How far a group goes until it is beyond all that are there.
+    /// Returns the distance that a group travels until it is beyond all other present parts. Caches the result of
+    /// single parts.
     pub(super) fn travel(&mut self, bodies: &Bodies, parts: &[usize], living: &Living) -> f64 {
         let &[part] = parts else {
             let each = parts.iter().map(|&part| self.past(bodies, part, parts, living).0);
@@ -59,7 +61,8 @@ impl Shadow {
         travel
     }
 
-    /// How far a group that has gone goes until it is beyond all that are there, with bounds; nothing is kept.
+    /// Returns bounds of the distance that a removed group travels until it is beyond all present parts. Caches
+    /// nothing.
     pub(super) fn bounded_travel(
         &self,
         bodies: &Bodies,
@@ -70,7 +73,7 @@ impl Shadow {
         let found = Cell::new(NOTHING);
         for &part in parts {
             let own = bodies.seen(part, self.direction);
-            // The frame is turned: coordinates in the world may be larger.
+            // The frame is rotated, so coordinates in the world may be larger.
             let reach = own.reach().max(2.0 * all);
             let is_further = |seen: &Aabb| own.may_be_behind(seen, reach, &found.get());
             bodies.visit_high(living, &self.bounds, is_further, |other| {
@@ -83,7 +86,7 @@ impl Shadow {
         found.get()
     }
 
-    /// Takes a part away, and returns the parts whose travel ended behind it.
+    /// Removes a part, and returns the parts whose cached travel ended behind it.
     pub(super) fn remove(&mut self, part: usize) -> Vec<usize> {
         let behind = self.behind.remove(&part).unwrap_or_default();
         for part in &behind {
@@ -92,8 +95,8 @@ impl Shadow {
         behind
     }
 
-    /// How far a part goes along the third axis until it is beyond all that are there, but for those of its group; and
-    /// the part that it ends behind.
+    /// Returns the distance that a part travels along the third axis until it is beyond all present parts outside of
+    /// its group, and the part behind which it ends.
     fn past(
         &self,
         bodies: &Bodies,
@@ -118,7 +121,7 @@ impl Shadow {
 
 pub(super) const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
 
-/// The larger one of two numbers.
+/// Returns the component-wise maximum of two bounded numbers.
 pub(super) fn larger(a: Bounded, b: Bounded) -> Bounded {
     Bounded {
         value: a.value.max(b.value),

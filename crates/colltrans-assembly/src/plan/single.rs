@@ -1,8 +1,8 @@
-//! Parts that can be taken out alone: most of every plan, without a graph for each step.
+//! Parts that can be removed alone. Most steps of a plan remove one part and need no blocking graph.
 //!
-//! Invariant: of every part that is there, and by direction, one part that is there and that it meets is known, its
-//! *watched* one; those that meet none are `free`. Only when a watched part goes another one is looked for. So of `n` parts
-//! in a row there are `n` entries along a direction, not `n^2`.
+//! Invariant: for every present part and direction, either one present part that blocks it is stored (its *watched*
+//! part), or the direction is listed in `free`. Another blocker is searched only after the watched part is removed.
+//! Thus `n` parts in a row need `n` entries for each direction instead of `n^2`.
 
 use std::collections::BTreeMap;
 
@@ -16,29 +16,29 @@ use crate::error::AssemblyError;
 use crate::matrix::Matrix;
 use crate::watch::{Stage, Watch};
 
-/// Which parts of a group meet nothing else of it.
+/// The parts of a group that no other part of the group blocks.
 pub(super) struct Single<'a> {
     bodies: &'a Bodies<'a>,
     matrix: Matrix<'a>,
     living: Living,
-    /// By part, how many of those that are there have to leave before it.
+    /// For each part, the number of present parts that must leave before it.
     waits: Vec<usize>,
-    /// By part, which ones wait for it.
+    /// For each part, the parts that must leave after it.
     awaited: Vec<Vec<usize>>,
-    /// By direction and part, those that watch it.
+    /// For each direction and part, the parts that watch it.
     watched: Vec<Vec<Vec<u32>>>,
-    /// By part, the directions along which it meets nothing, increasing.
+    /// For each part, the directions without a blocker, in increasing order.
     free: BTreeMap<usize, Vec<usize>>,
-    /// The parts that are free and wait for nothing, by what it costs to take them away.
+    /// The parts that can leave now, ranked by cost.
     pub(super) ranking: Ranking,
-    /// Parts that have left, or whose ways are not those by which they were ranked.
+    /// Parts whose rank is out of date: removed ones, and those with changed free directions or constraints.
     pub(super) changed: Vec<usize>,
     workspace: Workspace,
 }
 
 impl<'a> Single<'a> {
-    /// Looks at the parts that are `alive`, with the arcs of an order; of those, along each direction, `movable` ones are
-    /// looked for.
+    /// Searches a blocker for each part of the `alive` mask and each direction for which `movable` holds. Pair `(a,
+    /// b)` of `order` demands that `b` leaves before `a`.
     pub(super) fn new(
         bodies: &'a Bodies<'a>,
         matrix: &Matrix<'a>,
@@ -89,13 +89,13 @@ impl<'a> Single<'a> {
         })
     }
 
-    /// Returns the directions along which a part is free, if there are any and it waits for nothing.
+    /// Returns the free directions of a part. Returns `None` if it has none or waits for another part.
     pub(super) fn ways(&self, part: usize) -> Option<&[usize]> {
         let ways = self.free.get(&part).filter(|_| self.waits[part] == 0);
         ways.map(|ways| &ways[..])
     }
 
-    /// Takes a part away.
+    /// Removes a part, and updates the parts that watched it or waited for it.
     pub(super) fn remove(&mut self, part: usize) {
         self.free.remove(&part);
         self.changed.push(part);
@@ -122,7 +122,7 @@ impl<'a> Single<'a> {
         }
     }
 
-    /// How many entries are kept.
+    /// Returns the number of stored entries.
     #[cfg(test)]
     pub(super) fn entries(&self) -> usize {
         self.free.values().map(Vec::len).sum::<usize>()

@@ -1,4 +1,4 @@
-//! Steps that are one for whoever does them: "8 x bolt, up 40".
+//! Stages of a plan: steps that a reader performs as one operation, for example "8 x bolt, up 40".
 
 use std::ops::Range;
 
@@ -8,19 +8,21 @@ use super::{Leg, Passed, Plan, Step};
 use crate::likes::{common_name, pairs_alike};
 use crate::part::Assembly;
 
-/// Screws that are told as one take the same turns, to this.
+/// Maximum difference of the numbers of turns within a stage.
 const SAME_TURNS: f64 = 0.01;
-/// Parts that are told as one though each has its own direction go equally far, but for this share.
+/// Relative difference of travels below which parts that leave in different directions form one stage.
 const SAME_TRAVEL: f64 = 1e-3;
-/// Stages of what comes several times over, at most.
+/// Maximum number of stages in a repeated run.
 const MOST_PERIOD: usize = 12;
 
 impl Plan {
-    /// All steps in order, in runs of parts that are alike and leave alone, in one move each, in any order: none of them
-    /// waits for another one. They leave along one direction, or equally far each along its own.
+    /// Returns the stages of the plan, as ranges of steps in their order.
+    ///
+    /// The steps of a stage remove identical parts one by one, each in one move (unscrewing included), and do not
+    /// depend on each other. They share a direction, or have equal travel along different directions.
     pub fn stages(&self) -> Vec<Range<usize>> {
         let mut stages: Vec<Range<usize>> = Vec::new();
-        // Whether all steps of the last stage go along one direction.
+        // Whether all steps of the last stage share one direction.
         let mut one_way = true;
         for (k, step) in self.steps.iter().enumerate() {
             if let Some(stage) = stages.last_mut() {
@@ -36,9 +38,11 @@ impl Plan {
         stages
     }
 
-    /// Of stages, runs that come several times over, one right after another, with parts that are alike and go along one
-    /// direction, or as far along another: "barrel, pin, piston, rod", nine times. Each is the positions of the first run and how many there are; all others are runs of one
-    /// stage, once.
+    /// Groups stages into runs that repeat one after another, for example "barrel, pin, piston, rod" nine times.
+    ///
+    /// Corresponding stages of a run remove identical parts, along the same direction or equally far. Returns for
+    /// each group the indices of the first run and the number of runs. A stage that does not repeat is a run of its
+    /// own.
     pub fn repeats(&self, stages: &[Range<usize>]) -> Vec<(Range<usize>, usize)> {
         let mut found = Vec::new();
         let mut at = 0;
@@ -55,7 +59,7 @@ impl Plan {
             };
             let runs = (1..=MOST_PERIOD).map(|period| (period, times(period)));
             let several = runs.filter(|(_, times)| *times > 1);
-            // Of equally many stages the shortest run.
+            // If two choices cover equally many stages, the shorter run wins.
             let best = several.reduce(|a, b| if b.0 * b.1 > a.0 * a.1 { b } else { a });
             let (period, times) = best.unwrap_or((1, 1));
             found.push((at..at + period, times));
@@ -64,7 +68,7 @@ impl Plan {
         found
     }
 
-    /// Whether two stages are the same work, elsewhere.
+    /// Checks whether two stages are the same operation on different parts.
     fn are_alike(&self, a: &Range<usize>, b: &Range<usize>) -> bool {
         let likes = |step: &Step| {
             let mut likes: Vec<usize> = step.parts.iter().map(|&part| self.likes[part]).collect();
@@ -80,7 +84,7 @@ impl Plan {
         let legs =
             |a: &[Leg], b: &[Leg]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| leg([a, b]));
         let step = |(a, b): (&Step, &Step)| {
-            // Of groups that were taken out in the run before, or of none.
+            // Either both take apart a group that was removed before, or neither does.
             let within = a.within.is_some() == b.within.is_some();
             within && likes(a) == likes(b) && legs(&a.path, &b.path) && legs(&a.back, &b.back)
         };
@@ -88,8 +92,10 @@ impl Plan {
         first.len() == second.len() && first.iter().zip(second).all(step)
     }
 
-    /// What a stage takes away: names of its parts, after that of their subassembly, or of several that are alike how
-    /// many, and what their names share.
+    /// Returns a description of the parts that a stage removes.
+    ///
+    /// This is the name of their subassembly with the part names. For several identical parts it is their number and
+    /// the common beginning of their names. Otherwise it is the list of names.
     pub fn takes(&self, assembly: &Assembly, stage: &Range<usize>) -> String {
         let steps = &self.steps[stage.clone()];
         let all: Vec<usize> = steps.iter().flat_map(|step| step.parts.iter().copied()).collect();
@@ -103,18 +109,18 @@ impl Plan {
         }
     }
 
-    /// Where the parts of a stage go; `None` if each goes its own way.
+    /// Returns the common direction of the steps of a stage, or `None` if their directions differ.
     pub fn direction(&self, stage: &Range<usize>) -> Option<DVec3> {
         let first = self.steps[stage.start].direction;
         self.steps[stage.clone()].iter().all(|step| step.direction == first).then_some(first)
     }
 
-    /// How far the parts of a stage have to go, at most; of several moves the last one.
+    /// Returns the largest travel of the steps of a stage. For a path of several moves the last move counts.
     pub fn travel(&self, stage: &Range<usize>) -> f64 {
         self.steps[stage.clone()].iter().map(|step| step.travel.value).fold(0.0, f64::max)
     }
 
-    /// The numbers of a stage's steps, counted from 1: "3" or "3-10".
+    /// Returns the step numbers of a stage, counted from 1: "3" or "3-10".
     pub fn numbers(stage: &Range<usize>) -> String {
         match stage.len() {
             1 => stage.end.to_string(),
@@ -122,12 +128,13 @@ impl Plan {
         }
     }
 
-    /// What the steps of a stage let pass of pairs with a fit of their own.
+    /// Returns the tolerated contacts of a stage, of pairs with a fit of their own.
     pub fn passed(&self, stage: &Range<usize>) -> Vec<Passed> {
         self.steps[stage.clone()].iter().flat_map(|step| step.passed.iter().copied()).collect()
     }
 
-    /// The same in words, of parts that are alike together: "4 x bolt and plate: thread, ...".
+    /// Returns descriptions of the tolerated contacts of a stage, with identical pairs combined: "4 x bolt and plate:
+    /// thread, ...".
     pub fn passed_words(&self, assembly: &Assembly, stage: &Range<usize>) -> Vec<String> {
         let all = self.passed(stage);
         let said = |passed: &Passed| passed.tolerated.words(passed.role);
@@ -145,7 +152,8 @@ impl Plan {
         pairs_alike(&self.likes, all).into_iter().map(told).collect()
     }
 
-    /// Checks whether a step is of one stage with those before it; `one_way` is whether all go along one direction.
+    /// Checks whether a step belongs to the stage before it. `one_way` states whether all of them share one
+    /// direction.
     fn joins(&self, stage: &Range<usize>, step: &Step, one_way: bool) -> bool {
         let first = &self.steps[stage.start];
         let turns = |step: &Step| step.turn().map_or(0.0, |turn| turn.turns);

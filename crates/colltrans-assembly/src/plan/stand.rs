@@ -1,11 +1,14 @@
-//! What stands, and on what: support polygons under gravity.
+//! Stability of parts under gravity, by support polygons.
 //!
-//! Notation: seen from above is seen along `up`. What a part *rests on* is what it meets at once along `-up`; its *support*
-//! are the corners of where it touches these with facets that look down. It *stands* if its centre of mass, seen from above,
-//! lies in the convex hull of its support, by more than the centre may be off and contacts reach; it is *off balance* if it
-//! lies outside by more than that; *between* nothing is said, nor of a part that rests on something without such facets, on
-//! a slant or an edge, nor of surfaces. Friction, what leans on it, and what holds it at its sides do not count: whether what
-//! is off balance falls is not said.
+//! - A part *rests on* the parts that block it at once along `-up`.
+//! - Its *support* is the convex hull, projected along `up`, of the areas in which its downward facets touch these
+//!   parts.
+//! - A part is *off balance* if its centre of mass projects outside of the support by more than the error of the
+//!   centre plus the contact reach. Otherwise it counts as *standing*.
+//! - A part also counts as standing if some part below touches none of its downward facets (a slant or an edge), or
+//!   if it is a surface.
+//!
+//! Friction and lateral support are ignored. Therefore a part that is off balance need not fall.
 
 use glam::{DVec2, DVec3};
 
@@ -13,27 +16,27 @@ use crate::bodies::Bodies;
 use crate::inertia;
 use crate::liaisons::{footprint, reach};
 
-/// How a part stands.
+/// Stability of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// Its centre of mass lies over what carries it, or nothing else is known.
+    /// Its centre of mass is above the support, or no instability is established.
     Stands,
-    /// Its centre of mass lies beyond that.
+    /// Its centre of mass is outside of the support.
     OffBalance,
-    /// It rests on nothing.
+    /// It rests on no part.
     Falls,
 }
 
-/// A part, as seen from above.
+/// The support of a part, projected along `up`.
 pub(super) struct Base {
-    /// Where its centre of mass is, and how far beside that it may be; `None` of surfaces.
+    /// Centre of mass and its error plus the contact reach; `None` for surfaces.
     center: Option<(DVec2, f64)>,
-    /// On what it rests, and where; nowhere, if not with facets that look down.
+    /// The parts that it rests on, each with the corners of the contact; no corners if no downward facet touches.
     on: Vec<(usize, Vec<DVec2>)>,
 }
 
 impl Base {
-    /// Of a part that rests on others.
+    /// Computes the support of a part that rests on others.
     pub(super) fn new(bodies: &Bodies, part: usize, on: &[usize], up: DVec3) -> Self {
         let parts = bodies.assembly().parts();
         let (u, v) = up.any_orthonormal_pair();
@@ -53,7 +56,7 @@ impl Base {
         self.on.iter().map(|(part, _)| *part)
     }
 
-    /// How it stands on those that `carry`.
+    /// Returns the stability of the part if only the parts for which `carry` holds support it.
     pub(super) fn standing(&self, carry: impl Fn(usize) -> bool) -> Standing {
         let mut under = self.on.iter().filter(|(part, _)| carry(*part)).peekable();
         if under.peek().is_none() {
@@ -75,7 +78,7 @@ impl Base {
     }
 }
 
-/// The corners of the convex hull, counter-clockwise.
+/// Returns the corners of the convex hull, counter-clockwise (Andrew's monotone chain).
 fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
@@ -102,7 +105,8 @@ fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     all
 }
 
-/// How far a point lies inside of a convex polygon; negative, if it lies outside by so much at least.
+/// Returns the distance of a point to the boundary of a convex polygon, positive inside. Outside, the value is
+/// negative and its absolute value is a lower bound of the distance.
 fn inside(polygon: &[DVec2], point: DVec2) -> f64 {
     let to_segment = |a: DVec2, b: DVec2| {
         let along = (point - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);

@@ -1,4 +1,4 @@
-//! A step of a plan: a group that is taken out, in one straight move or in several.
+//! A step of a plan: the removal of a group by one or several moves.
 
 use std::f64::consts::TAU;
 
@@ -9,59 +9,62 @@ use glam::{DQuat, DVec3};
 use super::Passed;
 use crate::part::Assembly;
 
-/// Pairs that are ignored are named up to so many for a step.
+/// Maximum number of ignored pairs that are named for a step.
 const MOST_NAMED: usize = 4;
 
-/// A move of some parts, as one: straight, or as a screw about an axis along it.
+/// A motion of some parts as one body: a translation, or a screw motion about an axis along the translation.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Leg {
-    /// Positions of the parts, in increasing order.
+    /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// Where to, of length 1.
+    /// Direction of the translation, of length 1.
     pub direction: DVec3,
-    /// How far.
+    /// Length of the translation.
     pub travel: f64,
-    /// How they turn meanwhile, evenly, if they do.
+    /// Uniform rotation during the translation, if any.
     pub turn: Option<Turn>,
 }
 
-/// How parts turn while they go along a [leg](Leg), about an axis along its direction.
+/// Rotation of parts during a [leg](Leg), about an axis along its direction.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Turn {
     /// A point on the axis.
     pub point: DVec3,
-    /// How many turns, counter-clockwise as seen against the direction if positive.
+    /// Number of turns. Positive turns are counter-clockwise if seen against the direction.
     pub turns: f64,
-    /// The threads overlap least, or have play, where the parts are first turned by so many turns, counted alike, ...
+    /// Initial rotation in turns, of the same sign convention. With it and `aside` the threads overlap least, or have
+    /// play.
     pub phase: f64,
-    /// ... and put aside by this vector: 0 where the file has them so.
+    /// Initial displacement of the parts; 0 if the file has them in this position.
     pub aside: DVec3,
-    /// What proves that they may turn so, or why that is not proven.
+    /// The proof of the motion, or the reason why it is not proven.
     pub proof: Result<TurnProof, String>,
 }
 
-/// That parts turn as a leg says, and then go straight on, is proven, against all that is left.
+/// Proof that parts perform the screw motion of a leg, and then move straight, without contact with the remaining
+/// parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TurnProof {
-    /// The length by half of which both sides of the thread are shrunk for it.
+    /// Tolerance of the thread: both sides are shrunk by half of it.
     pub tolerance: f64,
-    /// Pairs of parts of the bodies, in intervals of time, that were looked at for it.
+    /// Number of pairs of body parts, in intervals of time, that the proof visited.
     pub pairs: u64,
 }
 
 impl Leg {
-    /// A straight one.
+    /// Returns a translation.
     pub(super) const fn straight(parts: Vec<usize>, direction: DVec3, travel: f64) -> Self {
         Self { parts, direction, travel, turn: None }
     }
 
-    /// The same for a [`MotionCast`](colltrans::motion::MotionCast) of the parts as they stand in the assembly.
+    /// Returns the leg as a motion for a [`MotionCast`](colltrans::motion::MotionCast) of the parts in their initial
+    /// poses.
     ///
     /// # Errors
-    /// Numbers that are out of range.
+    /// Returns an error if a number is out of range.
     pub fn motion(&self) -> Result<Motion, MotionError> {
         let Some(turn) = &self.turn else {
             return Motion::slide(Pose::IDENTITY, self.direction * self.travel);
@@ -76,7 +79,7 @@ impl Leg {
         Motion::screw(start, turn.point, self.direction, TAU * turn.turns, self.travel)
     }
 
-    /// Where it has brought a point after a share of it, from 0 to 1.
+    /// Returns the position of a point after a fraction of the leg, from 0 to 1.
     pub fn moved(&self, point: DVec3, share: f64) -> DVec3 {
         let by = self.direction * (self.travel * share);
         let Some(turn) = &self.turn else { return point + by };
@@ -86,12 +89,12 @@ impl Leg {
 }
 
 impl Turn {
-    /// How it has turned the parts of its leg after a share of it, from 0 to 1.
+    /// Returns the rotation of the parts after a fraction of the leg, from 0 to 1.
     pub fn rotation(&self, leg: &Leg, share: f64) -> DQuat {
         DQuat::from_axis_angle(leg.direction, TAU * (self.phase + self.turns * share))
     }
 
-    /// How much is turned, and whether that is proven, in words.
+    /// Returns a description of the turns and of their proof.
     pub fn words(&self) -> String {
         let turns = format!("{:.3} turns", self.turns.abs());
         let hand = if self.turns < 0.0 { ", clockwise as seen from where it goes" } else { "" };
@@ -112,45 +115,47 @@ impl Turn {
     }
 }
 
-/// A group that is taken out.
+/// The removal of a group.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Step {
-    /// Positions of the parts, in increasing order.
+    /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// Where to, of length 1; of several moves that of the one which takes them out.
+    /// Direction of the removal, of length 1. For a path of several moves, that of the last one.
     pub direction: DVec3,
-    /// How far until it lies wholly beyond what is left; 0 if nothing is ahead. What the boxes of their
-    /// shadows miss by more than rounding is not ahead. Of several moves that of the last one.
+    /// Travel along `direction` until the group is beyond all remaining parts; 0 if none is ahead. Parts whose
+    /// projected boxes are separated by more than rounding errors are not ahead. For a path of several moves, the
+    /// travel of the last one.
     pub travel: Bounded,
-    /// The moves that take the group out, in order: of it, or of parts that make room. With the last one the group
-    /// leaves, along `direction` for `travel`; mostly there is no other.
+    /// The moves that remove the group, in order, of the group or of parts that make room. In the last one the group
+    /// leaves, along `direction` for `travel`. Mostly this is the only one.
     pub path: Vec<Leg>,
-    /// How what made room goes back to its place, by the same ways reversed, once the group has left; and parts of the
-    /// group, if it left with one moved against another. So after each step what is left stands where it stood.
+    /// The reversed moves of parts that made room, after the group has left, and of parts of the group that left with
+    /// a relative displacement. After each step all remaining parts are in their initial poses.
     pub back: Vec<Leg>,
-    /// For a step that takes a group apart: the step that took the group out.
+    /// For a step that takes a group apart: the index of the step that removed the group.
     pub within: Option<usize>,
-    /// The steps before it without which it would not go, in increasing order: that took away what it meets on its way,
-    /// or the group that it takes apart. Of several moves all before it. All others may as well come later.
+    /// Indices of the steps that must precede this one, in increasing order: those that removed parts in its way,
+    /// that order constraints demand, or that removed the enclosing group. A path of several moves follows all
+    /// earlier steps of its group. Other steps may also come later.
     pub after: Vec<usize>,
-    /// What the step does not speak of: of each pair the first part moves and the second stays, and
-    /// their overlap at the start, or all that they do, is ignored on request.
+    /// Pairs to which the step does not apply, the moving part first. Their overlap at the start, or all of their
+    /// contacts, are ignored on request.
     pub ignored: Vec<[usize; 2]>,
-    /// What it lets pass of pairs that have a [role](crate::roles) or a tolerance of their own.
+    /// Tolerated contacts of pairs that have a [role](crate::roles) or a tolerance of their own.
     pub passed: Vec<Passed>,
-    /// What then rests on nothing that is left, in increasing order: hold it.
+    /// Parts that nothing carries after the step, in increasing order. They must be held.
     pub falls: Vec<usize>,
-    /// What stood before, and whose centre of mass then lies beyond what carries it: it tips, unless it is held at its
-    /// sides.
+    /// Parts that stood before the step and whose centre of mass is then outside of their support. They tip unless
+    /// they are supported laterally.
     pub off_balance: Vec<usize>,
-    /// The open surfaces that it rests on, in increasing order: of the group, and of what is left and in
-    /// its way or beside it. What they block is known; what is inside of them is not.
+    /// Open surfaces on which the step depends, in increasing order: those of the group, and remaining ones ahead of
+    /// its boxes. Their facets block, but what they enclose is unknown.
     pub surfaces: Vec<usize>,
 }
 
 impl Step {
-    /// What it does not speak of, in words; `None` if there is nothing.
+    /// Returns a description of the ignored pairs, or `None` if there are none.
     pub fn ignores(&self, assembly: &Assembly) -> Option<String> {
         let pair = |p: &[usize; 2]| assembly.names(p).join(" and ");
         let named: Vec<String> = self.ignored.iter().take(MOST_NAMED).map(pair).collect();
@@ -161,7 +166,7 @@ impl Step {
         (!named.is_empty()).then(|| format!("ignored: {}{more}", named.join(", ")))
     }
 
-    /// What is no longer carried once it is done, in words.
+    /// Returns descriptions of the parts that fall or are off balance after the step.
     pub fn unsettled(&self, assembly: &Assembly) -> Vec<String> {
         let said = |parts: &[usize], what: &str| {
             let names = assembly.names(parts).join(", ");
@@ -172,12 +177,13 @@ impl Step {
         falls.into_iter().chain(tips).collect()
     }
 
-    /// The turn of what is unscrewed, if it is.
+    /// Returns the first turn of the path, or `None` if the step has none.
     pub fn turn(&self) -> Option<&Turn> {
         self.path.iter().find_map(|leg| leg.turn.as_ref())
     }
 
-    /// All moves, as a picture shows them: the group goes `beyond` its travel before anything goes back.
+    /// Returns all moves with their displacements as pictures show them: the group moves `beyond` its travel before
+    /// other parts return.
     pub fn shown(&self, beyond: f64) -> impl Iterator<Item = (&Leg, DVec3)> {
         let last = self.path.len() - 1;
         self.path.iter().chain(&self.back).enumerate().map(move |(k, leg)| {

@@ -1,35 +1,37 @@
-//! How long a plan takes, by a table of handling times.
+//! Duration of a plan, from a table of handling times.
 
 use serde::{Deserialize, Serialize};
 
 use super::Plan;
 use crate::roles::Role;
 
-/// Seconds for what a plan asks of whoever follows it: round figures of the order of those of Boothroyd, Dewhurst and
-/// Knight, *Product Design for Manufacture and Assembly*, chapter 3; whoever has measured better ones replaces them.
+/// Handling times in seconds.
+///
+/// The defaults are round figures of the order of those of Boothroyd, Dewhurst and Knight, *Product Design for
+/// Manufacture and Assembly*, chapter 3. Replace them if measured times are available.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Times {
-    /// To grasp what leaves.
+    /// Grasping the parts that leave.
     pub grasp: f64,
-    /// Each straight move, of what leaves or makes room.
+    /// Each move, of the parts that leave or of parts that make room.
     pub r#move: f64,
-    /// Another direction than in the step before.
+    /// A direction that differs from that of the step before.
     pub direction: f64,
-    /// Another shape than in the step before: another tool.
+    /// A shape that differs from that of the step before, because it needs another tool.
     pub shape: f64,
-    /// A group of several parts, more than one part.
+    /// A group of several parts, in addition to the time for one part.
     pub group: f64,
-    /// Each part that is to be held, as it falls or is off balance.
+    /// Each part that must be held because it falls or is off balance.
     pub hold: f64,
-    /// Each pair that is pressed, ...
+    /// Each pair with a press fit.
     pub press: f64,
-    /// ... soft, ...
+    /// Each pair with a soft part.
     pub soft: f64,
-    /// ... snapped, ...
+    /// Each snap fit.
     pub snap: f64,
-    /// ... screwed.
+    /// Each threaded pair.
     pub thread: f64,
 }
 
@@ -51,7 +53,8 @@ impl Default for Times {
 }
 
 impl Times {
-    /// The name and the value of an entry that is no time, if there is one.
+    /// Returns the name and the value of the first entry outside of 0 to 1e9 seconds, or `None` if all entries are
+    /// valid.
     pub fn wrong(&self) -> Option<(&'static str, f64)> {
         let all = [
             ("grasp", self.grasp),
@@ -68,7 +71,7 @@ impl Times {
         all.into_iter().find(|(_, seconds)| !(0.0..=1e9).contains(seconds))
     }
 
-    /// Seconds for each step of a plan, in its order.
+    /// Returns the seconds of each step of a plan, in its order.
     pub fn of(&self, plan: &Plan) -> Vec<f64> {
         let mut last = None;
         let step = |step: &super::Step| {

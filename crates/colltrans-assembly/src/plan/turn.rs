@@ -1,11 +1,11 @@
-//! Threads are unscrewed.
+//! Unscrewing motions of threaded parts.
 //!
-//! A step pulls a screw out as its core, which is proven by casts. Here the turn that a mechanic makes of it is found and
-//! proven: the screw, as the file has it, on its helix, until its thread is out of the hole, and straight on from
-//! there, against all that is left. Where the file has the threads in each other, it begins where they overlap least.
-//! What cannot be proven is told all the same, with why.
+//! A step removes a screw as its core, which casts prove. This module constructs the turn that a mechanic makes and
+//! tries to prove it. The screw, with the geometry of the file, follows its helix until its thread has left the hole,
+//! and then moves straight, against all remaining parts. If the threads of the file overlap, the motion starts from
+//! the pose of least overlap. A motion that is not proven is reported with the reason.
 //!
-//! Notation: of a leg along `d` turns are counted about `d`, counter-clockwise as seen against it.
+//! Notation: turns of a leg along `d` are about `d`, and counter-clockwise if seen against `d`.
 
 use colltrans::motion::Motion;
 use colltrans::{Bounded, QueryError};
@@ -16,21 +16,25 @@ use crate::bodies::{Bodies, Turned, two_digits_up};
 use crate::threads::{Seat, Thread};
 use colltrans::solid::StartOverlap;
 
-/// A step goes along the axis of a thread within this angle, in radians.
+/// Maximum angle between a step and the axis of a thread, in radians.
 const ALONG: f64 = 0.02;
-/// It is the axis within this one.
+/// Angle below which the direction of the step replaces the axis, in radians.
 const ONE: f64 = 1e-3;
-/// Threads of one turn: their axes within this share of the crest, and pitches within this of each other.
+/// Two threads turn together if their axes differ by less than this fraction of the crest radius and their pitches by
+/// less than this fraction.
 const SAME: f64 = 0.02;
-/// No tolerance is tried beyond this share of the depth of a thread, and none that was asked for is exceeded.
+/// Maximum tolerance that is tried, as a fraction of the thread's depth. A tolerance given for the pair is never
+/// exceeded.
 const DEEPEST: f64 = 0.25;
-/// The first one beside that of all parts, as a share of that depth.
+/// First tolerance that is tried after that of all parts, as a fraction of the thread's depth.
 const FIRST: f64 = 0.02;
-/// A tolerance beyond the least one.
+/// Factor by which a tolerance exceeds the least possible one.
 const BEYOND: f64 = 1.05;
 
-/// The two moves of a step that unscrews some parts from others, which alone are there: turning, and straight on; `None` if
-/// nothing is screwed between them, or nothing looks like a helix. `travel` is how far the parts go in all.
+/// Returns the two legs of a step that unscrews some parts from others, and the travel of the second leg.
+///
+/// The first leg turns, the second is straight. Only the others are present. `travel` is the total distance. Returns
+/// `None` if no thread connects the parts, or if no helix was found.
 pub(super) fn unscrewed(
     bodies: &Bodies,
     (parts, direction): (&[usize], DVec3),
@@ -60,8 +64,8 @@ pub(super) fn unscrewed(
     Some((legs, rest))
 }
 
-/// The threads between parts that go and others that are there, about axes along the way: the first part of each pair
-/// goes.
+/// Returns the threads between moving parts and present ones whose axes are along the direction. The first part of
+/// each pair moves.
 fn threads(
     bodies: &Bodies,
     parts: &[usize],
@@ -75,13 +79,13 @@ fn threads(
     found.collect()
 }
 
-/// The motion of parts that are unscrewed.
+/// The screw motion of parts that are unscrewed.
 struct Screw {
-    /// The thread, and whether what moves has it on its outside.
+    /// The thread, and whether the moving part has the external thread.
     thread: Thread,
     is_inner: bool,
     seat: Seat,
-    /// A point on the axis that stays, and the axis, along the way.
+    /// A point on the axis of the stationary part, and the axis, which points along the motion.
     point: DVec3,
     axis: DVec3,
     way: f64,
@@ -97,14 +101,15 @@ impl Screw {
         if axis.cross(d).length() < ONE {
             axis = d;
         }
-        // The hole goes the other way than the screw would.
+        // A moving hole takes the opposite direction of a moving screw.
         let way = seat.ways[usize::from((sense < 0.0) == is_inner)];
         let point = thread.axis[0] + if is_inner { seat.aside } else { DVec3::ZERO };
         let turns = way / thread.pitch?;
         Some(Self { thread, is_inner, seat, point, axis, way, turns })
     }
 
-    /// Whether what moves turns about the axis of the thread or against it, and the same if that is the hole.
+    /// Returns the sense of the motion along the thread's axis, 1 or -1 (reversed if the hole moves), and the axis
+    /// along the motion.
     fn sense(&self) -> (f64, DVec3) {
         let (sense, axis) = sense(&self.thread, self.axis);
         (if self.is_inner { sense } else { -sense }, axis)
@@ -120,13 +125,13 @@ impl Screw {
             && (a - b).abs() < SAME * a.abs()
     }
 
-    /// From where the screw sits best, along its helix; not proven yet.
+    /// Returns the leg along the helix, from the pose in which the screw fits best. Its proof is still missing.
     fn leg(&self, parts: &[usize]) -> Leg {
         let (sense, _) = self.sense();
         let turn = Turn {
             point: self.point,
             turns: self.turns,
-            // Zeros without a sign.
+            // Adding 0 removes the sign of zeros.
             phase: sense * self.seat.phase + 0.0,
             aside: self.seat.aside * if self.is_inner { 1.0 } else { -1.0 } + DVec3::ZERO,
             proof: Err(String::new()),
@@ -135,7 +140,8 @@ impl Screw {
         Leg { parts, direction, travel: self.way, turn: Some(turn) }
     }
 
-    /// Whether the parts may go so, with the tolerance of the thread that it takes; else why not.
+    /// Tries to prove the leg and the straight motion after it. Returns the tolerance of the thread that this needs,
+    /// or the reason of the failure.
     fn proven(
         &self,
         bodies: &Bodies,
@@ -190,7 +196,8 @@ impl Screw {
         }
     }
 
-    /// The tolerance with which a thread turns, and how many pairs were looked at for it.
+    /// Searches for a tolerance with which a thread turns freely. Returns it with the number of pairs that were
+    /// visited, or the reason of the failure.
     fn tolerated(
         &self,
         bodies: &Bodies,
@@ -226,7 +233,8 @@ impl Screw {
     }
 }
 
-/// Whether a way goes along the axis of a thread or against it, 1 or -1, and that axis along the way.
+/// Returns 1 if a direction is along the axis of the thread and -1 if it is opposite, and the axis along the
+/// direction.
 fn sense(thread: &Thread, d: DVec3) -> (f64, DVec3) {
     let sense = if thread.axis[1].dot(d) < 0.0 { -1.0 } else { 1.0 };
     (sense, thread.axis[1] * sense)

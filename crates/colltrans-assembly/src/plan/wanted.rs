@@ -1,4 +1,4 @@
-//! Some parts taken out, and no more than has to go for that.
+//! Removal of selected parts together with as few other parts as possible.
 
 use std::collections::BTreeMap;
 
@@ -12,26 +12,29 @@ use crate::matrix::Matrix;
 use crate::part::Assembly;
 use crate::watch::Watch;
 
-/// What goes for some parts to come out.
+/// The parts that are removed so that selected parts come out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Wanted {
-    /// Positions of the parts, in increasing order.
+    /// Indices of the selected parts, in increasing order.
     pub parts: Vec<usize>,
-    /// What else is taken away, in increasing order.
+    /// Indices of the other removed parts, in increasing order.
     pub others: Vec<usize>,
-    /// Whether it is certain that no fewer others are enough, in single moves along the directions of the matrix, whatever
-    /// groups go along whichever of them. Nothing is said of other directions.
+    /// Whether it is certain that fewer other parts do not suffice. This covers single moves of any groups along the
+    /// directions of the matrix, not other directions.
     pub least: bool,
-    /// Whether the parts come out.
+    /// Whether all selected parts come out.
     pub out: bool,
 }
 
-/// Takes some parts out, with the fewest others along the directions of a matrix that are enough; if none are, with
-/// whatever a plan of all takes away before them and they need.
+/// Computes a plan that removes selected parts.
+///
+/// Removes the fewest other parts that suffice along the directions of the matrix. If no set suffices, computes a
+/// plan of all parts and keeps the steps that the selected parts need.
 ///
 /// # Errors
-/// As [`disassemble`](super::disassemble); no parts, or all of them; one that is fixed.
+/// Returns the errors of [`disassemble`](super::disassemble), and an error if no parts or all parts are selected or a
+/// selected part is fixed.
 pub fn remove<'a>(
     bodies: &'a Bodies<'a>,
     matrix: &Matrix<'a>,
@@ -72,7 +75,7 @@ pub fn remove<'a>(
 }
 
 impl Plan {
-    /// Leaves out the steps without which some parts come out as well, if they come out.
+    /// Drops the steps that the selected parts do not need. Does nothing if a selected part does not come out.
     fn keep_needed(&mut self, wanted: &[usize], count: usize) {
         let is_there = |part: &usize| self.left.contains(part) || self.last.contains(part);
         if wanted.iter().any(is_there) {
@@ -96,7 +99,7 @@ impl Plan {
         self.last = (0..count).filter(|part| !gone.contains(part)).collect();
     }
 
-    /// Marks what a step comes after.
+    /// Marks all steps that must precede a step.
     fn need(&self, step: usize, needed: &mut [bool]) {
         for &k in &self.steps[step].after {
             if !std::mem::replace(&mut needed[k], true) {
@@ -107,7 +110,7 @@ impl Plan {
 }
 
 impl Wanted {
-    /// What goes, in words.
+    /// Returns a sentence that lists the removed parts.
     pub fn words(&self, assembly: &Assembly) -> String {
         let names = |parts: &[usize]| assembly.names(parts).join(", ");
         let wanted = names(&self.parts);

@@ -1,4 +1,4 @@
-//! Bounds of what the answers say, held against fractions.
+//! Bounds of answers, compared with fractions.
 
 use crate::common::*;
 use colltrans::Solid;
@@ -13,13 +13,13 @@ use colltrans_testkit::oracle::exact::{Dyadic, Vector};
 use colltrans_testkit::random::Random;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-/// Somewhere, turned somehow.
+/// Returns a random pose.
 fn pose(random: &mut Random) -> DAffine3 {
     let turn = DQuat::from_axis_angle(random.direction(), 6.0 * random.unit());
     DAffine3::from_mat3_translation(DMat3::from_quat(turn), random.direction() * 100.0)
 }
 
-/// Six times the volume.
+/// Returns six times the volume, exactly.
 fn six_volumes(solid: &Solid) -> Dyadic {
     let of = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| Vector::new(solid.vertices()[v as usize]));
@@ -47,7 +47,7 @@ fn volumes_lie_within_their_bounds() {
     assert_eq!(part("open", &[open]).solid().volume_bounds(), None);
 }
 
-/// How far boxes that were turned go until they are beyond each other, by the exact heights of corners.
+/// Bounds of travels of rotated boxes are compared with the exact heights of their corners.
 #[test]
 fn travels_lie_within_their_bounds() {
     let mut random = Random::new(9);
@@ -88,8 +88,8 @@ fn travels_lie_within_their_bounds() {
     }
 }
 
-/// A head stops at 7, whatever its tolerance: both bounds of its true place are near, and what is safe is
-/// the lower one.
+/// A head stops at 7 for every tolerance. Both bounds of its nominal contact are tight, and the lower one is the safe
+/// travel.
 #[test]
 fn a_head_is_safe_up_to_the_lower_bound_of_its_true_place() {
     let mut random = Random::new(4);
@@ -111,13 +111,13 @@ fn a_head_is_safe_up_to_the_lower_bound_of_its_true_place() {
         let PartRoom::Blocked { stop, .. } = found[0][0] else { panic!("{found:?}") };
         let [low, high] = stop.translation.bounds();
         assert!(low <= 7.0 + 1e-12 && low > 7.0 - 1e-9 && high >= 7.0 - 1e-12, "{stop:?}");
-        // Where rounding cannot tell that the facets meet as they are, the shrunk bodies do beyond.
+        // If rounding hides the contact of the nominal facets, the shrunk bodies meet beyond it.
         assert!(high < 7.0 + tolerance + 1e-9, "{stop:?}");
         assert_eq!(stop.distance(), low);
         assert!(low <= stop.displaced.lower);
         assert!((stop.displaced.value - 7.0 - tolerance).abs() < 1e-9);
     }
-    // With a length to keep, what is safe is what the grown parts have for certain.
+    // With a minimum gap, the safe travel is the lower bound of the expanded parts.
     let parts = vec![
         part("a", &[cuboid([0.0; 3], [1.0; 3])]),
         part("b", &[cuboid([0.0, 0.0, 4.0], [1.0, 1.0, 5.0])]),

@@ -1,5 +1,5 @@
-//! Plans with an order, subassemblies and directions that parts never take, and the least that goes for some to come out,
-//! held against all groups of parts tried in all directions.
+//! Plans with order constraints, subassemblies and forbidden directions, and smallest removal sets, compared with
+//! trials of all groups along all directions.
 
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::matrix::Matrix;
@@ -21,7 +21,7 @@ fn matrix<'a>(bodies: &'a Bodies<'a>) -> Matrix<'a> {
     Matrix::new(bodies, &AXES, &all, StartOverlap::Refuse, Watch::default()).unwrap()
 }
 
-/// What is asked, once more, in sets of bits.
+/// The constraints as bit sets, independent of the assembly.
 #[derive(Debug, Default)]
 struct Asked {
     before: Vec<[usize; 2]>,
@@ -31,10 +31,10 @@ struct Asked {
     fixed: u32,
 }
 
-/// All pairs in all directions.
+/// A reference solution from the contacts of all pairs along all directions.
 struct Judge {
     count: usize,
-    /// By direction and part: whom it meets.
+    /// For each direction and part, the parts that block it.
     met: Vec<Vec<u32>>,
     asked: Asked,
 }
@@ -59,7 +59,7 @@ impl Judge {
         Self { count, met: met.to_vec(), asked }
     }
 
-    /// Whether a set can leave the others that are left along a direction.
+    /// Checks whether a set can leave the remaining parts along a direction.
     fn leaves(&self, set: u32, left: u32, k: usize) -> bool {
         let (rest, has) = (left & !set, |part: usize| set >> part & 1 == 1);
         let Asked { before, together, subassemblies, never, fixed } = &self.asked;
@@ -72,7 +72,7 @@ impl Judge {
             && !never.iter().any(|&(part, d)| has(part) && d == k)
     }
 
-    /// What is left once whatever of `movable` can leave has, again and again; of `left` something stays.
+    /// Returns the remaining parts after repeated removal of subsets of `movable`; at least one part remains.
     fn left(&self, mut left: u32, movable: u32) -> u32 {
         loop {
             let leaving = (1..1_u32 << self.count).find(|&set| {
@@ -87,7 +87,7 @@ impl Judge {
         }
     }
 
-    /// The fewest parts that are enough for these to come out.
+    /// Returns the size of a smallest set whose removal takes these parts out.
     fn least(&self, wanted: u32) -> Option<u32> {
         let all = (1_u32 << self.count) - 1;
         let enough =
@@ -99,7 +99,7 @@ impl Judge {
         AXES.iter().position(|axis| *axis == d).unwrap()
     }
 
-    /// Each step leaves what is left then, in any order that the steps allow; what is left at the end.
+    /// Checks that each step can leave, also in random orders that respect `after`. Returns the remaining parts.
     fn walked(&self, plan: &Plan, within: Option<usize>, all: u32, random: &mut Random) -> u32 {
         let own = plan.steps.iter().enumerate().filter(|(_, step)| step.within == within);
         let steps: Vec<(usize, &Step)> = own.collect();
@@ -127,8 +127,7 @@ impl Judge {
         left
     }
 
-    /// All steps of a round in any order, and the way back, piece by piece; each way out of a part, once what it waits for
-    /// has gone.
+    /// Checks the rounds in reverse order, the assembly sequence, and each alternative of the AND/OR graph.
     fn backwards(&self, plan: &Plan, ways: &serde_json::Value) {
         let all = (1_u32 << self.count) - 1;
         let main = |k: &usize| plan.steps[*k].within.is_none();
@@ -151,7 +150,7 @@ impl Judge {
         for (name, node) in ways.as_object().unwrap() {
             let part: usize = name.parse().unwrap();
             if self.asked.fixed >> part & 1 == 1 {
-                // The base, as we judge it, is not fixed for the graph.
+                // The base of the reference is not fixed in the graph.
                 continue;
             }
             for way in node["or"].as_array().unwrap() {
@@ -160,7 +159,7 @@ impl Judge {
                 let gone: Vec<usize> = and.iter().map(|name| name.parse().unwrap()).collect();
                 let (set, k) = (1 << part, Self::position(DVec3::from_slice(&d)));
                 assert!(self.leaves(set, all & !bits(&gone), k), "{name}: {way}");
-                // None of them is named in vain, but for what a subassembly is taken apart without at last.
+                // No listed part is redundant, except for those for which a subassembly is taken apart last.
                 let apart = self.asked.subassemblies.iter().any(|unit| unit >> part & 1 == 1);
                 for &one in gone.iter().filter(|_| !apart) {
                     assert!(!self.leaves(set, all & !bits(&gone) | 1 << one, k), "{name}: {way}");
@@ -174,7 +173,7 @@ fn random_of<'a, T>(all: &'a [T], random: &mut Random) -> &'a T {
     &all[random.index(all.len())]
 }
 
-/// Boxes that touch, some with a pocket in which another one is.
+/// Returns boxes that touch, some with a pocket that contains another one.
 fn boxes(random: &mut Random) -> Assembly {
     let mut parts = vec![part("0", &[cuboid([0.0, 0.0, -1.0], [6.0, 6.0, 0.0])])];
     let count = 3 + random.index(4);
@@ -194,7 +193,7 @@ fn boxes(random: &mut Random) -> Assembly {
     Assembly::new(parts).unwrap()
 }
 
-/// The same with demands that do not contradict each other, both ways.
+/// Adds random constraints that do not contradict each other, to the assembly and to the reference.
 fn asked(mut assembly: Assembly, random: &mut Random) -> (Assembly, Asked) {
     let count = assembly.parts().len();
     let mut asked = Asked::default();
@@ -250,7 +249,7 @@ fn plans_take_as_much_apart_as_all_groups_tried_and_in_an_order_that_is_asked_fo
         let all = (1_u32 << bodies.len()) - 1;
         let left = judge.walked(&plan, None, all, &mut random);
         assert_eq!(left, bits(&plan.left) | bits(&plan.last), "round {round}");
-        // The plate is the base, unless it has to leave before others.
+        // The plate is the base, unless it must leave before others.
         if judge.asked.fixed == 1 || judge.asked.before.iter().all(|pair| pair[0] != 0) {
             judge.asked.fixed = 1;
             assert_eq!(left, judge.left(all, all), "round {round}");
@@ -315,7 +314,7 @@ fn the_least_is_that_of_all_sets() {
     assert!(out > 200 && alone > 50 && out > alone + 50 && held > 20, "{out} {alone} {held}");
 }
 
-/// A box with a lid, a core in it, and a cup on the lid.
+/// Returns a box with a lid, a core inside, a cup on the lid, and a separate post.
 fn closed() -> Assembly {
     let parts = vec![
         part("box", &well([0.0; 3], [3.0; 3], 1.0)),
@@ -378,7 +377,7 @@ fn a_subassembly_leaves_as_one_and_is_taken_apart_and_what_stays_together_is_not
     let (steps, plan) = taken(&one, &[]);
     assert!(steps.contains(&vec!["lid".into(), "cup".into()]) && steps.len() == 3);
     assert!(plan.stuck.is_empty() && assembly_left(&one, &plan) == ["box"]);
-    // Never up: the core cannot leave, and it is said that this is asked for.
+    // If up is forbidden, the core cannot leave, and the plan reports the constraint.
     let never = plain.with_never(&["co*"], DVec3::Z, 30.0).unwrap();
     let (_, plan) = taken(&never, &[]);
     assert_eq!(assembly_left(&never, &plan), ["box", "core"]);
@@ -403,11 +402,11 @@ fn several_moves_keep_the_order_and_the_directions_that_are_asked_for() {
     let [step] = &plain.steps[..] else { panic!("{plain:?}") };
     assert!(step.parts == [1] && step.path.len() > 1, "{step:?}");
     let first = step.path[0].direction;
-    // The plate goes, the other way.
+    // The plate moves in the opposite direction.
     let turned = plan(stud().with_before(&["plate"], &["stud"]).unwrap());
     let [step] = &turned.steps[..] else { panic!("{turned:?}") };
     assert!(step.parts == [0] && step.path.iter().all(|leg| leg.parts == [0]), "{step:?}");
-    // Or neither goes that way.
+    // Or neither part moves along it.
     let never = stud().with_never(&["stud"], first, 45.0).unwrap();
     for step in &plan(never.clone()).steps {
         let mut own = step.path.iter().filter(|leg| leg.parts.contains(&1));
@@ -416,7 +415,7 @@ fn several_moves_keep_the_order_and_the_directions_that_are_asked_for() {
     let held = plan(never.with_fixed(&["plate"]).unwrap());
     assert!(held.steps.is_empty() && held.stuck[0].constrained);
     assert_eq!(held.stuck[0].moves, Moves::NotKept);
-    // What leaves as one is not moved one by one.
+    // Parts that leave as one do not move separately.
     let as_one = plan(stud().with_together(&["plate", "stud"]).unwrap());
     assert!(as_one.steps.is_empty(), "{as_one:?}");
 }

@@ -1,4 +1,4 @@
-//! What looks odd about parts: identical ones, frames of their own, other units; and what looks well is not said to be odd.
+//! Hints about parts: identical parts, parts in their own frames, and other units. Sound assemblies get no such hint.
 
 use colltrans_assembly::hints::{Hint, HintKind, hints};
 use colltrans_assembly::start::Start;
@@ -17,7 +17,7 @@ fn of_kind(hints: &[Hint], kind: HintKind) -> Vec<&Hint> {
     hints.iter().filter(|hint| hint.kind == kind).collect()
 }
 
-/// A plate and bolts of `size` in a row on it.
+/// Returns a plate with a row of bolts of `size` on it.
 fn machine(size: f64) -> Vec<Part> {
     let bolt = |k: usize| {
         let x = 3.0 * k as f64;
@@ -38,13 +38,13 @@ fn identical_parts_are_said_and_nothing_else_of_a_sound_machine() {
 
 #[test]
 fn parts_in_frames_of_their_own_are_told() {
-    // Bolts of one file each, none of them placed.
+    // Bolts from one file each, none of them placed.
     let bolt = |k: usize| part(&format!("bolt_{k}"), &[cuboid([0.0; 3], [1.0, 1.0, 2.0])]);
     let hints = found((0..3).map(bolt).collect());
     let [frames] = of_kind(&hints, HintKind::Frames)[..] else { panic!("{hints:?}") };
     assert_eq!(frames.parts, [0, 1, 2]);
     assert!(frames.words.contains("one body in one place"), "{}", frames.words);
-    // Different parts, all about the origin.
+    // Different parts, all around the origin.
     let long = |k: usize, x: f64, y: f64| {
         part(&format!("p{k}"), &[cuboid([-x, -y, -1.0], [x, y, 1.0 + 0.25 * k as f64])])
     };
@@ -71,7 +71,7 @@ fn other_units_are_told_with_the_factor_that_corrects_them() {
 
 #[test]
 fn link_meshes_in_millimetres_beside_metres_are_a_matter_of_units() {
-    // A robot in metres, whose base and upper arm have meshes in millimetres.
+    // A robot in metres whose base and upper arm have meshes in millimetres.
     let link = |name: &str, at: f64, size: f64| {
         part(name, &[cuboid([-size, -size, at - size], [size, size, at + size])])
     };
@@ -98,11 +98,11 @@ fn link_meshes_in_millimetres_beside_metres_are_a_matter_of_units() {
         "base, upper may be in millimetres beside parts in metres, 1000 times too large: \
          --scale base=0.001 --scale upper=0.001 corrects it"
     );
-    // A source that names no unit.
+    // A source without a unit.
     let hints = found(robot(), None);
     assert!(of_kind(&hints, HintKind::Frames).is_empty(), "{hints:?}");
     assert_eq!(of_kind(&hints, HintKind::Units)[0].parts, [2, 3]);
-    // Two links of one shape: that in metres is right.
+    // Two links of one shape: the one in metres is right.
     let twins = || vec![link("a", 0.0, 1.0), link("b", 0.0, 1000.0)];
     let hints = found(twins(), Some("m"));
     let units = of_kind(&hints, HintKind::Units)[0];

@@ -37,14 +37,14 @@ fn planned_with(assembly: &Assembly, options: PlanOptions) -> Plan {
     crate::common::planned(&bodies, options)
 }
 
-/// What leaves, in order, and what all of it leaves.
+/// Returns the names of the parts of each step, and last those of the parts that all others leave.
 fn steps<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
     let last = Some(&plan.last).filter(|parts| !parts.is_empty());
     let steps = plan.steps.iter().map(|s| &s.parts).chain(last);
     steps.map(|parts| assembly.names(parts)).collect()
 }
 
-/// The room of a part among all others.
+/// Returns the free travel of a part among all others.
 fn room_of_part(assembly: &Assembly, fit: Fit, part: usize, d: DVec3) -> PartRoom {
     let bodies = Bodies::new(assembly, fit).unwrap();
     let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
@@ -71,14 +71,14 @@ fn that_linked_rings_are_stuck_is_proven_in_few_cells() {
     assert!((3..1_000).contains(&cells), "{cells}");
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     assert!(stuck.because(&bodies).contains(&format!("proven in {cells} cells")));
-    // The plan is the same but for the proof.
+    // The plan is the same except for the proof.
     let asked = planned_with(&assembly, PlanOptions::default().with_proofs(false));
     assert_eq!((asked.stuck[0].proven, &asked.left), (None, &plan.left));
     assert!(asked.stuck[0].because(&bodies).contains("directions asked"));
 }
 
-/// Three parts in a ring: a rod of each slides out of a well of another, along x, y and the diagonal of both. So
-/// relative to the first one they come apart at velocities x and x + y, both at once, and in no other way.
+/// Returns three parts in a ring. A rod of each slides out of a well of another, along x, y and the diagonal of both.
+/// They come apart only simultaneously: relative to the first one, the others move with velocities x and x + y.
 fn ring_of_three() -> [Part; 3] {
     let diagonal = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
     let turn = |pieces: Vec<Piece>, by: DAffine3| -> Vec<Piece> {
@@ -87,7 +87,7 @@ fn ring_of_three() -> [Part; 3] {
             .map(|p| Piece { world_from_piece: by * p.world_from_piece, ..p })
             .collect()
     };
-    // Along z at first: a rod of 1 in a well as wide, and then laid along a direction at a height.
+    // First along z: a rod of 1 in a well of the same width; then both are rotated to a direction at a height.
     let along = |yaw: DAffine3, height: f64| {
         let laid = DAffine3::from_translation(DVec3::Z * height)
             * yaw
@@ -108,7 +108,7 @@ fn ring_of_three() -> [Part; 3] {
 #[test]
 fn parts_that_come_apart_only_all_at_once_are_not_said_to_hold_each_other() {
     let parts = ring_of_three();
-    // The oracle: along their relative velocities no pair meets, so all at once they leave.
+    // Reference: along their relative velocities no pair collides, so all can leave simultaneously.
     let diagonal = DVec3::new(1.0, 1.0, 0.0).normalize();
     for (moving, fixed, d) in [(1, 0, DVec3::X), (2, 1, DVec3::Y), (2, 0, diagonal)] {
         let [a, b] = [moving, fixed].map(|k: usize| parts[k].solid().at(colltrans::Pose::IDENTITY));
@@ -128,7 +128,7 @@ fn parts_that_come_apart_only_all_at_once_are_not_said_to_hold_each_other() {
     assert!(details.starts_with(&format!("This is proven in {cells} cells")), "{details}");
     let limit = "Motions of several parts at once, each its own way, were not tried.";
     assert!(details.contains(limit), "{details}");
-    // All texts are made of these: none says more.
+    // All texts are made of these sentences, and none claims more.
     let texts = [
         stuck.because(&bodies),
         html::page(&found, "ring"),
@@ -271,7 +271,7 @@ fn rooms_with_the_best_so_far_are_rooms_of_all_pairs() {
                 }
                 let found = table[a][k].displaced_distance();
                 let equal = found == least || (found - least).abs() < 1e-9;
-                // Of what stops a part at once, among those it overlaps, the first found is named.
+                // Of several overlapping parts that stop a part immediately, the first one found is named.
                 let at_once = 4.0 * Fit::default_for(&assembly).tolerance();
                 let overlaps = (0..bodies.len()).any(|b| b != a && bodies.overlaps(a, b));
                 let same = overlaps && least <= at_once && (least..=at_once).contains(&found);
@@ -345,7 +345,7 @@ type Stage<'a> = &'a dyn Fn(Watch) -> Result<(), AssemblyError>;
 fn any_stage_ends_soon_after_it_is_cancelled() {
     let assembly = boxed();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    // Called off by the observer, after so many calls: in the midst of each stage.
+    // The observer cancels after a number of calls, within each stage.
     let asked = |limit: usize, work: Stage| {
         let (flag, calls) = (AtomicBool::new(false), AtomicUsize::new(0));
         let look = |_, _, _| {
@@ -423,11 +423,12 @@ fn parts_thinner_than_the_tolerance_are_told_of() {
     let plate = plate.unwrap();
     assert!(plate.contains("nothing of it is left") && plate.contains("inside out"), "{plate}");
     assert_eq!(cube, None);
-    // Turned through its middle a cube has all its facets the right way round.
+    // A cube that is inverted through its centre has all facets correctly oriented.
     let [_, cube] = remarks(Fit::Tolerance(5.0));
     assert!(cube.unwrap().contains("nothing of it is left"));
     assert_eq!(remarks(Fit::Apart(0.3)), [None, None]);
-    // What that makes run into each other is not said to do so as it is drawn, and without a tolerance it is parted.
+    // Parts that overlap only because of the tolerance are not reported as overlapping in the file, and a smaller
+    // tolerance separates them.
     let plate = part("plate", &[cuboid([0.0; 3], [9.0, 9.0, 1.0])]);
     let cube = part("cube", &[cuboid([4.0, 4.0, 1.0], [5.0, 5.0, 2.0])]);
     let assembly = Assembly::new(vec![plate, cube]).unwrap();
@@ -446,7 +447,7 @@ fn parts_thinner_than_the_tolerance_are_told_of() {
 
 #[test]
 fn a_margin_is_kept_or_not() {
-    // 0.5 of air on every side.
+    // A gap of 0.5 on every side.
     let peg = part("peg", &[cuboid([-0.5, -0.5, 0.5], [0.5, 0.5, 6.0])]);
     let block = part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0));
     let assembly = Assembly::new(vec![peg, block]).unwrap();
@@ -460,7 +461,7 @@ fn a_margin_is_kept_or_not() {
         let refused = Bodies::new(&assembly, Fit::Apart(length));
         assert!(matches!(refused, Err(AssemblyError::Length { .. })), "{length}");
     }
-    // What is too near does not run into each other, nor is a tolerance suggested that would let it pass.
+    // Parts that violate the minimum gap are not reported as overlapping, and no tolerance is suggested for them.
     let bodies = Bodies::new(&assembly, Fit::Apart(0.6)).unwrap();
     let found = Question::default().ask(&bodies, Watch::default()).unwrap();
     let reason = found.plan.stuck[0].reason(&bodies);
@@ -477,7 +478,7 @@ fn a_margin_is_kept_or_not() {
     );
 }
 
-/// Parts that were grown by half of the length each would meet at their corners.
+/// Parts that were offset outwards by half of the length as boxes would meet at their corners.
 #[test]
 fn corners_pass_each_other_diagonally_at_the_length_to_keep() {
     let a = part("a", &[cuboid([0.0; 3], [1.0; 3])]);
@@ -534,8 +535,8 @@ fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
     let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::NEG_Z) else {
         panic!("the floor is below")
     };
-    // Asked with the depth of the overlap, 0.05, and a twentieth more as a tolerance; said of the true
-    // place.
+    // The query uses a tolerance of the depth of the overlap, 0.05, plus a twentieth. The result refers to the
+    // nominal bodies.
     assert!((stop.distance() - 1.0).abs() < 1e-9, "{stop:?}");
     let plan = planned(&ignored);
     assert_eq!(steps(&ignored, &plan), [["pin"], ["block"]]);
@@ -543,7 +544,7 @@ fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
     assert_eq!(plan.steps[0].ignores(&ignored).unwrap(), "ignored: pin and block");
     let always = ignored.with_ignored(&pair, Ignored::Always).unwrap();
     assert!(room_with(&always, DVec3::NEG_Z).is_free());
-    // What lets more pass stays, in whatever order they are named.
+    // The more permissive entry remains, independent of the order.
     let again = always.with_ignored(&pair, Ignored::Overlap).unwrap();
     assert!(room_with(&again, DVec3::NEG_Z).is_free());
     assert!(planned(&again).steps[0].ignores(&again).is_some());
@@ -560,8 +561,8 @@ fn an_overlap_that_is_ignored_does_not_become_deeper() {
     for free in [DVec3::NEG_X, DVec3::Y, DVec3::NEG_Z] {
         assert!(room_with(&ignored, free).is_free(), "{free}");
     }
-    // In their true place the faces that stop it are past each other by the depth, 0.25; a twentieth
-    // deeper is let pass as rounding.
+    // In nominal position, the faces that stop it are past each other by the depth, 0.25. A twentieth more is
+    // tolerated as rounding.
     let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::X) else { panic!("deeper") };
     assert_eq!(stop.distance(), 0.0);
     assert!((stop.displaced.value + 0.25).abs() < 1e-9, "{stop:?}");
@@ -577,7 +578,7 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
     let (axes, all) = ([DVec3::X, DVec3::Y, DVec3::Z], [true; 2]);
     let start = StartOverlap::Refuse;
     let matrix = Matrix::new(&bodies, &axes, &all, start, Watch::default()).unwrap();
-    // The finer directions repeat one of the matrix, and each other: each counts once.
+    // The finer directions repeat one of the matrix, and each other. Each counts once.
     let finer: Vec<Finer> = [DVec3::X, DVec3::NEG_X, DVec3::NEG_X]
         .map(|direction| Finer { direction, origin: Origin::Given, part: None })
         .to_vec();
@@ -620,7 +621,7 @@ fn maps_find_half_spheres_and_isolated_directions() {
     }
     let half = resting.cover.as_ref().unwrap();
     assert!((half.free_share() - 0.5).abs() < 1e-9, "{}", half.free_share());
-    // What overlaps where it is has no cover; samples are told, and why.
+    // Parts that overlap at the start have no cover. The map uses samples and gives the reason.
     let lower = part("lower", &[cuboid([-0.5, -0.5, -0.5], [0.5, 0.5, 0.5])]);
     let floor = part("floor", &[cuboid([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0])]);
     let sunk = map(vec![lower, floor], &[]);
@@ -643,7 +644,7 @@ fn directions_and_names_that_are_wrong_are_refused() {
     assert!(matches!(Part::new(" ", &[]), Err(AssemblyError::NoName)));
 }
 
-/// The sides of a box that are listed, of sheet.
+/// Returns the listed sides of a box, as a sheet.
 fn sheets(low: [f64; 3], high: [f64; 3], sides: &[usize]) -> Piece {
     let mut piece = cuboid(low, high);
     piece.mesh.faces = sides.iter().map(|&side| piece.mesh.faces[side].clone()).collect();
@@ -656,7 +657,7 @@ fn along(assembly: &Assembly, part: usize, d: DVec3) -> PartRoom {
 
 #[test]
 fn a_sheet_on_edge_does_not_pass_through_a_block() {
-    // In the plane y = 1, beside a block; a wall of a box that is flat.
+    // In the plane y = 1, next to a block; one wall of a flat box.
     let sheet = part("sheet", &[sheets([-9.0, 1.0, -1.0], [-3.0, 1.0, 1.0], &[2])]);
     let block = part("block", &[cuboid([0.0, -4.0, -4.0], [4.0; 3])]);
     let assembly = Assembly::new(vec![sheet, block]).unwrap();
@@ -705,7 +706,7 @@ fn files_of_sheets_say_the_same() {
     }
 }
 
-/// Fins, doubled squares and turned facets of CAD exports: 5 of 6 bodies are whole then.
+/// Fins, doubled squares and reversed facets of CAD exports: 5 of 6 bodies are closed after the repair.
 #[test]
 fn surfaces_that_enclose_nothing_are_mended_or_refused() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -1,5 +1,5 @@
-//! Answers held against something slow and obvious: boxes whose rooms are intervals, steps walked bit
-//! by bit, and small machines that anyone takes apart by hand.
+//! Answers compared with slow and simple references: boxes whose free travel is an interval, steps walked in small
+//! increments, and small machines with known solutions.
 
 use crate::common::*;
 use colltrans::solid::{StartOverlap, Workspace};
@@ -11,7 +11,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::ROOM_WITH_WINDOW;
 use glam::{DAffine3, DVec3};
 
-/// Taken apart with a tolerance; the names of each step that is not within a group.
+/// Plans the disassembly with a tolerance and walks all steps. Returns the assembly and the plan.
 fn taken_apart(parts: Vec<colltrans_assembly::Part>, tolerance: f64) -> (Assembly, Plan) {
     let assembly = Assembly::new(parts).unwrap();
     let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
@@ -20,21 +20,21 @@ fn taken_apart(parts: Vec<colltrans_assembly::Part>, tolerance: f64) -> (Assembl
     (assembly.clone(), plan)
 }
 
-/// What leaves, in order, and what all of it leaves.
+/// Returns the names of the parts of each step, and last those of the parts that all others leave.
 fn names<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
     let last = Some(&plan.last).filter(|parts| !parts.is_empty());
     let steps = plan.steps.iter().map(|s| &s.parts).chain(last);
     steps.map(|parts| assembly.names(parts)).collect()
 }
 
-/// Walks every step in small moves, and looks whether anything overlaps that did not before; at the
-/// end each part has left once or is left.
+/// Walks every step in small increments and checks that no parts overlap. At the end each part has left once or
+/// remains.
 fn walk(bodies: &Bodies, plan: &Plan) {
     let mut gone = vec![false; bodies.len()];
     for (k, step) in plan.steps.iter().enumerate() {
         let group: Vec<usize> = match step.within {
             None => (0..bodies.len()).filter(|&p| !gone[p]).collect(),
-            // What is left of the group that was taken out before.
+            // The remaining parts of the group that was removed before.
             Some(outer) => {
                 let earlier = plan.steps[..k].iter().filter(|s| s.within == Some(outer));
                 let apart: Vec<usize> = earlier.flat_map(|s| s.parts.clone()).collect();
@@ -44,7 +44,7 @@ fn walk(bodies: &Bodies, plan: &Plan) {
         };
         assert!(step.parts.iter().all(|p| group.contains(p)));
         let mut at = vec![DVec3::ZERO; bodies.len()];
-        // Each leg, and those that go back to where they were once the parts are gone.
+        // Each leg, and the return legs after the parts have left.
         for (n, leg) in step.path.iter().chain(&step.back).enumerate() {
             let out = n >= step.path.len();
             let others = group.iter().filter(|p| !leg.parts.contains(p));
@@ -67,7 +67,8 @@ fn walk(bodies: &Bodies, plan: &Plan) {
     assert_eq!(left, [&plan.left[..], &plan.last].concat());
 }
 
-/// How far an open box can go before it meets another: `None` if never, negative if they overlap now.
+/// Returns the travel of an open box before it meets another: `None` if it never does, negative if they overlap at
+/// the start.
 fn room_of_boxes(a: [DVec3; 2], b: [DVec3; 2], d: DVec3) -> Option<f64> {
     let (mut enter, mut exit) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {
@@ -101,7 +102,7 @@ fn rooms_of_boxes_are_intervals() {
             .map(|b| [b.low, b.high])
             .collect();
         let mut directions = vec![DVec3::X, DVec3::NEG_Z];
-        // Edges pass exactly by edges: no component is rounded.
+        // Edges pass edges exactly, because no component is rounded.
         directions.push(DVec3::new(0.75, 0.0, -1.0));
         directions.extend((0..4).map(|_| random.direction()));
         let found = rooms(&bodies, &directions, StartOverlap::Refuse, Watch::default()).unwrap();
@@ -121,15 +122,15 @@ fn rooms_of_boxes_are_intervals() {
                         );
                         let own = room_of_boxes(boxes[a], boxes[by], d).unwrap();
                         assert!((own - t).abs() < 1e-9, "{by} is at {own}, not {t}");
-                        // Faces that were moved by half of the tolerance each: where these meet, or, if
-                        // the edge that meets the one is past it as it is, where another of its face does.
+                        // The position at which the faces, each moved by half of the tolerance, meet; or, if the edge
+                        // on one side is already past it at the start, where another point of its face does.
                         let place = t - tolerance / stop.normal.dot(d);
                         let distance = stop.distance();
                         assert!(
                             distance >= place - 1e-9 && distance <= stop.displaced.lower.max(0.0)
                         );
                         near += usize::from(distance - place.max(0.0) < 1e-9);
-                        // Beyond the upper bound the boxes as given overlap.
+                        // Beyond the upper bound the nominal boxes overlap.
                         let as_given = [a, by].map(|k| {
                             let bounds = assembly.parts()[k].solid().bounds();
                             [bounds.low, bounds.high]
@@ -137,7 +138,7 @@ fn rooms_of_boxes_are_intervals() {
                         let given = room_of_boxes(as_given[0], as_given[1], d).unwrap();
                         assert!(given <= stop.translation.upper, "{given}, {stop:?}");
                     }
-                    // Rounding: corners that pass corners in a direction that is no axis.
+                    // Rounding: corners pass corners along a direction that is not an axis.
                     (expected, found) => {
                         let turned = d.to_array().iter().all(|c| *c != 0.0);
                         assert!(!turned && !snapped, "{expected:?}, {found:?} along {d}");
@@ -192,7 +193,7 @@ fn a_drawer_comes_out_with_what_is_in_it() {
 
 #[test]
 fn a_bolt_stops_where_its_head_sits() {
-    // A square bolt, 1 above its seat, a blind hole with 2 below its end.
+    // A square bolt, 1 above its seat, in a blind hole with 2 below its end.
     let bolt =
         [cuboid([-2.0, -2.0, 1.0], [2.0, 2.0, 2.0]), cuboid([-1.0, -1.0, -4.0], [1.0, 1.0, 1.5])];
     let parts =
@@ -244,13 +245,13 @@ fn three_links_of_a_chain_leave_their_box_as_one() {
     assert_eq!(plan.steps[0].direction, DVec3::Z);
     assert_eq!(plan.stuck.len(), 1);
     assert_eq!(plan.stuck[0].parts, [0, 1, 2]);
-    // The ends hold each other through the link between them only.
+    // The ends block each other only through the link between them.
     assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
 }
 
 #[test]
 fn a_pair_that_holds_each_other_is_stuck() {
-    // A dovetail across, closed at both ends: neither up nor along.
+    // A dovetail across, closed at both ends: it moves neither up nor along.
     let rail = [
         cuboid([-5.0, -2.0, 0.0], [5.0, 2.0, 1.0]),
         cuboid([-5.0, -2.0, 1.0], [5.0, -1.0, 2.0]),
@@ -265,7 +266,7 @@ fn a_pair_that_holds_each_other_is_stuck() {
     let (_, plan) = taken_apart(vec![part("rail", &rail), part("slide", &slide)], 1e-9);
     assert!(plan.steps.is_empty());
     assert_eq!((plan.left.as_slice(), plan.stuck.len()), (&[0, 1][..], 1));
-    // Open at one end it comes out there.
+    // With one end open, it leaves there.
     let (assembly, plan) = taken_apart(vec![part("rail", &rail[..6]), part("slide", &slide)], 1e-9);
     assert_eq!(names(&assembly, &plan), [["slide"], ["rail"]]);
     assert_eq!(plan.steps[0].direction, DVec3::X);
@@ -273,7 +274,7 @@ fn a_pair_that_holds_each_other_is_stuck() {
 
 #[test]
 fn a_way_between_the_samples_is_found_for_what_is_loose() {
-    // A room with a window, and a cube within: it leaves through 0.4 % of the sphere.
+    // A room with a window and a cube inside, which can leave along 0.4 % of the sphere.
     let room = ROOM_WITH_WINDOW.map(|[low, high]| cuboid(low, high));
     let cube = [cuboid([-0.2, -0.2, -0.2], [0.2, 0.2, 0.2])];
     let samples = Sphere::with_directions(PlanOptions::default().samples).directions;
@@ -294,7 +295,8 @@ fn a_way_between_the_samples_is_found_for_what_is_loose() {
             continue;
         }
         missed += 1;
-        // Without the cover and what a proof leaves open it is not found in one move, but in two: to the window, and out.
+        // Without the cover and the directions that a proof leaves open, no single move is found, but two moves: to
+        // the window, and out.
         let options = PlanOptions::default().with_samples(0).with_proofs(false);
         assert!(planned(&bodies, options.with_legs(1)).steps.is_empty());
         let plan = planned(&bodies, options);

@@ -1,5 +1,5 @@
-//! The order of plans, held against all pairs asked at each state: which directions are free, how far it is along each,
-//! what rests on what, and which steps might be exchanged.
+//! Order of plans, compared with queries of all pairs in each state: free directions, travels, supports, and
+//! exchangeable steps.
 
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::candidates::{Choice, candidates};
@@ -36,7 +36,7 @@ fn travel(bodies: &Bodies, group: &[usize], others: &[usize], d: DVec3) -> f64 {
     pairs.map(|[a, b]| bodies.past(a, b, d).value).fold(0.0, f64::max)
 }
 
-/// Whether a part would go down by more than a hair.
+/// Checks whether a part can move down by more than 1e-3.
 fn falls(bodies: &Bodies, part: usize, others: &[usize], up: DVec3) -> bool {
     let mut workspace = Workspace::default();
     let mut rooms = others
@@ -47,12 +47,13 @@ fn falls(bodies: &Bodies, part: usize, others: &[usize], up: DVec3) -> bool {
     })
 }
 
-/// Steps of the whole, not of a group that was taken out.
+/// Returns the steps of the whole assembly, without those of removed groups.
 fn main_steps(plan: &Plan) -> Vec<(usize, &Step)> {
     plan.steps.iter().enumerate().filter(|(_, step)| step.within.is_none()).collect()
 }
 
-/// What is left while others go, in the order of these steps.
+/// Checks each main step: it leaves some part, is free, and is about as short as the shortest direction. Returns the
+/// number of steps after which no other part falls.
 fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usize {
     let mut left: Vec<usize> = (0..bodies.len()).collect();
     let mut kept_up = 0;
@@ -86,7 +87,7 @@ fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usiz
     kept_up
 }
 
-/// Any order in which each step comes after those that it names can be walked.
+/// Checks that the steps can be performed in random orders that respect `after`.
 fn exchanged(bodies: &Bodies, plan: &Plan, random: &mut Random) {
     let steps = main_steps(plan);
     for _ in 0..4 {
@@ -105,7 +106,7 @@ fn exchanged(bodies: &Bodies, plan: &Plan, random: &mut Random) {
 }
 
 fn boxes(random: &mut Random, count: usize) -> Assembly {
-    // A grid of boxes of random extents that touch or leave a gap, in layers.
+    // A grid of boxes of random sizes that touch or leave a gap, in layers.
     let mut parts = Vec::new();
     for k in 0..count {
         let low = [k % 3, k / 3 % 3, k / 9].map(|x| 2.0 * x as f64);
@@ -129,11 +130,11 @@ fn steps_are_short_and_may_be_exchanged_as_they_say() {
         steps += main_steps(&plan).len();
         exchanged(&bodies, &plan, &mut random);
     }
-    // Boxes of a grid can always be taken from above.
+    // Some box of a grid can always be removed from above.
     assert_eq!(kept_up, steps, "nothing falls");
 }
 
-/// A lower plate, an upper one, and screws of two kinds through both, with a washer under each head.
+/// Returns a lower plate, an upper plate, and screws of two kinds through both, each with a washer under its head.
 fn joint(place: DAffine3) -> Assembly {
     let mut parts = Vec::new();
     let mut add = |name: String, pieces: &[Piece]| {
@@ -197,7 +198,7 @@ fn likes_go_together_and_the_lower_plate_stays() {
 
 #[test]
 fn the_other_way_up_parts_are_lifted_the_other_way() {
-    // Two plates and a peg that holds neither: whatever is below carries what is above.
+    // Three stacked plates: the lower ones carry the upper ones.
     let part = |name: &str, piece: Piece| Part::new(name, &[piece]).unwrap();
     let assembly = Assembly::new(vec![
         part("a", cuboid([0.0; 3], [2.0, 2.0, 1.0])),
@@ -218,7 +219,8 @@ fn the_other_way_up_parts_are_lifted_the_other_way() {
     assert!(disassemble(&bodies, &matrix, &[], none, watch).is_err());
 }
 
-/// A deep shaft around `x = at`, open at the top, with a block at its bottom; `gap` is where its wall ahead begins to be open.
+/// Returns a deep shaft around `x = at`, open at the top, and a block at its bottom. The front wall is open from
+/// `gap` on.
 fn shaft(at: f64, gap: f64) -> (Vec<Piece>, Piece) {
     let wall = |low: [f64; 2], high: [f64; 2]| {
         cuboid([low[0] + at, low[1], 0.0], [high[0] + at, high[1], 12.0])
@@ -262,7 +264,7 @@ fn a_gap_that_leads_out_much_sooner_is_found_for_the_one_of_two_likes_that_has_i
         }
     }
     assert_eq!(shorter, ["block_a"]);
-    // Where it must not go aslant it goes up.
+    // If the oblique direction is forbidden, the block moves up.
     let never = assembly.clone().with_never(&["block_a"], shorter_way(&plan), 60.0).unwrap();
     let bodies = Bodies::new(&never, Fit::Tolerance(1e-9)).unwrap();
     let (plan, _) = planned(&bodies, PlanOptions::default());

@@ -1,4 +1,4 @@
-//! Pairs with a fit of their own, held against bodies that have that fit throughout, and small machines.
+//! Pairs with a fit of their own, compared with bodies that all have this fit, and small machines.
 
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::matrix::Matrix;
@@ -77,7 +77,8 @@ fn a_pair_is_asked_as_if_all_had_its_tolerance_and_others_as_if_none_had() {
     assert!(asked > 8_000 && changed > 60, "{asked} {changed}");
 }
 
-/// With tolerances by chord errors, a pair that has one of its own is answered as if all had it, and all others as without.
+/// With tolerances from chord errors, a pair with its own tolerance gives the results of that tolerance for all
+/// parts. All other pairs are unaffected.
 #[test]
 fn tolerances_of_pairs_stand_beside_those_of_chord_errors() {
     let mut random = Random::new(31);
@@ -110,7 +111,7 @@ fn tolerances_of_pairs_stand_beside_those_of_chord_errors() {
     assert!(asked > 1_000 && changed > 20, "{asked} {changed}");
 }
 
-/// A pin with a collar below, pressed into a plate from below, by 0.05; and a cap on it, which overlaps the pin by less.
+/// Returns a plate, a pin with a collar pressed into it from below by 0.05, and a cap that overlaps the pin by less.
 fn pressed() -> Assembly {
     let plate = well([0.0, 0.0, 0.0], [2.0, 2.0, 2.0], 1.0);
     let pin = [
@@ -135,7 +136,7 @@ fn a_press_fit_comes_out_and_its_later_contacts_count() {
         assert_eq!(bodies.tolerated([1, 0]), Some(Tolerated::Within(length)));
         let plan = planned(&bodies);
         let step = plan.steps.iter().find(|step| step.parts == [1]).unwrap();
-        // The collar is below.
+        // The collar is at the bottom.
         assert_eq!(step.direction, DVec3::NEG_Z);
         assert_eq!(step.passed.len(), 1);
         assert_eq!(
@@ -148,7 +149,7 @@ fn a_press_fit_comes_out_and_its_later_contacts_count() {
         let Room::Blocked(stop) = up else { panic!("the collar stops it") };
         assert!((stop.translation.value - 1.0).abs() < 1e-9 && stop.distance() <= 1.0, "{stop:?}");
     }
-    // A tolerance for all would let the cap into the plate by as much.
+    // A general tolerance would let the cap sink into the plate by the same amount.
     let wide = Bodies::new(&plain, Fit::Tolerance(0.2)).unwrap();
     assert!(!wide.overlaps(0, 1) && planned(&wide).left == [0]);
 }
@@ -213,7 +214,7 @@ fn what_is_glued_leaves_as_one_and_an_overlap_without_end_lets_what_crosses_pass
     let plan = planned(&bodies);
     assert_eq!((plan.steps.len(), plan.steps[0].parts.clone()), (1, vec![1, 2]));
     assert!(plan.stuck.is_empty() && plan.steps[0].passed.is_empty());
-    // A sheet through a block: no tolerance ends that.
+    // A sheet through a block: no tolerance ends their overlap.
     let sheet = Mesh::new(
         vec![DVec3::new(1.2, 1.2, -1.0), DVec3::new(1.8, 1.2, -1.0), DVec3::new(1.5, 1.8, 3.0)],
         vec![vec![0, 1, 2]],
@@ -261,7 +262,7 @@ fn round(name: &str, sides: usize, radius: f64, low: f64, high: f64) -> Part {
     Part::new(name, &[Piece { mesh, world_from_piece: place }]).unwrap()
 }
 
-/// A ring with a hole of so many sides, as one surface.
+/// Returns a ring with a hole of `sides` sides, as one surface.
 fn ring(name: &str, sides: usize, [inner, outer]: [f64; 2], height: f64) -> Part {
     let mut vertices = Vec::new();
     for (r, z) in [(inner, 0.0), (outer, 0.0), (outer, height), (inner, height)] {

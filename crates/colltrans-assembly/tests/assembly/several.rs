@@ -1,4 +1,5 @@
-//! Plans of several moves: closed forms, burrs against all moves of cubes, the collection where it is.
+//! Plans with several moves, compared with closed forms, with burr puzzles solved by all moves of their cubes, and
+//! with the collection of assemblies if it is present.
 
 use std::path::Path;
 
@@ -18,12 +19,12 @@ fn planned(assembly: &Assembly, options: PlanOptions) -> Plan {
     plan
 }
 
-/// Every move of every step, at 201 places, by overlaps of the parts as they are shrunk; and that what makes room
-/// goes back.
+/// Checks every move of every step for overlaps at 201 positions, with the shrunk parts, and that parts moved aside
+/// return.
 fn judged(bodies: &Bodies, plan: &Plan) {
     let mut there = vec![true; bodies.len()];
     for (k, step) in plan.steps.iter().enumerate() {
-        // A step of a group has only its parts around it, those that it has left.
+        // A step within a group has only the remaining parts of the group around it.
         let group = step.within.map(|w| &plan.steps[w].parts);
         let inside = |p: usize| match group {
             Some(group) => {
@@ -37,7 +38,7 @@ fn judged(bodies: &Bodies, plan: &Plan) {
         let mut go = |leg: &Leg, gone: &[usize]| {
             let motion = leg.direction * leg.travel;
             let outside = |p: &&usize| !leg.parts.contains(p);
-            // What has left is far away.
+            // Parts that have left are far away.
             let apart = |a: usize, b: usize| gone.contains(&a) != gone.contains(&b);
             for &a in &leg.parts {
                 for &b in all.iter().filter(outside).filter(|&&b| !apart(a, b)) {
@@ -78,7 +79,7 @@ fn blocks(name: &str, all: &[[[f64; 3]; 2]]) -> Part {
     part(name, &pieces)
 }
 
-/// A T-slot along x, closed at both ends, whose lips are open from 14 to 17; and a bar with a stem in it.
+/// Returns a T-slot along x, closed at both ends, whose lips are open from 14 to 17, and a bar with a stem in it.
 fn slot() -> Assembly {
     let plate = blocks(
         "plate",
@@ -108,7 +109,7 @@ fn a_key_leaves_in_two_moves_without_being_asked_for() {
     assert_eq!((&step.parts[..], step.path.len(), step.back.len()), (&[0][..], 2, 0));
     assert_eq!(step.path[0].direction, DVec3::X);
     assert_eq!(step.direction, DVec3::Z);
-    // From 0.2 up until it is above the lips, which end at 2.
+    // It moves up from 0.2 until it is above the lips, which end at 2.
     assert!((step.travel.value - 1.8).abs() < 1e-12, "{:?}", step.travel);
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let told = record::plan(&bodies, &plan);
@@ -124,7 +125,7 @@ fn one_move_is_asked_for_and_two_are_not_looked_for() {
     assert_eq!(plan.left, [0, 1]);
 }
 
-/// A box whose lid slides in grooves, as far as a stop, with a cube in it.
+/// Returns a box with a cube in it and a lid that slides in grooves up to a stop.
 fn sliding_lid() -> Assembly {
     let tray = blocks("tray", &TRAY_WITH_GROOVES);
     let cube = blocks("cube", &[[[1.0, 1.0, 0.5], [2.0, 2.0, 1.5]]]);
@@ -143,7 +144,7 @@ fn a_lid_makes_room_and_goes_back() {
     assert_eq!(step.back[0].parts, step.path[0].parts);
     assert_eq!(step.back[0].direction, -step.path[0].direction);
     assert_eq!(step.back[0].travel, step.path[0].travel);
-    // The lid is kept by its stop: that is proven, or told with what was searched.
+    // The stop holds the lid: this is proven, or reported with the extent of the search.
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     for (proofs, words) in
         [(true, "Nor do several straight moves"), (false, "Up to 2 moves, one after")]
@@ -165,7 +166,7 @@ fn of_cubes(cubes: &Cubes) -> Assembly {
     Assembly::new(cubes.pieces.iter().enumerate().map(part).collect()).unwrap()
 }
 
-/// The largest of some parts, by box and volume, of equal ones the lowest and then the first.
+/// Returns the largest of some parts by box and volume; ties go to the lowest and then the first part.
 fn base_of(assembly: &Assembly, parts: &[usize]) -> usize {
     let key = |part: usize| {
         let solid = assembly.parts()[part].solid();
@@ -177,7 +178,7 @@ fn base_of(assembly: &Assembly, parts: &[usize]) -> usize {
     parts.iter().copied().reduce(larger).expect("parts")
 }
 
-/// Checks that no move of any step moves the base of the parts that the step is taken from.
+/// Checks that no move of any step moves the base of the parts from which the step removes.
 fn base_rests(assembly: &Assembly, plan: &Plan) {
     let all: Vec<usize> = (0..assembly.parts().len()).collect();
     for (k, step) in plan.steps.iter().enumerate() {
@@ -188,7 +189,8 @@ fn base_rests(assembly: &Assembly, plan: &Plan) {
     }
 }
 
-/// The search of several moves takes the largest body for what rests; of parts that are wanted the plan does not.
+/// The search for paths keeps the largest body fixed. The plan instead keeps the plate, because the larger key is to
+/// be removed.
 #[test]
 fn a_wanted_key_that_is_larger_than_its_plate_moves_and_the_plate_rests() {
     let key = blocks(
@@ -214,7 +216,7 @@ fn a_wanted_key_that_is_larger_than_its_plate_moves_and_the_plate_rests() {
 #[ignore = "long: 150 puzzles, and all moves of their cubes"]
 fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
     let mut random = Random::new(29);
-    // Stuck, taken apart, and with more than one, two and three moves.
+    // Numbers of stuck and solved puzzles, and of those whose first step has more than one, two and three moves.
     let mut counts = [0; 5];
     for case in 0..150 {
         let cubes = Cubes::random(&mut random);
@@ -248,7 +250,7 @@ fn a_burr_of_level_six_comes_apart_whole() {
     assert_eq!(plan.steps[0].path.len(), 6);
     let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
     assert!(taken + plan.last.len() >= 5, "every piece gets out: {:?}", plan.steps);
-    // Two moves are not enough, and that is said.
+    // Two moves do not suffice, and the plan reports this.
     let plan = planned(&assembly, PlanOptions::default().with_samples(0));
     let Moves::NotFound { legs: 2, searched } = plan.stuck[0].moves else { panic!("{plan:?}") };
     assert!(searched.complete && searched.places > 1, "{searched:?}");

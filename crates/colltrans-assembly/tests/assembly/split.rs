@@ -1,4 +1,4 @@
-//! Several bodies in one file: kept together, or a part each.
+//! Several bodies in one file: kept as one part, or split into parts.
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
@@ -23,7 +23,7 @@ fn open(name: &str, files: &Files, split: Split) -> Result<Assembly, ReadError> 
     read_from(Path::new(name), files, &ReadOptions::default().with_split(split))
 }
 
-/// The names of the parts, each with its number of facets.
+/// Returns the names of the parts with their numbers of facets.
 fn parts(assembly: &Assembly) -> Vec<(&str, usize)> {
     assembly.parts().iter().map(|part| (part.name(), part.facets())).collect()
 }
@@ -120,7 +120,7 @@ fn a_manifest_says_it_of_each_part() {
     assert_eq!(parts(&all), [("a/x", 6), ("a/y", 6), ("b/x", 6), ("b/y", 6)]);
     let error = open("n.toml", &files, Split::Auto).unwrap_err().to_string();
     assert_eq!(error, "n.toml: part 1 (a): split: unknown split no; accepted: auto, never, names, bodies");
-    // One that is listed is one part, as the manifest says.
+    // A file that the manifest lists is one part.
     files.insert("one.toml".into(), b"[[part]]\nfile = 'a.obj'\n".to_vec());
     assert_eq!(parts(&open("one.toml", &files, Split::Auto).unwrap()), [("a", 12)]);
 }
@@ -161,7 +161,7 @@ fn an_item_of_a_3mf_build_is_one_part_if_asked_for() {
     );
     let mut files = Files::new();
     files.insert("a.3mf".into(), package(&[("3D/3dmodel.model", model)]));
-    // What has no name takes that of what it is in.
+    // An object without a name takes that of the enclosing object.
     assert_eq!(
         parts(&open("a.3mf", &files, Split::Auto).unwrap()),
         [("rod", 12), ("cart", 12), ("rod_2", 12)]
@@ -169,7 +169,7 @@ fn an_item_of_a_3mf_build_is_one_part_if_asked_for() {
     assert_eq!(parts(&open("a.3mf", &files, Split::Never).unwrap()), [("cart", 24), ("rod", 12)]);
 }
 
-/// A GLB file of one unit cube, in these nodes.
+/// Returns a GLB file of one unit cube, placed by these nodes.
 fn glb(nodes: &serde_json::Value, asset: &serde_json::Value) -> Vec<u8> {
     let mesh = cube(0.0, 1.0);
     let (mut bytes, corners): (Vec<u8>, Vec<[u32; 3]>) = (Vec::new(), mesh.triangles().collect());
@@ -225,10 +225,10 @@ fn what_a_converter_says_of_nodes_is_read() {
     assert_eq!(found.parts()[0].solid().bounds().high.to_array(), [3000.0, 1000.0, 1000.0]);
     let errors: Vec<f64> = found.parts().iter().map(|part| part.chord_error().unwrap()).collect();
     assert!((errors[0] - 0.02).abs() < 1e-12 && (errors[1] - 0.01).abs() < 1e-12);
-    // The tolerance of a pair is that of both, and for the last digits.
+    // The tolerance of a pair is the sum of both chord errors, plus a term for the last digits.
     let Fit::Chords { base, largest } = Fit::default_for(&found) else { panic!("no chord errors") };
     assert!((largest - 0.04 - base).abs() < 1e-12 && base == found.size() / f64::from(1 << 21));
-    // The plate comes down on the screw by as much more as both are smaller.
+    // The plate moves further down to the screw by the amount by which both are shrunk.
     let bodies = Bodies::new(&found, Fit::default_for(&found)).unwrap();
     let mut workspace = colltrans::solid::Workspace::default();
     let start = colltrans::solid::StartOverlap::Refuse;
@@ -238,7 +238,7 @@ fn what_a_converter_says_of_nodes_is_read() {
     };
     assert!((stop.displaced.value - 2000.03 - base).abs() < 1e-6, "{:?}", stop.displaced);
     assert!((stop.translation.value - 2000.0).abs() < 1e-6);
-    // Others may write there what they like.
+    // Other programs may store arbitrary data in these extras.
     let others = json!([{"mesh": 0, "extras": {"colltrans": 7}, "children": [1]}, {"mesh": 0, "extras": [1]}]);
     let found = read(&others, &json!({"version": "2.0", "extras": "x"}));
     assert_eq!(
@@ -248,7 +248,7 @@ fn what_a_converter_says_of_nodes_is_read() {
     assert!(matches!(Fit::default_for(&found), Fit::Tolerance(_)));
 }
 
-/// What came as glTF is written where it was: axes and lengths.
+/// An assembly that was read from glTF is written with the same axes and lengths.
 #[test]
 fn glb_out_lies_over_glb_in() {
     let nodes =
@@ -265,14 +265,14 @@ fn glb_out_lies_over_glb_in() {
         (bounds(&first).low, bounds(&first).high),
         (bounds(&again).low, bounds(&again).high)
     );
-    // What has z upwards lies on its side in glTF, in metres.
+    // An assembly with z up is rotated in glTF, which is in metres.
     let z = first.with_up(glam::DVec3::Z).with_unit("mm");
     let written = colltrans_assembly::report::glb::animation(&z, &Plan::default());
     let low = bounds(&colltrans_assembly_io::read::glb("b.glb", &written).unwrap()).low;
     assert!((low - glam::DVec3::new(0.004, 0.006, -0.007)).length() < 1e-9, "{low}");
 }
 
-/// A tetrahedron in COLLADA, in a unit, shown by these nodes.
+/// Returns a tetrahedron in COLLADA, in a unit, placed by these nodes.
 fn dae(metres: f64, nodes: &str) -> String {
     format!(
         "<COLLADA><asset><unit meter='{metres}'/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id='g'><mesh>\
@@ -306,7 +306,7 @@ fn nodes_of_collada_are_parts_in_their_unit() {
         (two.unit(), two.up().to_array(), high(&two, 1)),
         (Some("cm"), [0.0, 0.0, 1.0], 5.0)
     );
-    // A unit that has no name, a manifest in another one, and a robot, which is in metres.
+    // A unit without a name, a manifest in another unit, and a robot, which is in metres.
     let metres = open("b.dae", &files, Split::Never).unwrap();
     assert_eq!((metres.unit(), high(&metres, 0)), (Some("m"), 2.5));
     assert!((high(&open("m.toml", &files, Split::Auto).unwrap(), 0) - 50.0).abs() < 1e-9);

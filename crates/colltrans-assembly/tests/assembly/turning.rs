@@ -1,4 +1,4 @@
-//! What is unscrewed: bolts in nuts whose threads are known, each move held against places of the bodies themselves.
+//! Unscrewing: bolts in nuts with known threads. Each move is compared with poses of the bodies themselves.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use crate::common::{cuboid, part};
 const THREAD: PairFit = PairFit { role: Some(Role::Thread), tolerance: None };
 const FIT: Fit = Fit::Tolerance(1e-6);
 
-/// A triangle of a wave, from 0 to 1 and back.
+/// Returns a triangle wave, from 0 to 1 and back.
 fn wave(phase: f64) -> f64 {
     1.0 - (2.0 * phase - 1.0).abs()
 }
@@ -26,17 +26,17 @@ fn piece(mesh: shapes::Mesh, world_from_piece: DAffine3) -> Piece {
     Piece { mesh: Mesh::new(mesh.vertices, mesh.faces), world_from_piece }
 }
 
-/// Four turns from `z = 0` on, from a radius of 5 to 5.6.
+/// Returns a screw of four turns from `z = 0` on, with radii from 5 to 5.6.
 fn screw(pitch: f64) -> shapes::Mesh {
     helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 4)
 }
 
-/// Two turns in a nut with so much play across.
+/// Returns a nut of two turns with the given radial play.
 fn nut(pitch: f64, play: f64) -> shapes::Mesh {
     helical(Some(9.0), |phase| 5.0 + play + 0.6 * wave(phase), pitch, 2)
 }
 
-/// The screw goes through the nut and stands out on both sides.
+/// Returns the pose of a nut through which the screw reaches on both sides.
 fn through(pitch: f64) -> DAffine3 {
     DAffine3::from_translation(DVec3::Z * pitch.abs())
 }
@@ -60,7 +60,7 @@ fn planned(bodies: &Bodies) -> Plan {
     disassemble(bodies, &matrix, &found.finer, options.with_proofs(false), watch).unwrap()
 }
 
-/// The only step's turn, of a plan that takes all apart.
+/// Returns the turn of the only step of a complete plan.
 fn turn(plan: &Plan) -> (&Leg, &Turn) {
     assert!(plan.stuck.is_empty() && plan.steps.len() == 1, "{plan:?}");
     let leg = &plan.steps[0].path[0];
@@ -77,7 +77,7 @@ fn is_free(assembly: &Assembly, plan: &Plan) {
 #[ignore = "long: many facets that turn"]
 fn a_screw_with_play_is_unscrewed_as_it_is() {
     for (pitch, fixed) in [(1.0, "screw"), (-1.25, "nut")] {
-        // The nut is in the middle: it has as far to either end.
+        // The nut is in the middle, equally far from both ends.
         let nut = vec![piece(nut(pitch, 0.2), through(pitch))];
         let assembly = bolted(&[piece(screw(pitch), DAffine3::IDENTITY)], &nut);
         let assembly = assembly.with_fixed(&[fixed]).unwrap();
@@ -85,7 +85,8 @@ fn a_screw_with_play_is_unscrewed_as_it_is() {
         let (leg, turn) = turn(&plan);
         assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == 1e-6), "{turn:?}");
         assert_eq!((turn.phase, turn.aside), (0.0, DVec3::ZERO));
-        // From one end of the screw to the other of the nut, and hardly farther: the axis is found from facets.
+        // From one end of the screw to the other end of the nut, and hardly farther: the axis is computed from
+        // facets.
         let way = 3.0 * pitch.abs();
         assert!((way..1.01 * way).contains(&leg.travel), "{leg:?}");
         assert!((turn.turns - leg.travel / pitch).abs() < 0.03, "{turn:?}");
@@ -101,10 +102,10 @@ fn a_thread_without_play_takes_the_tolerance_of_its_facets() {
     let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
     let (_, turn) = turn(&plan);
     let tolerance = turn.proof.as_ref().unwrap().tolerance;
-    // The height of a chord of 24 sides is 0.048; the thread is 0.6 deep.
+    // The chord error of 24 sides is 0.048; the thread is 0.6 deep.
     assert!((1e-6..0.15).contains(&tolerance), "{tolerance}");
     is_free(&assembly, &plan);
-    // With less than that it is not said to be certified.
+    // With a smaller tolerance it is not proven.
     let said = PairFit { tolerance: Some(1e-4), ..THREAD };
     let tight = assembly.with_pair([&["screw"], &["nut"]], said).unwrap();
     let plan = planned(&Bodies::new(&tight, FIT).unwrap());
@@ -144,7 +145,7 @@ fn what_cannot_be_certified_is_said_with_why() {
         why,
         "the hole of nut has no thread, it is plain and narrower than the thread of screw"
     );
-    // A wing that can be pulled past a wall, but not be turned past it.
+    // A wing that can be pulled past a wall, but not turned past it.
     let wing = [own(), vec![cuboid([0.0, -1.0, 4.0], [12.0, 1.0, 6.0])]].concat();
     let assembly = bolted(&wing, &[piece(nut(1.0, 0.2), through(1.0))]);
     let mut parts: Vec<Part> = assembly.parts().to_vec();
@@ -190,29 +191,29 @@ fn a_turn_moves_points_as_its_numbers_say() {
     assert!(leg.moved(p, 0.5).distance(wanted) < 0.01, "{leg:?}");
 }
 
-/// A socket whose ring keeps two lugs down but for a slot that is as wide as they are and a little more, at an angle.
+/// Returns a socket whose ring blocks two lugs except at a slot at an angle `at`, slightly wider than the lugs.
 fn socket(at: f64) -> Vec<Piece> {
     let slot = DAffine3::from_rotation_z(at);
     let mut pieces = vec![cuboid([-12.0, -12.0, -2.0], [12.0, 12.0, -1.0])];
-    // The ring beside the slot, in two halves of one block each, with the hole for the shaft left out.
+    // The ring next to the slot, in two halves of one block each, without the hole for the shaft.
     for side in [-1.0, 1.0] {
         let [low, high] = if side < 0.0 { [-9.0, -1.1] } else { [1.1, 9.0] };
         let half = cuboid([-9.0, low, 1.5], [9.0, high, 2.5]);
         pieces.push(Piece { world_from_piece: slot, ..half });
     }
-    // Walls that hold the ring up.
+    // Walls that support the ring.
     for k in 0..4 {
         let turned = DAffine3::from_rotation_z(TAU / 4.0 * f64::from(k));
         let wall = cuboid([9.5, -12.0, -1.0], [12.0, 12.0, 3.0]);
         pieces.push(Piece { world_from_piece: turned, ..wall });
     }
-    // Lids over all but the round in the middle, so that the ring is no part of its own.
+    // Lids over all but the middle, so that the ring is not a part of its own.
     pieces.push(cuboid([-12.0, 8.0, 2.0], [12.0, 12.0, 3.0]));
     pieces.push(cuboid([-12.0, -12.0, 2.0], [12.0, -8.0, 3.0]));
     pieces
 }
 
-/// A plug with a lug on either side of its shaft, which lies under the ring.
+/// Returns a plug with two lugs on its shaft, which lie under the ring.
 fn plug() -> Vec<Piece> {
     vec![cuboid([-0.7, -0.7, -0.9], [0.7, 0.7, 6.0]), cuboid([-6.0, -1.0, 0.0], [6.0, 1.0, 1.4])]
 }
@@ -226,14 +227,14 @@ fn a_bayonet_is_turned_and_then_pulled() {
     let (leg, turn) = turn(&plan);
     assert_eq!((leg.travel, plan.steps[0].parts[0]), (0.0, 1));
     assert!(plan.steps[0].direction.z > 0.999);
-    // The slot is 0.1 wider on either side, at a radius of 6.
+    // The slot is 0.1 wider on each side, at a radius of 6.
     let angle = TAU * turn.turns * leg.direction.z;
     assert!(
         (angle - 0.7).abs() < 0.02 || (angle + std::f64::consts::PI - 0.7).abs() < 0.02,
         "{turn:?}"
     );
     is_free(&assembly, &plan);
-    // Without the slot there is no way.
+    // Without the slot there is no removal path.
     let closed = [
         socket(0.7),
         vec![
@@ -248,7 +249,7 @@ fn a_bayonet_is_turned_and_then_pulled() {
     assert!(plan.steps.is_empty(), "{plan:?}");
 }
 
-/// One pair that looks like both: what it is called decides, and it has one role.
+/// A pair that looks like a thread and a snap fit: the name decides, and it gets one role.
 #[test]
 fn a_ring_that_snaps_into_a_groove_is_no_thread() {
     let roles = |name: &str| {

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_and_closures_are_those_of_all_subsets() {
+    fn closures_and_removable_groups_equal_minimal_closed_subsets() {
         let mut random = Random::new(11);
         for _ in 0..500 {
             let n = 1 + random.index(8);

@@ -168,7 +168,7 @@ pub fn candidates(
     }
     let mut axes: Vec<Axis> = (0..bodies.len())
         .into_par_iter()
-        .flat_map_iter(|part| axes_of(bodies, liaisons, part))
+        .flat_map_iter(|part| part_axes(bodies, liaisons, part))
         .collect();
     axes.sort_by(|x, y| x.rank.cmp(&y.rank).then(y.weight.total_cmp(&x.weight)));
     for axis in axes {
@@ -192,7 +192,7 @@ impl Chosen {
     }
 
     fn add_main(&mut self, axis: DVec3, origin: Origin) {
-        for direction in [positive(axis), positive(-axis)] {
+        for direction in [without_signed_zeros(axis), without_signed_zeros(-axis)] {
             if self.is_new(direction) {
                 self.found.main.push(Candidate { direction, origin });
             }
@@ -200,7 +200,7 @@ impl Chosen {
     }
 
     fn add_finer(&mut self, axis: &Axis) {
-        for direction in [positive(axis.along), positive(-axis.along)] {
+        for direction in [without_signed_zeros(axis.along), without_signed_zeros(-axis.along)] {
             let same = |f: &Finer| {
                 f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart
             };
@@ -213,7 +213,7 @@ impl Chosen {
 }
 
 /// Returns the direction with zeros of positive sign.
-fn positive(d: DVec3) -> DVec3 {
+fn without_signed_zeros(d: DVec3) -> DVec3 {
     d + DVec3::ZERO
 }
 
@@ -231,7 +231,7 @@ struct Axis {
 const NORMALS: usize = 6;
 
 /// Returns the candidate axes of one part.
-fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
+fn part_axes(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut axes = Vec::new();
     let mut add =
@@ -239,7 +239,7 @@ fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     for (length, axis) in cylinders::axes(solid) {
         add(0, length, axis, Origin::Cylinder);
     }
-    let normals = normals_of(liaisons, part, NORMALS);
+    let normals = contact_normals(liaisons, part, NORMALS);
     for (k, &(weight, n)) in normals.iter().enumerate() {
         // The normal of the largest contact often is the removal direction; the others are finer candidates.
         add(if k == 0 { 1 } else { 3 }, weight, n, Origin::Contact);
@@ -261,7 +261,7 @@ fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
 
 /// Returns the contact normals of a part without signs, largest area first. A normal within a degree of a larger one
 /// is merged with it.
-fn normals_of(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, DVec3)> {
+fn contact_normals(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, DVec3)> {
     const TOGETHER: f64 = 0.017;
     let own = liaisons.iter().filter(|l| l.parts.contains(&part));
     let mut patches: Vec<(f64, DVec3)> = own

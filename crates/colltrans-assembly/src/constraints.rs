@@ -51,7 +51,7 @@ pub struct Constraints {
 pub const WITHIN_DEGREES: f64 = 45.0;
 
 /// Tolerance of cosines, so that an angle equal to the limit is within it.
-const ROUNDED: f64 = 1e-12;
+const COSINE_TOLERANCE: f64 = 1e-12;
 
 impl Constraints {
     /// Returns the pairs of which the first part leaves before or together with the second.
@@ -92,7 +92,7 @@ impl Constraints {
         self.before.extend(pairs.filter(|[a, b]| a != b));
         self.before.sort_unstable();
         self.before.dedup();
-        self.check(name)
+        self.check_acyclic(name)
     }
 
     /// Adds a unit of parts that leave as one. `name` returns the name of a part.
@@ -107,7 +107,7 @@ impl Constraints {
         self.units.push(added);
         // Units that stay together are merged if they share a part. A subassembly that contains a part of one is
         // extended by all of it.
-        while let Some([a, b]) = self.overlapping(|a, b| !a.apart || !b.apart) {
+        while let Some([a, b]) = self.overlapping_units(|a, b| !a.apart || !b.apart) {
             let (from, to) = if self.units[b].apart { (a, b) } else { (b, a) };
             let parts = self.units[from].parts.clone();
             let both = &mut self.units[to];
@@ -118,7 +118,7 @@ impl Constraints {
                 self.units.remove(from);
             }
         }
-        if let Some(pair) = self.overlapping(|_, _| true) {
+        if let Some(pair) = self.overlapping_units(|_, _| true) {
             let names = pair.map(|k| {
                 let unit = &self.units[k];
                 let parts = || unit.parts.iter().map(|&p| name(p)).collect::<Vec<_>>().join(", ");
@@ -126,12 +126,12 @@ impl Constraints {
             });
             return Err(AssemblyError::Subassemblies { names });
         }
-        self.check(name)
+        self.check_acyclic(name)
     }
 
     /// Returns the first two units that share parts although neither may contain the other, among pairs that are
     /// `wanted`.
-    fn overlapping(&self, wanted: impl Fn(&Unit, &Unit) -> bool) -> Option<[usize; 2]> {
+    fn overlapping_units(&self, wanted: impl Fn(&Unit, &Unit) -> bool) -> Option<[usize; 2]> {
         let holds = |a: &Unit, b: &Unit| a.apart && b.parts.iter().all(|p| a.parts.contains(p));
         let pairs = (0..self.units.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
         let clash = |pair: &[usize; 2]| {
@@ -161,7 +161,7 @@ impl Constraints {
 
     /// Checks that the order is acyclic if parts that stay together count as one. Returns the parts of a cycle as an
     /// error.
-    fn check<'a>(&self, name: impl Fn(usize) -> &'a str) -> Result<(), AssemblyError> {
+    fn check_acyclic<'a>(&self, name: impl Fn(usize) -> &'a str) -> Result<(), AssemblyError> {
         let count = self.before.iter().flatten().chain(self.units.iter().flat_map(|u| &u.parts));
         let mut one = UnionFind::new(count.max().map_or(0, |most| most + 1));
         for unit in self.units.iter().filter(|unit| !unit.apart) {
@@ -184,26 +184,26 @@ impl Constraints {
     }
 
     /// Checks whether constraints concern these parts.
-    pub(crate) fn concern(&self, parts: &[usize]) -> bool {
+    pub(crate) fn is_concerned(&self, parts: &[usize]) -> bool {
         let mut there = vec![false; parts.iter().max().map_or(0, |most| most + 1)];
         for &part in parts {
             there[part] = true;
         }
         let kept = self.never.iter().any(|never| is_there(&there, never.part));
-        kept || !self.arcs(&there).is_empty()
+        kept || !self.order_arcs(&there).is_empty()
     }
 
     /// Returns the arcs of the constraints among the present parts. They hold along every direction.
-    pub(crate) fn arcs(&self, there: &[bool]) -> Vec<(usize, usize)> {
+    pub(crate) fn order_arcs(&self, there: &[bool]) -> Vec<(usize, usize)> {
         let ordered =
             self.before.iter().filter(|pair| pair.iter().all(|&part| is_there(there, part)));
         let mut arcs: Vec<(usize, usize)> = ordered.map(|&[a, b]| (b, a)).collect();
-        arcs.extend(self.pairs(there).into_iter().flat_map(|[a, b]| [(a, b), (b, a)]));
+        arcs.extend(self.rigid_pairs(there).into_iter().flat_map(|[a, b]| [(a, b), (b, a)]));
         arcs
     }
 
     /// Returns all pairs of present parts that leave as one.
-    pub(crate) fn pairs(&self, there: &[bool]) -> Vec<[usize; 2]> {
+    pub(crate) fn rigid_pairs(&self, there: &[bool]) -> Vec<[usize; 2]> {
         let mut pairs = Vec::new();
         for unit in self.units.iter().filter(|unit| !unit.is_released(there)) {
             let parts = unit.parts.iter().copied().filter(|&part| is_there(there, part));
@@ -218,13 +218,13 @@ impl Constraints {
     }
 
     /// Returns the number of units that may be taken apart because nothing else is present.
-    pub(crate) fn released(&self, there: &[bool]) -> usize {
+    pub(crate) fn released_count(&self, there: &[bool]) -> usize {
         self.units.iter().filter(|unit| unit.is_released(there)).count()
     }
 
     /// Checks whether the constraints require that a part is removed before a group: the part comes before one of the
     /// group, or the group takes apart a unit that the part does not belong to.
-    pub(crate) fn waits(&self, group: &[usize], part: usize) -> bool {
+    pub(crate) fn must_wait_for(&self, group: &[usize], part: usize) -> bool {
         let later = |pair: &[usize; 2]| pair[0] == part && group.contains(&pair[1]);
         let apart = |unit: &Unit| {
             let some = group.iter().any(|k| unit.parts.contains(k));
@@ -240,15 +240,15 @@ impl Constraints {
     }
 
     /// Checks whether the constraints allow a group to leave all other present parts.
-    pub(crate) fn lets_go(&self, group: &[usize], there: &[bool]) -> bool {
-        !self.arcs(there).iter().any(|(a, b)| group.contains(a) && !group.contains(b))
+    pub(crate) fn allows_leaving(&self, group: &[usize], there: &[bool]) -> bool {
+        !self.order_arcs(there).iter().any(|(a, b)| group.contains(a) && !group.contains(b))
     }
 
     /// Checks whether no part of a group is forbidden to move along a direction.
-    pub(crate) fn allows(&self, group: &[usize], d: DVec3) -> bool {
+    pub(crate) fn allows_direction(&self, group: &[usize], d: DVec3) -> bool {
         let kept = |never: &&Never| {
             group.contains(&never.part)
-                && never.direction.dot(d) >= never.within.to_radians().cos() - ROUNDED
+                && never.direction.dot(d) >= never.within.to_radians().cos() - COSINE_TOLERANCE
         };
         !self.never.iter().any(|never| kept(&never))
     }
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_leaves_before_itself() {
+    fn cyclic_order_constraints_are_rejected() {
         let name = |k: usize| ["a", "b", "c", "d"][k];
         let mut order = Constraints::default();
         order.add_before([&[0], &[1, 2]], name).unwrap();
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_together_grows_and_subassemblies_lie_in_each_other() {
+    fn overlapping_units_merge_and_subassemblies_must_nest() {
         let name = |k: usize| ["a", "b", "c", "d", "e"][k];
         let mut order = Constraints::default();
         order.add_unit(unit_of(&[0, 1], false), name).unwrap();
@@ -326,19 +326,19 @@ mod tests {
         let refused = order.clone().add_unit(unit_of(&[3, 4], true), name).unwrap_err();
         assert!(matches!(refused, AssemblyError::Subassemblies { .. }));
         // If a subassembly is alone, it may be taken apart, except for parts that stay together.
-        let arcs = |there: [bool; 5]| order.arcs(&there).len();
+        let arcs = |there: [bool; 5]| order.order_arcs(&there).len();
         assert_eq!(arcs([true; 5]), 6 + 12);
         assert_eq!(arcs([true, true, true, true, false]), 6);
         assert!(order.keeps_together(&[0, 2]) && !order.keeps_together(&[0, 3]));
     }
 
     #[test]
-    fn directions_within_an_angle_are_kept_from_a_part() {
+    fn directions_within_the_forbidden_angle_are_not_allowed() {
         let mut order = Constraints::default();
         order.add_never(0, DVec3::new(0.0, 0.0, -2.0), 45.0).unwrap();
         let within = DVec3::new(0.0, 1.0, -1.01).normalize();
         let beside = DVec3::new(0.0, 1.0, -0.99).normalize();
-        assert!(!order.allows(&[0, 1], within) && order.allows(&[0], beside));
-        assert!(order.allows(&[1], within));
+        assert!(!order.allows_direction(&[0, 1], within) && order.allows_direction(&[0], beside));
+        assert!(order.allows_direction(&[1], within));
     }
 }

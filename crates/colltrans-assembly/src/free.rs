@@ -31,11 +31,11 @@ impl Removal {
         if group.is_empty() || others.is_empty() {
             return Err(AssemblyError::Removal { count: group.len(), of: bodies.len() });
         }
-        Self::among(bodies, group, &others)
+        Self::between(bodies, group, &others)
     }
 
     /// Combines a group and some other parts.
-    pub(crate) fn among(
+    pub(crate) fn between(
         bodies: &Bodies,
         group: &[usize],
         others: &[usize],

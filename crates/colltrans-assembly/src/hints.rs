@@ -36,7 +36,7 @@ const NEARER: f64 = 32.0;
 /// Lengths of equal shapes differ by less than this share.
 const EQUAL: f64 = 1e-3;
 /// Names that a hint lists.
-const MOST_NAMED: usize = 4;
+const MAX_NAMED: usize = 4;
 
 /// What looks odd, or may be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -95,7 +95,7 @@ fn identical(assembly: &Assembly, likes: &[usize]) -> Vec<Hint> {
         let names = assembly.names(&parts);
         let words = match common_name(&names) {
             Some(name) => format!("{} x {name} are identical", parts.len()),
-            None => format!("{} are identical", first_named(&names, MOST_NAMED)),
+            None => format!("{} are identical", first_named(&names, MAX_NAMED)),
         };
         Hint { kind: HintKind::Identical, parts, words }
     };
@@ -128,7 +128,7 @@ fn frames(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
         let first = (0..twin).find(|a| same(a, &twin)).unwrap_or(twin);
         let mut group = vec![first];
         group.extend(twins.into_iter().filter(|k| same(&first, k)));
-        let names = first_named(&assembly.names(&group), MOST_NAMED);
+        let names = first_named(&assembly.names(&group), MAX_NAMED);
         let words = format!(
             "{names} are one body in one place: parts seem to stand in frames of their own; {advice}"
         );
@@ -160,7 +160,7 @@ fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         let names = assembly.names(&small);
         let words = format!(
             "{} may be in another unit, {factor} times too small: {why}; --scale {}={factor} corrects it",
-            first_named(&names, MOST_NAMED),
+            first_named(&names, MAX_NAMED),
             names[0]
         );
         Hint { kind: HintKind::Units, parts: small, words }
@@ -202,10 +202,10 @@ fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
 fn in_millimetres(assembly: &Assembly, large: Vec<usize>) -> Hint {
     let names = assembly.names(&large);
     let scales: Vec<String> =
-        names.iter().take(MOST_NAMED).map(|name| format!("--scale {name}=0.001")).collect();
+        names.iter().take(MAX_NAMED).map(|name| format!("--scale {name}=0.001")).collect();
     let words = format!(
         "{} may be in millimetres beside parts in metres, 1000 times too large: {} corrects it",
-        first_named(&names, MOST_NAMED),
+        first_named(&names, MAX_NAMED),
         scales.join(" ")
     );
     Hint { kind: HintKind::Units, parts: large, words }

@@ -26,7 +26,7 @@ use face::{Face, Swept, twice_area};
 
 /// Minimum cosine between a normal and the reversed other one in a contact: 25 degrees, a step of a round of 14
 /// sides.
-const OPPOSITE: f64 = 0.906;
+const MIN_OPPOSITE_COSINE: f64 = 0.906;
 
 /// Two flat faces in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,7 +88,7 @@ pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyE
     let tally = watch.stage(Stage::Liaisons, pairs.len());
     let parts = bodies.assembly().parts();
     let look = |&[a, b]: &[usize; 2]| {
-        let patches = contacts(parts[a].solid(), parts[b].solid(), reach);
+        let patches = contact_patches(parts[a].solid(), parts[b].solid(), reach);
         let found = (!patches.is_empty()).then_some(Liaison { parts: [a, b], patches });
         tally.step().map(|()| found)
     };
@@ -99,26 +99,26 @@ pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyE
 type Triangle = [DVec3; 3];
 
 /// Returns a patch for each pair of faces of two solids in contact.
-fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
+fn contact_patches(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
     let mut patches = Vec::new();
-    touching(a, b, reach, &mut |[p, q]| {
+    each_facing_pair(a, b, reach, &mut |[p, q]| {
         let mut patch = Patch::empty(p.normal, -q.normal);
-        let error = common(p, q, reach, &mut |piece| patch.add(piece));
-        patches.extend(patch.finished(twice_area(&p.facets[0]).length() * LEAST, error));
+        let error = each_common_piece(p, q, reach, &mut |piece| patch.add(piece));
+        patches.extend(patch.finished(twice_area(&p.facets[0]).length() * MIN_AREA, error));
     });
     patches
 }
 
 /// Returns the corners of the areas in which a part touches another one with facets whose normals are along `down`,
 /// within [`OPPOSITE`].
-pub(crate) fn footprint(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DVec3> {
+pub(crate) fn footprint_corners(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DVec3> {
     let mut corners = Vec::new();
-    touching(a, b, reach, &mut |[p, q]| {
-        if p.normal.dot(down) >= OPPOSITE {
-            common(p, q, reach, &mut |piece| {
+    each_facing_pair(a, b, reach, &mut |[p, q]| {
+        if p.normal.dot(down) >= MIN_OPPOSITE_COSINE {
+            each_common_piece(p, q, reach, &mut |piece| {
                 // Pieces between boundaries that agree up to rounding carry nothing.
                 if piece.area > piece.error {
-                    corners.extend(piece.outline());
+                    corners.extend(piece.world_corners());
                 }
             });
         }
@@ -127,14 +127,14 @@ pub(crate) fn footprint(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DV
 }
 
 /// Calls a function with all pairs of faces that face each other and are near.
-fn touching(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2])) {
+fn each_facing_pair(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2])) {
     let (p, q) = (a.bounds().grown(reach), b.bounds().grown(reach));
     let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
     let [first, second] = [a, b].map(|solid| Face::all_in(solid, &region, reach));
     let tree = BoxTree::new(second.iter().map(|face| face.bounds));
     for face in &first {
         for k in tree.meeting(&face.bounds.grown(reach)) {
-            if -face.normal.dot(second[k].normal) >= OPPOSITE {
+            if -face.normal.dot(second[k].normal) >= MIN_OPPOSITE_COSINE {
                 call([face, &second[k]]);
             }
         }
@@ -142,17 +142,17 @@ fn touching(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2]))
 }
 
 /// Pieces of at most this fraction of twice a facet's area are no contact.
-const LEAST: f64 = 1e-9;
+const MIN_AREA: f64 = 1e-9;
 /// Number of pairs of facets from which on two faces are compared as wholes.
-const MANY: usize = 64;
+const MANY_PAIRS: usize = 64;
 /// Two faces are coplanar if the distances between their planes differ by at most this fraction of the reach.
-const LEVEL: f64 = 1.0 / 64.0;
+const COPLANAR: f64 = 1.0 / 64.0;
 
 /// Calls a function with the pieces of the intersection of two faces, projected along the first normal. Returns the
 /// error of their total area beyond the errors of the pieces.
-fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 {
+fn each_common_piece(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 {
     let mut clipping = Clipping::default();
-    let many = p.facets.len() * q.facets.len() >= MANY;
+    let many = p.facets.len() * q.facets.len() >= MANY_PAIRS;
     if many {
         let height = |at: DVec3| (q.facets[0][0] - at).dot(q.normal) / p.normal.dot(q.normal);
         let heights = p.corners().map(height);
@@ -160,15 +160,15 @@ fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 
         if low > reach || high < -reach {
             return 0.0;
         }
-        if high - low <= reach * LEVEL {
-            return swept(p, q, &mut clipping, call);
+        if high - low <= reach * COPLANAR {
+            return each_swept_piece(p, q, &mut clipping, call);
         }
     }
     let tree = many.then(|| BoxTree::new(q.facets.iter().map(|t| Aabb::of_points(*t))));
     for first in &p.facets {
-        let Some(plane) = Plane::of(first) else { continue };
+        let Some(plane) = Plane::from_facet(first) else { continue };
         let mut look = |second: &Triangle| {
-            if let Some(piece) = plane.touches(second, reach, &mut clipping) {
+            if let Some(piece) = plane.contact_piece(second, reach, &mut clipping) {
                 call(&piece);
             }
         };
@@ -187,22 +187,27 @@ fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 
 
 /// Calls a function with the pieces of the intersection of two coplanar faces, found by a sweep. Returns the error of
 /// their total area beyond the errors of the pieces.
-fn swept(p: &Face, q: &Face, clipping: &mut Clipping, call: &mut impl FnMut(&Piece)) -> f64 {
-    let Some(plane) = Plane::of(&p.facets[0]) else { return 0.0 };
-    let range = |face: &Face| span(face.corners().map(|at| plane.flat(at).x));
+fn each_swept_piece(
+    p: &Face,
+    q: &Face,
+    clipping: &mut Clipping,
+    call: &mut impl FnMut(&Piece),
+) -> f64 {
+    let Some(plane) = Plane::from_facet(&p.facets[0]) else { return 0.0 };
+    let range = |face: &Face| span(face.corners().map(|at| plane.plane_coordinates(at).x));
     let ([low, high], [least, most]) = (range(p), range(q));
     let range = [low.max(least), high.min(most)];
-    let [first, second] =
-        [(p, 1.0), (q, -1.0)].map(|(face, way)| Swept::new(face, |at| plane.flat(at), way, range));
-    let off = plane.displacement(p.corners().chain(q.corners()));
+    let [first, second] = [(p, 1.0), (q, -1.0)]
+        .map(|(face, way)| Swept::new(face, |at| plane.plane_coordinates(at), way, range));
+    let off = plane.coordinate_error(p.corners().chain(q.corners()));
     first.each_pair(&second, |a, b| {
         let ([a, b], reached) = ([a.corners(), b.corners()], &mut *clipping);
-        let error = rounding(off, [perimeter(&a), perimeter(&b)]);
-        if let Some(piece) = plane.piece(&a, &b, error, reached) {
+        let error = area_error_bound(off, [perimeter(&a), perimeter(&b)]);
+        if let Some(piece) = plane.common_piece(&a, &b, error, reached) {
             call(&piece);
         }
     });
-    rounding(off, [p.perimeter(), q.perimeter()])
+    area_error_bound(off, [p.perimeter(), q.perimeter()])
 }
 
 /// The plane of a facet with its axes.
@@ -225,22 +230,22 @@ struct Piece<'c> {
 }
 
 impl<'t> Plane<'t> {
-    fn of(facet: &'t Triangle) -> Option<Self> {
+    fn from_facet(facet: &'t Triangle) -> Option<Self> {
         let normal = twice_area(facet).try_normalize()?;
         let along = (facet[1] - facet[0]).try_normalize()?;
         let axes = [along, normal.cross(along)];
         let mut plane = Self { facet, normal, axes, corners: [DVec2::ZERO; 3] };
-        plane.corners = facet.map(|at| plane.flat(at));
+        plane.corners = facet.map(|at| plane.plane_coordinates(at));
         Some(plane)
     }
 
-    fn flat(&self, at: DVec3) -> DVec2 {
+    fn plane_coordinates(&self, at: DVec3) -> DVec2 {
         let from = at - self.facet[0];
         DVec2::new(from.dot(self.axes[0]), from.dot(self.axes[1]))
     }
 
     /// Returns the common piece of the plane's facet and another one, or `None` if they are not in contact.
-    fn touches<'c>(
+    fn contact_piece<'c>(
         &self,
         other: &Triangle,
         reach: f64,
@@ -248,35 +253,35 @@ impl<'t> Plane<'t> {
     ) -> Option<Piece<'c>> {
         let n = self.normal;
         let m = twice_area(other).try_normalize()?;
-        if -n.dot(m) < OPPOSITE {
+        if -n.dot(m) < MIN_OPPOSITE_COSINE {
             return None;
         }
         // The second facet is clockwise if seen along the first normal.
-        let seen = [other[0], other[2], other[1]].map(|at| self.flat(at));
+        let seen = [other[0], other[2], other[1]].map(|at| self.plane_coordinates(at));
         let largest = perp_area(&self.corners);
-        let mut piece = self.piece(&self.corners, &seen, 0.0, clipping)?;
-        if piece.area <= largest * LEAST {
+        let mut piece = self.common_piece(&self.corners, &seen, 0.0, clipping)?;
+        if piece.area <= largest * MIN_AREA {
             return None;
         }
         // Height of the second facet's plane above the first one.
-        let height = |s: &DVec2| (other[0] - piece.place(*s)).dot(m) / n.dot(m);
+        let height = |s: &DVec2| (other[0] - piece.world_position(*s)).dot(m) / n.dot(m);
         let heights = piece.shadow.iter().map(height);
         let [low, high] = span(heights);
-        let off = self.displacement(self.facet.iter().chain(other).copied());
-        piece.error = rounding(off, [perimeter(&self.corners), perimeter(&seen)]);
+        let off = self.coordinate_error(self.facet.iter().chain(other).copied());
+        piece.error = area_error_bound(off, [perimeter(&self.corners), perimeter(&seen)]);
         (low <= reach && high >= -reach).then_some(piece)
     }
 
     /// Returns the intersection of two convex counter-clockwise polygons in the plane, or `None` if it has no area.
-    fn piece<'c>(
+    fn common_piece<'c>(
         &self,
         first: &[DVec2],
         second: &[DVec2],
         error: f64,
         clipping: &'c mut Clipping,
     ) -> Option<Piece<'c>> {
-        let shadow = clipping.common(first, second);
-        let (area, middle) = centroid(shadow)?;
+        let shadow = clipping.intersect(first, second);
+        let (area, middle) = area_and_centroid(shadow)?;
         Some(Piece { origin: self.facet[0], axes: self.axes, shadow, area, error, middle })
     }
 
@@ -285,7 +290,7 @@ impl<'t> Plane<'t> {
     /// Let `D` be the largest distance of a point from the facet's first corner, and `s` the inverse sine of the
     /// facet's angle there. The normal has an error of `8 u s`, and the other two axes one of `8 u s + 4 u`.
     /// Coordinates thus have an error of at most `32 u D (1 + s)`.
-    fn displacement(&self, points: impl Iterator<Item = DVec3>) -> f64 {
+    fn coordinate_error(&self, points: impl Iterator<Item = DVec3>) -> f64 {
         const U: f64 = f64::EPSILON / 2.0;
         let farthest = points.map(|p| p.distance(self.facet[0])).fold(0.0, f64::max);
         let (e, f) = (self.facet[1] - self.facet[0], self.facet[2] - self.facet[0]);
@@ -295,12 +300,12 @@ impl<'t> Plane<'t> {
 }
 
 impl Piece<'_> {
-    fn place(&self, seen: DVec2) -> DVec3 {
+    fn world_position(&self, seen: DVec2) -> DVec3 {
         self.origin + self.axes[0] * seen.x + self.axes[1] * seen.y
     }
 
-    fn outline(&self) -> impl Iterator<Item = DVec3> {
-        self.shadow.iter().map(|seen| self.place(*seen))
+    fn world_corners(&self) -> impl Iterator<Item = DVec3> {
+        self.shadow.iter().map(|seen| self.world_position(*seen))
     }
 }
 
@@ -314,7 +319,7 @@ impl Patch {
         self.area += piece.area;
         // Includes the rounding of the sum.
         self.area_error += piece.error + f64::EPSILON * self.area;
-        self.center += piece.place(piece.middle) * piece.area;
+        self.center += piece.world_position(piece.middle) * piece.area;
     }
 
     /// Returns the finished patch, or `None` if its area is at most `least`. `error` is an additional error of the
@@ -331,7 +336,7 @@ impl Patch {
 /// line. The ends of a strip lie on its boundary up to `4 u D`. If the boundary of a convex polygon lies within `h`
 /// of another one, the areas differ by at most `h` times the perimeter, to first order. The bound takes five such
 /// errors, and doubles them for the rounding of the sum over the corners.
-fn rounding(off: f64, perimeters: [f64; 2]) -> f64 {
+fn area_error_bound(off: f64, perimeters: [f64; 2]) -> f64 {
     10.0 * off * (perimeters[0] + perimeters[1])
 }
 
@@ -353,11 +358,11 @@ struct Clipping {
 
 impl Clipping {
     /// Returns the intersection of two convex counter-clockwise polygons (Sutherland-Hodgman).
-    fn common(&mut self, first: &[DVec2], second: &[DVec2]) -> &[DVec2] {
+    fn intersect(&mut self, first: &[DVec2], second: &[DVec2]) -> &[DVec2] {
         self.kept.clear();
         self.kept.extend_from_slice(second);
         for (k, &from) in first.iter().enumerate() {
-            self.cut(from, first[(k + 1) % first.len()]);
+            self.clip_to_left(from, first[(k + 1) % first.len()]);
             if self.kept.is_empty() {
                 break;
             }
@@ -366,7 +371,7 @@ impl Clipping {
     }
 
     /// Keeps the part of the polygon to the left of a line.
-    fn cut(&mut self, from: DVec2, to: DVec2) {
+    fn clip_to_left(&mut self, from: DVec2, to: DVec2) {
         let side = |p: DVec2| (to - from).perp_dot(p - from);
         self.next.clear();
         for (k, &p) in self.kept.iter().enumerate() {
@@ -384,7 +389,7 @@ impl Clipping {
 }
 
 /// Returns area and centroid of a convex polygon, or `None` if it has no area.
-fn centroid(polygon: &[DVec2]) -> Option<(f64, DVec2)> {
+fn area_and_centroid(polygon: &[DVec2]) -> Option<(f64, DVec2)> {
     let first = *polygon.first()?;
     let (mut twice, mut sum) = (0.0, DVec2::ZERO);
     for pair in polygon[1..].windows(2) {
@@ -402,17 +407,21 @@ mod tests {
 
     use super::*;
 
-    fn contact(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
+    fn contact_patch(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
         let normal = |t: &Triangle| (t[1] - t[0]).cross(t[2] - t[0]).normalize();
         let mut patch = Patch::empty(normal(first), -normal(second));
-        patch.add(&Plane::of(first)?.touches(second, reach, &mut Clipping::default())?);
+        patch.add(&Plane::from_facet(first)?.contact_piece(
+            second,
+            reach,
+            &mut Clipping::default(),
+        )?);
         patch.finished(0.0, 0.0)
     }
 
     /// Triangles in parallel planes whose unit normal has no floating-point representation. The second one's
     /// projection covers the first, a part of it, or more. The areas are known as fractions.
     #[test]
-    fn areas_lie_within_their_bounds() {
+    fn exact_contact_area_is_within_area_bounds() {
         let mut random = Random::new(5);
         let mut seen = [0; 3];
         for round in 0..3_000 {
@@ -430,7 +439,7 @@ mod tests {
             };
             let first = [far, far + e, far + f];
             let second = [far, far + f, far + e].map(|p| far + (p - far) * scale + shift);
-            let Some(patch) = contact(&first, &second, 1.0) else { continue };
+            let Some(patch) = contact_patch(&first, &second, 1.0) else { continue };
             let both = Liaison { parts: [0, 1], patches: vec![patch] };
             let [low, high] = both.area_bounds().map(Dyadic::new);
             let normal = Vector::new(e).cross(&Vector::new(f));
@@ -444,23 +453,23 @@ mod tests {
     }
 
     #[test]
-    fn stacked_triangles_touch_where_they_overlap() {
+    fn contact_of_stacked_triangles_is_their_overlap() {
         let low = [DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
         let up =
             |z: f64| [DVec3::new(0.0, 0.0, z), DVec3::new(0.0, 2.0, z), DVec3::new(2.0, 0.0, z)];
-        let patch = contact(&low, &up(0.01), 0.02).expect("they touch");
+        let patch = contact_patch(&low, &up(0.01), 0.02).expect("they touch");
         assert_eq!(patch.normal, DVec3::Z);
         assert!((patch.area - 2.0).abs() < 1e-12);
         assert!((patch.center - DVec3::new(2.0 / 3.0, 2.0 / 3.0, 0.0)).length() < 1e-12);
-        assert!(contact(&low, &up(0.03), 0.02).is_none());
+        assert!(contact_patch(&low, &up(0.03), 0.02).is_none());
         let beside = up(0.0).map(|p| p + DVec3::new(5.0, 0.0, 0.0));
-        assert!(contact(&low, &beside, 0.02).is_none());
+        assert!(contact_patch(&low, &beside, 0.02).is_none());
         let facing_away = [low[0], low[1], low[2]];
-        assert!(contact(&low, &facing_away, 0.02).is_none());
+        assert!(contact_patch(&low, &facing_away, 0.02).is_none());
     }
 
     /// Returns a sheet of the squares of a grid, each of two facets, with some squares left out.
-    fn sheet(random: &mut Random, place: impl Fn(DVec2) -> DVec3, turned: bool) -> Solid {
+    fn random_sheet(random: &mut Random, place: impl Fn(DVec2) -> DVec3, turned: bool) -> Solid {
         const SIDE: usize = 7;
         let at = |k: usize| DVec2::new((k % SIDE) as f64, (k / SIDE) as f64);
         let vertices: Vec<DVec3> = (0..SIDE * SIDE).map(|k| place(at(k))).collect();
@@ -482,7 +491,7 @@ mod tests {
     /// Sheets with holes face each other, in any plane, on equal, rotated or arbitrary grids. The sweep finds the
     /// same area, centroid and corners as all pairs of facets.
     #[test]
-    fn faces_have_in_common_what_their_facets_have() {
+    fn sweep_of_coplanar_faces_equals_all_pairs_of_facets() {
         let mut random = Random::new(8);
         for round in 0..200 {
             let (turn, shift) = match round % 4 {
@@ -493,10 +502,10 @@ mod tests {
             };
             let world = if round % 8 < 4 { glam::DQuat::IDENTITY } else { random.rotation() };
             let place = |p: DVec2| world * p.extend(0.0);
-            let first = sheet(&mut random, place, false);
+            let first = random_sheet(&mut random, place, false);
             let turn = DVec2::from_angle(turn);
-            let second = sheet(&mut random, |p| place(turn.rotate(p) + shift), true);
-            let patches = contacts(&first, &second, 1e-3);
+            let second = random_sheet(&mut random, |p| place(turn.rotate(p) + shift), true);
+            let patches = contact_patches(&first, &second, 1e-3);
             let corners = |solid: &Solid| -> Vec<Triangle> {
                 let corner = |v: u32| solid.vertices()[v as usize];
                 solid.triangles().iter().map(|t| t.map(corner)).collect()
@@ -504,7 +513,7 @@ mod tests {
             let (first_facets, second_facets) = (corners(&first), corners(&second));
             let each =
                 || first_facets.iter().flat_map(|p| second_facets.iter().map(move |q| (p, q)));
-            let all: Vec<Patch> = each().filter_map(|(p, q)| contact(p, q, 1e-3)).collect();
+            let all: Vec<Patch> = each().filter_map(|(p, q)| contact_patch(p, q, 1e-3)).collect();
             let sum = |patches: &[Patch]| {
                 let area: f64 = patches.iter().map(|p| p.area).sum();
                 let error: f64 = patches.iter().map(|p| p.area_error).sum();
@@ -527,11 +536,16 @@ mod tests {
             };
             let pieces = |(p, q): (&Triangle, &Triangle)| {
                 let mut clipping = Clipping::default();
-                let piece = Plane::of(p)?.touches(q, 1e-3, &mut clipping)?.outline().collect();
+                let piece = Plane::from_facet(p)?
+                    .contact_piece(q, 1e-3, &mut clipping)?
+                    .world_corners()
+                    .collect();
                 Some::<Vec<DVec3>>(piece)
             };
             let ends = reached(each().filter_map(pieces).flatten().collect());
-            for (a, b) in reached(footprint(&first, &second, 1e-3, down)).into_iter().zip(ends) {
+            for (a, b) in
+                reached(footprint_corners(&first, &second, 1e-3, down)).into_iter().zip(ends)
+            {
                 assert!((a - b).abs() < 1e-4, "{round}: {a} {b}");
             }
         }
@@ -540,7 +554,7 @@ mod tests {
     /// Discs of a thousand thin facets that share a corner, a different one in each disc. The number of pieces is
     /// proportional to the boundary edges, not to the pairs of facets that cross.
     #[test]
-    fn slivers_that_cross_are_not_held_against_each_other() {
+    fn sweep_of_thin_facets_makes_few_pieces() {
         const SIDES: u32 = 1_000;
         let disc = |corner: u32, turned: bool| {
             let angle = |k: u32| f64::from(k) / f64::from(SIDES) * std::f64::consts::TAU;
@@ -557,13 +571,14 @@ mod tests {
         };
         let (first, second) = (disc(0, false), disc(SIDES / 3, true));
         let (mut faces, mut pieces) = (0, 0);
-        touching(&first, &second, 1e-6, &mut |[p, q]| {
+        each_facing_pair(&first, &second, 1e-6, &mut |[p, q]| {
             faces += 1;
-            common(p, q, 1e-6, &mut |_| pieces += 1);
+            each_common_piece(p, q, 1e-6, &mut |_| pieces += 1);
         });
         assert!(faces == 1 && pieces <= 4 * SIDES, "{faces} {pieces}");
         let [low, high] =
-            Liaison { parts: [0, 1], patches: contacts(&first, &second, 1e-6) }.area_bounds();
+            Liaison { parts: [0, 1], patches: contact_patches(&first, &second, 1e-6) }
+                .area_bounds();
         let area = 0.5 * f64::from(SIDES) * (std::f64::consts::TAU / f64::from(SIDES)).sin();
         assert!(low <= area && area <= high && high - low < 1e-6, "{low} {area} {high}");
     }

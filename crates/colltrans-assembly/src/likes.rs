@@ -19,11 +19,12 @@ const EQUAL: f64 = 1e-4;
 
 /// Returns for each part the index of the first identical part, which may be the part itself.
 pub fn likes(assembly: &Assembly) -> Vec<usize> {
-    let shapes: Vec<Shape> = assembly.parts().iter().map(|p| Shape::of(p.solid())).collect();
+    let shapes: Vec<Shape> =
+        assembly.parts().iter().map(|p| Shape::from_solid(p.solid())).collect();
     let mut seen: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
     let first = |(k, shape): (usize, &Shape)| {
         let known = seen.entry(shape.counts).or_default();
-        let like = known.iter().copied().find(|&other| shapes[other].is_like(shape));
+        let like = known.iter().copied().find(|&other| shapes[other].is_identical_to(shape));
         like.unwrap_or_else(|| {
             known.push(k);
             k
@@ -77,7 +78,7 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(solid: &Solid) -> Self {
+    fn from_solid(solid: &Solid) -> Self {
         let corner = |v: u32| solid.vertices()[v as usize];
         let area = |t: &[u32; 3]| {
             let [a, b, c] = t.map(corner);
@@ -92,7 +93,7 @@ impl Shape {
         }
     }
 
-    fn is_like(&self, other: &Self) -> bool {
+    fn is_identical_to(&self, other: &Self) -> bool {
         let equal = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.abs().max(b.abs());
         let largest = self.moments.abs().max_element();
         let near = (self.moments - other.moments).abs().max_element() <= EQUAL * largest;
@@ -112,7 +113,7 @@ mod tests {
     use crate::part::{Part, Piece};
 
     #[test]
-    fn turned_and_moved_parts_are_alike_and_others_are_not() {
+    fn moved_copies_are_identical_and_other_shapes_are_not() {
         let mut random = Random::new(3);
         let shapes = [
             cuboid(DVec3::new(1.0, 2.0, 3.0)),
@@ -136,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn mirror_images_are_alike_only_where_they_are_one_shape() {
+    fn mirror_images_are_identical_only_if_symmetric() {
         let mut random = Random::new(5);
         let corners =
             [DVec3::ZERO, DVec3::X * 4.0, DVec3::new(1.0, 2.5, 0.0), DVec3::new(0.5, 0.4, 1.2)];
@@ -162,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_what_is_alike() {
+    fn common_name_drops_trailing_numbers() {
         assert_eq!(common_name(&["bolt_1", "bolt_12"]).as_deref(), Some("bolt"));
         assert_eq!(common_name(&["M8 bolt", "M8 bolt_2"]).as_deref(), Some("M8 bolt"));
         assert_eq!(common_name(&["müßig", "müde"]).as_deref(), Some("mü"));

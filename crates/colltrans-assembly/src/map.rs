@@ -112,7 +112,7 @@ impl RemovalMap {
     ) -> Result<Self, AssemblyError> {
         let cover = Cover::new(bodies, group, options.start, watch)?;
         let mut mapper = Mapper::new(bodies, group, vec![true; bodies.len()], options, watch);
-        mapper.ask()?;
+        mapper.sample_pending()?;
         mapper.refine_farthest()?;
         let Aabb { low, high } = bodies.assembly().bounds();
         let size = (high - low).length();
@@ -120,15 +120,15 @@ impl RemovalMap {
         let smallest = std::f64::consts::PI * options.border * options.border;
         let group = group.to_vec();
         if let Ok(exact) = &cover {
-            let (regions, isolated) = exact.told(smallest);
+            let (regions, isolated) = exact.report_regions(smallest);
             let Mapper { sphere, rooms, .. } = mapper;
             return Ok(Self { group, sphere, rooms, cover, regions, isolated, size });
         }
-        let free = mapper.free_candidates(candidates)?;
+        let free = mapper.test_candidates(candidates)?;
         mapper.refine_around(&free)?;
         mapper.refine_border()?;
         let Mapper { sphere, rooms, .. } = mapper;
-        let mut regions = regions::regions(&sphere, &rooms);
+        let mut regions = regions::connected_regions(&sphere, &rooms);
         let single: Vec<DVec3> =
             regions.iter().filter(|r| r.solid_angle < smallest).map(|r| r.center).collect();
         regions.retain(|r| r.solid_angle >= smallest);
@@ -157,7 +157,7 @@ impl RemovalMap {
 }
 
 /// Maximum number of local maxima of the travel that are refined in a round.
-const MOST_PEAKS: usize = 24;
+const MAX_PEAKS: usize = 24;
 /// Number of rounds of this refinement.
 const PEAK_ROUNDS: usize = 3;
 
@@ -184,13 +184,13 @@ impl<'a> Mapper<'a> {
     }
 
     /// Computes the travel along the directions that have none yet.
-    fn ask(&mut self) -> Result<(), AssemblyError> {
-        let fresh = self.rooms_of(&self.sphere.directions[self.rooms.len()..])?;
+    fn sample_pending(&mut self) -> Result<(), AssemblyError> {
+        let fresh = self.sample_rooms(&self.sphere.directions[self.rooms.len()..])?;
         self.rooms.extend(fresh);
         Ok(())
     }
 
-    fn rooms_of(&self, directions: &[DVec3]) -> Result<Vec<PartRoom>, AssemblyError> {
+    fn sample_rooms(&self, directions: &[DVec3]) -> Result<Vec<PartRoom>, AssemblyError> {
         let tally = self.watch.stage(Stage::Map, directions.len());
         let look = |workspace: &mut Workspace, d: &DVec3| {
             let start = self.options.start;
@@ -200,8 +200,8 @@ impl<'a> Mapper<'a> {
         directions.par_iter().map_init(Workspace::default, look).collect()
     }
 
-    fn free_candidates(&self, candidates: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
-        let rooms = self.rooms_of(candidates)?;
+    fn test_candidates(&self, candidates: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
+        let rooms = self.sample_rooms(candidates)?;
         let free = candidates.iter().zip(rooms).filter(|(_, room)| room.is_free());
         Ok(free.map(|(d, _)| *d).collect())
     }
@@ -227,12 +227,12 @@ impl<'a> Mapper<'a> {
             let mut peaks: Vec<usize> = (0..self.rooms.len()).filter(peak).collect();
             let far = |k: usize| self.rooms[k].displaced_distance();
             peaks.sort_by(|a, b| far(*b).total_cmp(&far(*a)).then(a.cmp(b)));
-            peaks.truncate(MOST_PEAKS);
+            peaks.truncate(MAX_PEAKS);
             let peaks: BTreeSet<u32> = peaks.into_iter().map(|k| k as u32).collect();
             let around =
                 |t: &usize| self.sphere.triangles[*t].corners.iter().any(|k| peaks.contains(k));
             let cuts: Vec<usize> = self.sphere.leaves().filter(around).collect();
-            self.cut(cuts)?;
+            self.cut_triangles(cuts)?;
         }
         Ok(())
     }
@@ -251,7 +251,7 @@ impl<'a> Mapper<'a> {
             if cuts.is_empty() {
                 return Ok(());
             }
-            self.cut(cuts)?;
+            self.cut_triangles(cuts)?;
         }
     }
 
@@ -267,12 +267,15 @@ impl<'a> Mapper<'a> {
             if cuts.is_empty() {
                 return Ok(());
             }
-            self.cut(cuts)?;
+            self.cut_triangles(cuts)?;
         }
     }
 
-    fn cut(&mut self, triangles: impl IntoIterator<Item = usize>) -> Result<(), AssemblyError> {
+    fn cut_triangles(
+        &mut self,
+        triangles: impl IntoIterator<Item = usize>,
+    ) -> Result<(), AssemblyError> {
         triangles.into_iter().for_each(|t| self.sphere.cut(t));
-        self.ask()
+        self.sample_pending()
     }
 }

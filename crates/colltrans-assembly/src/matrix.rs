@@ -24,10 +24,10 @@ use crate::rooms::PartRoom;
 use crate::watch::{Stage, Watch};
 
 /// Maximum number of stored contacts, of 130 bytes each.
-const MOST_MEETINGS: usize = 1 << 24;
+const MAX_MEETINGS: usize = 1 << 24;
 
 /// Returns the bits of a direction as a key. Both signs of zero have one key.
-pub(crate) fn bits(d: DVec3) -> [u64; 3] {
+pub(crate) fn direction_bits(d: DVec3) -> [u64; 3] {
     d.to_array().map(|x| (x + 0.0).to_bits())
 }
 
@@ -54,7 +54,7 @@ impl Meeting {
     }
 
     /// Returns the contact from the view of the other part, which moves along `-d`.
-    fn mirrored(&self, d: DVec3) -> Self {
+    fn reversed(&self, d: DVec3) -> Self {
         let turn = |s: Stop| Stop {
             normal: -s.normal,
             point: s.point - d * s.displaced.value,
@@ -76,23 +76,26 @@ pub struct Matrix<'a> {
     among: Vec<bool>,
     start: StartOverlap,
     /// For each direction, the contacts sorted by moving and fixed part.
-    whole: OnceLock<Arc<Vec<Vec<Meeting>>>>,
+    complete_meetings: OnceLock<Arc<Vec<Vec<Meeting>>>>,
     /// The parts of the matrix, for queries on demand.
     all: OnceLock<Arc<Living>>,
 }
 
 impl std::fmt::Debug for Matrix<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let Self { directions, among, whole, .. } = self;
+        let Self { directions, among, complete_meetings, .. } = self;
         let mut fields = f.debug_struct("Matrix");
-        fields.field("directions", directions).field("among", among).field("whole", whole);
+        fields
+            .field("directions", directions)
+            .field("among", among)
+            .field("whole", complete_meetings);
         fields.finish_non_exhaustive()
     }
 }
 
 impl PartialEq for Matrix<'_> {
     fn eq(&self, other: &Self) -> bool {
-        self.directions == other.directions && self.whole() == other.whole()
+        self.directions == other.directions && self.all_meetings() == other.all_meetings()
     }
 }
 
@@ -121,7 +124,14 @@ impl<'a> Matrix<'a> {
         start: StartOverlap,
     ) -> Self {
         let (directions, among) = (directions.to_vec(), among.to_vec());
-        Self { bodies, directions, among, start, whole: OnceLock::new(), all: OnceLock::new() }
+        Self {
+            bodies,
+            directions,
+            among,
+            start,
+            complete_meetings: OnceLock::new(),
+            all: OnceLock::new(),
+        }
     }
 
     /// Computes all contacts, unless they are computed already.
@@ -129,21 +139,25 @@ impl<'a> Matrix<'a> {
     /// # Errors
     /// Returns an error if the run is cancelled or more than 2^24 contacts would be stored.
     pub fn complete(&self, watch: Watch) -> Result<(), AssemblyError> {
-        if self.whole.get().is_none() {
-            let whole = self.asked(MOST_MEETINGS, watch)?;
-            self.whole.get_or_init(|| Arc::new(whole));
+        if self.complete_meetings.get().is_none() {
+            let complete_meetings = self.compute_meetings(MAX_MEETINGS, watch)?;
+            self.complete_meetings.get_or_init(|| Arc::new(complete_meetings));
         }
         Ok(())
     }
 
     /// Checks whether all contacts are computed.
     pub fn is_complete(&self) -> bool {
-        self.whole.get().is_some()
+        self.complete_meetings.get().is_some()
     }
 
     /// Returns a complete matrix that covers at least the parts of a mask: this one if it is complete, otherwise one
     /// of these parts.
-    pub(crate) fn of(&self, some: &[bool], watch: Watch) -> Result<Self, AssemblyError> {
+    pub(crate) fn complete_among(
+        &self,
+        some: &[bool],
+        watch: Watch,
+    ) -> Result<Self, AssemblyError> {
         if self.is_complete() {
             return Ok(self.clone());
         }
@@ -151,22 +165,27 @@ impl<'a> Matrix<'a> {
     }
 
     /// Checks whether the matrix covers all of these parts.
-    pub(crate) fn has(&self, parts: &[usize]) -> bool {
+    pub(crate) fn covers(&self, parts: &[usize]) -> bool {
         parts.iter().all(|&part| self.among[part])
     }
 
-    fn whole(&self) -> &[Vec<Meeting>] {
+    fn all_meetings(&self) -> &[Vec<Meeting>] {
         // Without a watch there is no cancellation. The limit applies only to callers that can receive its error.
-        self.whole
-            .get_or_init(|| Arc::new(self.asked(usize::MAX, Watch::default()).unwrap_or_default()))
+        self.complete_meetings.get_or_init(|| {
+            Arc::new(self.compute_meetings(usize::MAX, Watch::default()).unwrap_or_default())
+        })
     }
 
     /// Computes all contacts for each direction. Returns an error if there are more than `most`.
-    fn asked(&self, most: usize, watch: Watch) -> Result<Vec<Vec<Meeting>>, AssemblyError> {
+    fn compute_meetings(
+        &self,
+        most: usize,
+        watch: Watch,
+    ) -> Result<Vec<Vec<Meeting>>, AssemblyError> {
         let Self { bodies, directions, among, start, .. } = self;
         let index: HashMap<[u64; 3], usize> =
-            directions.iter().enumerate().map(|(k, d)| (bits(*d), k)).collect();
-        let opposite = |k: usize| index.get(&bits(-directions[k])).copied();
+            directions.iter().enumerate().map(|(k, d)| (direction_bits(*d), k)).collect();
+        let opposite = |k: usize| index.get(&direction_bits(-directions[k])).copied();
         let asked: Vec<usize> =
             (0..directions.len()).filter(|&k| opposite(k).is_none_or(|o| o > k)).collect();
         let moving: Vec<usize> = (0..bodies.len()).filter(|&k| among[k]).collect();
@@ -175,7 +194,7 @@ impl<'a> Matrix<'a> {
             asked.iter().flat_map(|&k| moving.iter().map(move |&part| (k, part))).collect();
         let count = AtomicUsize::new(0);
         let row = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
-            let met = meetings(bodies, part, directions[k], among, *start, workspace);
+            let met = part_meetings(bodies, part, directions[k], among, *start, workspace);
             let stored = if opposite(k).is_some() { 2 * met.len() } else { met.len() };
             if count.fetch_add(stored, Relaxed) + stored > most {
                 let what = "pairs of parts meet along the directions asked";
@@ -188,7 +207,7 @@ impl<'a> Matrix<'a> {
         let mut all = vec![Vec::new(); directions.len()];
         for (k, met) in rows? {
             if let Some(other) = opposite(k) {
-                all[other].extend(met.iter().map(|m| m.mirrored(directions[k])));
+                all[other].extend(met.iter().map(|m| m.reversed(directions[k])));
             }
             all[k].extend(met);
         }
@@ -205,12 +224,12 @@ impl<'a> Matrix<'a> {
 
     /// Returns the index of a direction, or `None` if the matrix does not contain it.
     pub fn position(&self, direction: DVec3) -> Option<usize> {
-        self.directions.iter().position(|d| bits(*d) == bits(direction))
+        self.directions.iter().position(|d| direction_bits(*d) == direction_bits(direction))
     }
 
     /// Returns all contacts along a direction, sorted by moving and fixed part. Computes the matrix if necessary.
     pub fn meetings(&self, direction: usize) -> &[Meeting] {
-        &self.whole()[direction]
+        &self.all_meetings()[direction]
     }
 
     /// Returns the contacts of a moving part along a direction. Computes the matrix if necessary.
@@ -223,7 +242,7 @@ impl<'a> Matrix<'a> {
 
     /// Returns a present part that blocks a part along a direction: any one, found by the order of the search.
     /// Returns `None` if the part is free.
-    pub(crate) fn blocker(
+    pub(crate) fn find_blocker(
         &self,
         direction: usize,
         part: usize,
@@ -243,7 +262,7 @@ impl<'a> Matrix<'a> {
     }
 
     /// Returns the present parts that block a part along a direction within a length, in increasing order.
-    pub(crate) fn within(
+    pub(crate) fn blockers_within(
         &self,
         direction: usize,
         part: usize,
@@ -260,7 +279,7 @@ impl<'a> Matrix<'a> {
         self.bodies.first_ahead(part, self.directions[direction], living, |bound, other| {
             let near = bound <= length;
             let met =
-                near.then(|| self.meeting(direction, [part, other], &mut workspace)).flatten();
+                near.then(|| self.pair_meeting(direction, [part, other], &mut workspace)).flatten();
             found.extend(met.filter(|m| m.displaced_distance() <= length).map(|m| m.fixed));
             !near
         });
@@ -269,14 +288,20 @@ impl<'a> Matrix<'a> {
     }
 
     /// Computes the contact of one pair, equal to the entry of the complete matrix.
-    fn meeting(&self, k: usize, [a, b]: [usize; 2], workspace: &mut Workspace) -> Option<Meeting> {
+    fn pair_meeting(
+        &self,
+        k: usize,
+        [a, b]: [usize; 2],
+        workspace: &mut Workspace,
+    ) -> Option<Meeting> {
         let d = self.directions[k];
         // Only the first of two opposite directions is computed.
-        let opposite = self.directions[..k].iter().find(|other| bits(**other) == bits(-d));
+        let opposite =
+            self.directions[..k].iter().find(|other| direction_bits(**other) == direction_bits(-d));
         match opposite {
-            Some(&other) => meeting(self.bodies, [b, a], other, self.start, workspace)
-                .map(|m| m.mirrored(other)),
-            None => meeting(self.bodies, [a, b], d, self.start, workspace),
+            Some(&other) => first_meeting(self.bodies, [b, a], other, self.start, workspace)
+                .map(|m| m.reversed(other)),
+            None => first_meeting(self.bodies, [a, b], d, self.start, workspace),
         }
     }
 
@@ -297,7 +322,7 @@ impl<'a> Matrix<'a> {
                 if first.is_some_and(|m| bound > m.displaced_distance()) {
                     return true;
                 }
-                let met = self.meeting(direction, [part, other], &mut workspace);
+                let met = self.pair_meeting(direction, [part, other], &mut workspace);
                 first = first.into_iter().chain(met).min_by(|x, y| before(x, y));
                 false
             });
@@ -320,7 +345,7 @@ impl<'a> Matrix<'a> {
         let heads =
             ["direction_x", "direction_y", "direction_z", "moving", "fixed", "outcome", "distance"];
         let mut table = Table::new(&heads);
-        for (d, met) in self.directions.iter().zip(self.whole()) {
+        for (d, met) in self.directions.iter().zip(self.all_meetings()) {
             for m in met {
                 let outcome = if m.stop.is_some() { "blocked" } else { "overlapping" };
                 table.row(&[
@@ -338,7 +363,7 @@ impl<'a> Matrix<'a> {
     }
 }
 
-fn meetings(
+fn part_meetings(
     bodies: &Bodies,
     part: usize,
     d: DVec3,
@@ -347,10 +372,12 @@ fn meetings(
     workspace: &mut Workspace,
 ) -> Vec<Meeting> {
     let ahead = bodies.ahead(part, d).into_iter().filter(|&(_, other)| among[other]);
-    ahead.filter_map(|(_, other)| meeting(bodies, [part, other], d, start, workspace)).collect()
+    ahead
+        .filter_map(|(_, other)| first_meeting(bodies, [part, other], d, start, workspace))
+        .collect()
 }
 
-fn meeting(
+fn first_meeting(
     bodies: &Bodies,
     [moving, fixed]: [usize; 2],
     d: DVec3,

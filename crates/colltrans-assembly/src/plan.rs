@@ -47,22 +47,22 @@ use crate::error::AssemblyError;
 use crate::free::Removal;
 use crate::likes::likes;
 use crate::map::{MapOptions, way_out};
-use crate::matrix::{Matrix, bits};
+use crate::matrix::{Matrix, direction_bits};
 use crate::part::Part;
 use crate::sphere::{Sphere, unit};
 use crate::watch::{Stage, Tally, Watch};
 use crate::witness::Memory;
 
 use bayonet::Bayonet;
-use certify::{Proof, certify};
+use certify::{SphereProof, prove_interlocked};
 pub use hold::Hold;
 pub use options::PlanOptions;
-use order::{Choice, Order};
+use order::{GroupChoice, Order};
 pub use passed::Passed;
 pub use precedence::and_or;
-use several::Aside;
 pub use several::Moves;
-use single::Single;
+use several::RemovalPath;
+use single::SingleParts;
 pub use step::{Leg, Step, Turn, TurnProof};
 pub use times::Times;
 pub use wanted::{Wanted, remove};
@@ -132,16 +132,16 @@ pub fn disassemble<'a>(
 ) -> Result<Plan, AssemblyError> {
     let likes = likes(bodies.assembly());
     let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
-    planner.whole(matrix)?;
+    planner.plan_all(matrix)?;
     Ok(Plan { likes: likes.clone(), ..planner.plan })
 }
 
 /// Maximum number of finer directions that are tested for an interlocked group.
-const MOST_FINER: usize = 64;
+const MAX_FINER: usize = 64;
 /// Maximum number of groups for which the sphere of samples is refined.
-const MOST_LOOSE: usize = 64;
+const MAX_LOOSE: usize = 64;
 /// A group counts as movable if it travels at least this fraction of its size along a main direction.
-const LOOSE: f64 = 0.125;
+const MIN_LOOSE_TRAVEL: f64 = 0.125;
 
 struct Planner<'a> {
     bodies: &'a Bodies<'a>,
@@ -152,9 +152,9 @@ struct Planner<'a> {
     watch: Watch<'a>,
     tally: Tally<'a>,
     plan: Plan,
-    known: loose::Known,
+    contact_cache: loose::ContactCache,
     /// The complete matrix of the remaining parts, once a state without a removable single part needed it.
-    whole: Option<Matrix<'a>>,
+    complete_matrix: Option<Matrix<'a>>,
     /// Whether any part is an open surface.
     has_surfaces: bool,
     /// The selected parts to remove; empty to remove all.
@@ -164,50 +164,56 @@ struct Planner<'a> {
 }
 
 /// Maximum number of box pairs visited for the free directions of a group with a known removal direction.
-const MIDDLE_LOOKS: u64 = 1_000_000;
+const MAX_REGION_LOOKS: u64 = 1_000_000;
 
 /// A removable group with its direction.
-struct Way {
+struct GroupRemoval {
     parts: Vec<usize>,
     direction: DVec3,
     /// The path of several moves, if one move does not suffice.
-    aside: Option<Aside>,
+    path: Option<RemovalPath>,
     /// The turn before the straight move and the travel after it, if a turn is needed.
     bayonet: Option<(Leg, Bounded)>,
 }
 
-impl Way {
+impl GroupRemoval {
     fn straight(parts: Vec<usize>, direction: DVec3) -> Self {
-        Self { parts, direction, aside: None, bayonet: None }
+        Self { parts, direction, path: None, bayonet: None }
     }
 }
 
 /// The parts that were removed from a group.
-struct Gone {
+struct RemovedParts {
     /// The step that removed this group; `None` for the whole assembly.
     within: Option<usize>,
     /// For each removed part, the index of its step.
-    steps: BTreeMap<usize, usize>,
+    step_of_part: BTreeMap<usize, usize>,
 }
 
-impl From<Choice> for Way {
-    fn from(Choice { parts, direction }: Choice) -> Self {
+impl From<GroupChoice> for GroupRemoval {
+    fn from(GroupChoice { parts, direction }: GroupChoice) -> Self {
         Self::straight(parts, direction)
     }
 }
 
 /// Returns the best of the smallest removable groups over all directions of a matrix. Returns `None` if no group may
 /// leave.
-fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice> {
+fn smallest_removable_group(
+    order: &mut Order,
+    matrix: &Matrix,
+    left: &[usize],
+) -> Option<GroupChoice> {
     #[cfg(test)]
-    GRAPHS.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
+    GRAPH_COUNT.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
     let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
-    let arcs = order.arcs();
+    let arcs = order.order_arcs();
     for (k, &d) in matrix.directions().iter().enumerate() {
-        for group in Blocking::with_order(matrix, k, &arcs, order.there()).removable() {
-            let way = order.way(&group, left, d).filter(|way| way.parts.len() < left.len());
-            let Some(Choice { parts, direction }) = way else { continue };
-            let along = order.position(direction);
+        for group in Blocking::with_order(matrix, k, &arcs, order.present()).removable() {
+            let removal = order
+                .choice_for(&group, left, d)
+                .filter(|removal| removal.parts.len() < left.len());
+            let Some(GroupChoice { parts, direction }) = removal else { continue };
+            let along = order.direction_index(direction);
             let ways = groups.entry(parts).or_default();
             if !ways.contains(&along) {
                 ways.push(along);
@@ -216,13 +222,13 @@ fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice
     }
     let least = groups.keys().map(Vec::len).min()?;
     groups.retain(|parts, _| parts.len() == least);
-    order.best(&groups.iter().map(|(parts, ways)| (&parts[..], &ways[..])))
+    order.best_group(&groups.iter().map(|(parts, ways)| (&parts[..], &ways[..])))
 }
 
 #[cfg(test)]
 thread_local! {
     /// Number of blocking graphs that were built.
-    static GRAPHS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+    static GRAPH_COUNT: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 impl<'a> Planner<'a> {
@@ -235,7 +241,7 @@ impl<'a> Planner<'a> {
     ) -> Result<Self, AssemblyError> {
         let tally = watch.stage(Stage::Plan, bodies.len());
         let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
-        let (plan, known) = (Plan::default(), loose::Known::default());
+        let (plan, contact_cache) = (Plan::default(), loose::ContactCache::default());
         let (wanted, movable) = (&[][..], None);
         let has_surfaces = bodies.assembly().parts().iter().any(Part::is_surface);
         Ok(Self {
@@ -247,8 +253,8 @@ impl<'a> Planner<'a> {
             watch,
             tally,
             plan,
-            known,
-            whole: None,
+            contact_cache,
+            complete_matrix: None,
             has_surfaces,
             wanted,
             movable,
@@ -256,23 +262,26 @@ impl<'a> Planner<'a> {
     }
 
     /// Plans the removal of all parts, or of the selected ones.
-    fn whole(&mut self, matrix: &Matrix<'a>) -> Result<(), AssemblyError> {
+    fn plan_all(&mut self, matrix: &Matrix<'a>) -> Result<(), AssemblyError> {
         let all: Vec<usize> = (0..self.bodies.len()).collect();
         self.plan.left = self.take_apart(&all, matrix, None)?;
         Ok(())
     }
 
     /// Returns a complete matrix that covers at least the remaining parts. Reuses the stored one if it covers them.
-    fn whole_of(
+    fn complete_matrix_among(
         &mut self,
         matrix: &Matrix<'a>,
         left: &[usize],
     ) -> Result<Matrix<'a>, AssemblyError> {
-        match self.whole.take().filter(|known| known.has(left)) {
-            Some(known) => self.whole = Some(known),
-            None => self.whole = Some(matrix.of(&self.bodies.mask(left), self.watch)?),
+        match self.complete_matrix.take().filter(|known| known.covers(left)) {
+            Some(known) => self.complete_matrix = Some(known),
+            None => {
+                self.complete_matrix =
+                    Some(matrix.complete_among(&self.bodies.mask(left), self.watch)?)
+            }
         }
-        Ok(self.whole.clone().unwrap_or_else(|| matrix.clone()))
+        Ok(self.complete_matrix.clone().unwrap_or_else(|| matrix.clone()))
     }
 
     /// Takes a group apart. Returns the parts that remain; empty if the group comes apart completely.
@@ -291,73 +300,77 @@ impl<'a> Planner<'a> {
             .with_shortcuts(samples, start);
         let constraints = self.bodies.assembly().constraints();
         let watch = self.watch;
-        let alone = |order: &Order| {
-            let (arcs, there) = (order.arcs(), order.there());
+        let single_parts = |order: &Order| {
+            let (arcs, there) = (order.order_arcs(), order.present());
             let movable = |k: usize, part: usize| {
-                !order.stays(part) && constraints.allows(&[part], matrix.directions()[k])
+                !order.is_stationary(part)
+                    && constraints.allows_direction(&[part], matrix.directions()[k])
             };
-            Single::new(bodies, matrix, &arcs, there, movable, watch)
+            SingleParts::new(bodies, matrix, &arcs, there, movable, watch)
         };
-        let mut single = alone(&order)?;
-        let mut gone = Gone { within, steps: BTreeMap::new() };
+        let mut single = single_parts(&order)?;
+        let mut removed = RemovedParts { within, step_of_part: BTreeMap::new() };
         while !left.is_empty() {
             self.watch.check()?;
             let one = left.len() == 1 || constraints.keeps_together(&left);
-            if self.is_out(&left, within) || one && !left.iter().any(|&k| self.fixed(k)) {
-                self.finish(left, within);
+            if self.is_out(&left, within) || one && !left.iter().any(|&k| self.is_fixed(k)) {
+                self.finish_with(left, within);
                 return Ok(Vec::new());
             }
             if one {
                 return Ok(left);
             }
             let mut asked: HashSet<[u64; 3]> =
-                matrix.directions().iter().copied().map(bits).collect();
-            let (mut choice, mut whole) = (order.alone(&mut single), None);
+                matrix.directions().iter().copied().map(direction_bits).collect();
+            let (mut choice, mut whole) = (order.best_single_part(&mut single), None);
             if choice.is_none() {
-                let whole = &*whole.insert(self.whole_of(matrix, &left)?);
-                choice = smallest(&mut order, whole, &left);
+                let whole = &*whole.insert(self.complete_matrix_among(matrix, &left)?);
+                choice = smallest_removable_group(&mut order, whole, &left);
             }
             let among = whole.as_ref().unwrap_or(matrix);
-            let mut way = choice.map(Way::from);
+            let mut removal = choice.map(GroupRemoval::from);
             let mut proven = None;
-            if way.is_none() {
+            if removal.is_none() {
                 let mut found = self.search_finer(&order, &left, among, &mut asked)?;
                 if found.is_none() {
-                    (found, proven) = self.prove(&order, &left, &mut asked)?;
+                    (found, proven) = self.prove_stuck(&order, &left, &mut asked)?;
                 }
-                way = found.map(|way| self.best_way(&mut order, &left, way)).transpose()?;
+                removal = found
+                    .map(|removal| self.best_direction(&mut order, &left, removal))
+                    .transpose()?;
             }
             let mut moves = None;
-            if way.is_none() {
-                (way, moves) = self.several(&order, &left, among)?;
+            if removal.is_none() {
+                (removal, moves) = self.search_path(&order, &left, among)?;
             }
-            if way.is_none() {
-                let found = bayonet::search(bodies, &order, &left, self.options, self.watch)?;
-                way = found.map(|Bayonet { turn, direction, travel }| Way {
+            if removal.is_none() {
+                let found =
+                    bayonet::search_bayonet(bodies, &order, &left, self.options, self.watch)?;
+                removal = found.map(|Bayonet { turn, direction, travel }| GroupRemoval {
                     bayonet: Some((turn.clone(), travel)),
-                    ..Way::straight(turn.parts, direction)
+                    ..GroupRemoval::straight(turn.parts, direction)
                 });
             }
-            let Some(way) = way else {
-                self.explain(&left, among, (asked.len(), proven, moves));
+            let Some(removal) = removal else {
+                self.explain_stuck(&left, among, (asked.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
-                if alone && !left.iter().any(|&k| self.fixed(k)) {
+                if alone && !left.iter().any(|&k| self.is_fixed(k)) {
                     // All other parts are removed, so this group remains as the last one.
-                    self.finish(left, within);
+                    self.finish_with(left, within);
                     return Ok(Vec::new());
                 }
                 return Ok(left);
             };
-            let released = constraints.released(order.there());
-            left.retain(|k| !way.parts.contains(k));
-            let unsettled = order.unsettled(&way.parts);
-            order.remove(&way.parts, way.direction);
-            if constraints.released(order.there()) > released {
-                single = alone(&order)?;
+            let released = constraints.released_count(order.present());
+            left.retain(|k| !removal.parts.contains(k));
+            let unsettled = order.unsettled_parts(&removal.parts);
+            order.remove(&removal.parts, removal.direction);
+            if constraints.released_count(order.present()) > released {
+                single = single_parts(&order)?;
             } else {
-                way.parts.iter().for_each(|&part| single.remove(part));
+                removal.parts.iter().for_each(|&part| single.remove(part));
             }
-            self.take_out(way, (&order, &left), unsettled, matrix, &mut gone)?;
+            self.take_out(removal, (&order, &left), unsettled, matrix, &mut removed)?;
         }
         Ok(left)
     }
@@ -365,34 +378,34 @@ impl<'a> Planner<'a> {
     /// Appends the step that removes a group, and then takes the group apart.
     fn take_out(
         &mut self,
-        way: Way,
+        removal: GroupRemoval,
         (order, left): (&Order, &[usize]),
         [falls, off_balance]: [Vec<usize>; 2],
         matrix: &Matrix<'a>,
-        gone: &mut Gone,
+        removed: &mut RemovedParts,
     ) -> Result<(), AssemblyError> {
         let start = self.options.start;
-        let mut travel = match &way.bayonet {
+        let mut travel = match &removal.bayonet {
             Some((_, travel)) => *travel,
-            None => replay::checked(self.bodies, &way, (order, left), start)?,
+            None => replay::checked_travel(self.bodies, &removal, (order, left), start)?,
         };
         let at = self.plan.steps.len();
-        let Way { parts, direction, aside, bayonet } = way;
-        let there = order.there();
+        let GroupRemoval { parts, direction, path: moves, bayonet } = removal;
+        let there = order.present();
         let ignored = self.bodies.partners(&parts, there).filter(|&[a, b]| {
             self.bodies.tolerated([a, b]).is_none() && self.bodies.lets_pass(a, b, start)
         });
         let ignored = ignored.collect();
         let passed = Passed::between(self.bodies, &parts, there);
-        let surfaces = self.surfaces(&parts, left, direction);
-        let several = aside.is_some() || bayonet.is_some();
-        let after = self.after(&parts, direction, several, matrix, gone);
-        gone.steps.extend(parts.iter().map(|&part| (part, at)));
+        let surfaces = self.surfaces_ahead(&parts, left, direction);
+        let several = moves.is_some() || bayonet.is_some();
+        let after = self.preceding_steps(&parts, direction, several, matrix, removed);
+        removed.step_of_part.extend(parts.iter().map(|&part| (part, at)));
         let (mut path, back) =
-            aside.map_or_else(Default::default, |aside| (aside.legs, aside.back));
+            moves.map_or_else(Default::default, |moves| (moves.legs, moves.return_legs));
         path.extend(bayonet.map(|(turn, _)| turn));
         let along = (&parts[..], direction);
-        let unscrewed = || turn::unscrewed(self.bodies, along, (left, there), travel, start);
+        let unscrewed = || turn::unscrewing_legs(self.bodies, along, (left, there), travel, start);
         match path.is_empty().then(unscrewed).flatten() {
             Some((legs, rest)) => {
                 path.extend(legs);
@@ -406,7 +419,7 @@ impl<'a> Planner<'a> {
             travel,
             path,
             back,
-            within: gone.within,
+            within: removed.within,
             after,
             ignored,
             passed,
@@ -433,7 +446,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Stores the last part or group of the whole assembly. Does nothing for a group that was taken apart.
-    fn finish(&mut self, left: Vec<usize>, within: Option<usize>) {
+    fn finish_with(&mut self, left: Vec<usize>, within: Option<usize>) {
         if within.is_none() {
             self.plan.last = left;
         }
@@ -443,30 +456,32 @@ impl<'a> Planner<'a> {
     ///
     /// These are the step that removed the enclosing group, the steps demanded by order constraints, and the steps
     /// that removed parts in the way. A path of several moves must follow all earlier steps of its group.
-    fn after(
+    fn preceding_steps(
         &self,
         group: &[usize],
         direction: DVec3,
         several: bool,
         matrix: &Matrix,
-        Gone { within, steps }: &Gone,
+        RemovedParts { within, step_of_part }: &RemovedParts,
     ) -> Vec<usize> {
         let mut after: Vec<usize> = within.iter().copied().collect();
         let constraints = self.bodies.assembly().constraints();
         if constraints.is_any_order() {
-            let waits = steps.iter().filter(|(part, _)| constraints.waits(group, **part));
+            let waits =
+                step_of_part.iter().filter(|(part, _)| constraints.must_wait_for(group, **part));
             after.extend(waits.map(|(_, step)| *step));
         }
         if several {
-            after.extend(steps.values());
+            after.extend(step_of_part.values());
         } else if let Some(k) = matrix.position(direction).filter(|_| matrix.is_complete()) {
             let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
-            after.extend(met.filter_map(|m| steps.get(&m.fixed)));
+            after.extend(met.filter_map(|m| step_of_part.get(&m.fixed)));
         } else {
             let (mut workspace, start) = (Workspace::default(), self.options.start);
             for &part in group {
                 for (_, other) in self.bodies.ahead(part, direction) {
-                    let Some(step) = steps.get(&other).filter(|step| !after.contains(step)) else {
+                    let Some(step) = step_of_part.get(&other).filter(|step| !after.contains(step))
+                    else {
                         continue;
                     };
                     if self.bodies.meets([part, other], direction, start, &mut workspace) {
@@ -481,7 +496,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Returns the open surfaces of a group and those remaining ones whose boxes lie ahead of the group.
-    fn surfaces(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
+    fn surfaces_ahead(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
         let passed = |&part: &usize| self.bodies.ahead(part, direction).into_iter().map(|x| x.1);
         if !self.has_surfaces {
             return Vec::new();
@@ -504,25 +519,25 @@ impl<'a> Planner<'a> {
         left: &[usize],
         matrix: &Matrix,
         asked: &mut HashSet<[u64; 3]>,
-    ) -> Result<Option<Way>, AssemblyError> {
-        let alive = order.there();
-        if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
+    ) -> Result<Option<GroupRemoval>, AssemblyError> {
+        let alive = order.present();
+        if left.iter().filter(|&&k| !self.is_fixed(k)).count() == 0 {
             return Ok(None);
         }
         let concerning = |any: bool| {
             let own = self.finer.iter().filter(move |f| f.part.is_none() == any);
             own.filter(|f| f.concerns(alive)).map(|f| f.direction)
         };
-        let own: Vec<DVec3> = concerning(true).chain(concerning(false).take(MOST_FINER)).collect();
+        let own: Vec<DVec3> = concerning(true).chain(concerning(false).take(MAX_FINER)).collect();
         let sphere = match self.options.samples {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,
         };
-        let allowed = |group: &[usize], d| order.how_many(group, left, d);
+        let allowed = |group: &[usize], d| order.moving_count(group, left, d);
         for directions in [own, sphere] {
-            asked.extend(directions.iter().copied().map(bits));
-            let (start, known) = (self.options.start, &mut self.known);
-            let way = loose::smallest(
+            asked.extend(directions.iter().copied().map(direction_bits));
+            let (start, known) = (self.options.start, &mut self.contact_cache);
+            let removal = loose::smallest_group(
                 self.bodies,
                 &directions,
                 alive,
@@ -531,8 +546,8 @@ impl<'a> Planner<'a> {
                 known,
                 self.watch,
             )?;
-            if way.is_some() {
-                return Ok(way);
+            if removal.is_some() {
+                return Ok(removal);
             }
         }
         self.search_refined(order, left, matrix)
@@ -546,23 +561,24 @@ impl<'a> Planner<'a> {
         order: &Order,
         left: &[usize],
         matrix: &Matrix,
-    ) -> Result<Option<Way>, AssemblyError> {
-        let alive = order.there();
+    ) -> Result<Option<GroupRemoval>, AssemblyError> {
+        let alive = order.present();
         let PlanOptions { start, samples, .. } = self.options;
         if samples == 0 {
             return Ok(None);
         }
-        let moving = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
-        let mut groups = self.rigid(left);
+        let moving = |group: &[usize]| order.moving_parts(group, left).map(|parts| parts.len());
+        let mut groups = self.rigid_groups(left);
         groups.retain(|g| g.len() < left.len() && moving(g).is_some());
         groups.retain(|g| self.is_loose(g, alive, matrix));
         groups.sort_by_key(|g| (moving(g), g[0]));
-        groups.truncate(MOST_LOOSE);
+        groups.truncate(MAX_LOOSE);
         let options = MapOptions { samples, start, ..MapOptions::default() };
         for parts in groups {
             let found = way_out(self.bodies, &parts, alive, options, self.watch)?;
-            if let Some(direction) = found.filter(|&d| order.way(&parts, left, d).is_some()) {
-                return Ok(Some(Way::straight(parts, direction)));
+            if let Some(direction) = found.filter(|&d| order.choice_for(&parts, left, d).is_some())
+            {
+                return Ok(Some(GroupRemoval::straight(parts, direction)));
             }
         }
         Ok(None)
@@ -575,13 +591,13 @@ impl<'a> Planner<'a> {
         (0..matrix.directions().len()).any(|k| {
             let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
             let mut met = met.filter(|m| alive[m.fixed] && !group.contains(&m.fixed));
-            met.all(|m| m.displaced_distance() >= LOOSE * size)
+            met.all(|m| m.displaced_distance() >= MIN_LOOSE_TRAVEL * size)
         })
     }
 
     /// Partitions parts into rigid groups: parts that overlap, unless the overlap is ignored, and parts that must
     /// leave together.
-    fn rigid(&self, left: &[usize]) -> Vec<Vec<usize>> {
+    fn rigid_groups(&self, left: &[usize]) -> Vec<Vec<usize>> {
         let mut sets = UnionFind::new(self.bodies.len());
         for &[a, b] in self.bodies.overlapping() {
             let rigid = !self.bodies.lets_pass(a, b, self.options.start);
@@ -589,7 +605,7 @@ impl<'a> Planner<'a> {
                 sets.union(a, b);
             }
         }
-        for [a, b] in self.bodies.assembly().constraints().pairs(&self.bodies.mask(left)) {
+        for [a, b] in self.bodies.assembly().constraints().rigid_pairs(&self.bodies.mask(left)) {
             sets.union(a, b);
         }
         let mut groups = BTreeMap::<usize, Vec<usize>>::new();
@@ -603,60 +619,70 @@ impl<'a> Planner<'a> {
     /// open.
     ///
     /// Returns the group found along such a direction, and the number of cells of a complete proof.
-    fn prove(
+    fn prove_stuck(
         &mut self,
         order: &Order,
         left: &[usize],
         asked: &mut HashSet<[u64; 3]>,
-    ) -> Result<(Option<Way>, Option<usize>), AssemblyError> {
+    ) -> Result<(Option<GroupRemoval>, Option<usize>), AssemblyError> {
         if !self.options.prove {
             return Ok((None, None));
         }
         let start = self.options.start;
-        let directions = match certify(self.bodies, left, start, self.watch)? {
-            Proof::Proven(cells) => return Ok((None, Some(cells))),
-            Proof::Open(directions) => directions,
+        let directions = match prove_interlocked(self.bodies, left, start, self.watch)? {
+            SphereProof::Proven(cells) => return Ok((None, Some(cells))),
+            SphereProof::Open(directions) => directions,
         };
-        asked.extend(directions.iter().copied().map(bits));
-        let (bodies, alive) = (self.bodies, order.there());
-        let allowed = |group: &[usize], d| order.how_many(group, left, d);
-        let known = &mut self.known;
-        let way = loose::smallest(bodies, &directions, alive, start, allowed, known, self.watch)?;
-        Ok((way, None))
+        asked.extend(directions.iter().copied().map(direction_bits));
+        let (bodies, alive) = (self.bodies, order.present());
+        let allowed = |group: &[usize], d| order.moving_count(group, left, d);
+        let known = &mut self.contact_cache;
+        let removal =
+            loose::smallest_group(bodies, &directions, alive, start, allowed, known, self.watch)?;
+        Ok((removal, None))
     }
 
     /// Returns the best direction for a group with a known removal direction.
     ///
     /// The candidates are that direction, its opposite, and the centre of the free region around it. If the base is
     /// in the group, the other parts move instead.
-    fn best_way(&self, order: &mut Order, left: &[usize], way: Way) -> Result<Way, AssemblyError> {
-        let Some(parts) = order.moving(&way.parts, left) else { return Ok(way) };
-        let found = if parts == way.parts { way.direction } else { DVec3::ZERO - way.direction };
+    fn best_direction(
+        &self,
+        order: &mut Order,
+        left: &[usize],
+        removal: GroupRemoval,
+    ) -> Result<GroupRemoval, AssemblyError> {
+        let Some(parts) = order.moving_parts(&removal.parts, left) else { return Ok(removal) };
+        let found = if parts == removal.parts {
+            removal.direction
+        } else {
+            DVec3::ZERO - removal.direction
+        };
         let others: Vec<usize> = left.iter().copied().filter(|k| !parts.contains(k)).collect();
         let mut directions = vec![found, DVec3::ZERO - found];
-        directions.extend(self.middle(&parts, &others, found)?);
+        directions.extend(self.region_center_near(&parts, &others, found)?);
         let constraints = self.bodies.assembly().constraints();
         let (mut memory, there) = (Memory::default(), self.bodies.mask(&others));
         directions.retain(|&d| {
-            constraints.allows(&parts, d)
+            constraints.allows_direction(&parts, d)
                 && memory.is_free(self.bodies, &parts, &there, d, self.options.start)
         });
-        let ways: Vec<usize> = directions.into_iter().map(|d| order.position(d)).collect();
+        let ways: Vec<usize> = directions.into_iter().map(|d| order.direction_index(d)).collect();
         let group = (&parts[..], &ways[..]);
-        Ok(order.best(&std::iter::once(group)).map_or(way, Way::from))
+        Ok(order.best_group(&std::iter::once(group)).map_or(removal, GroupRemoval::from))
     }
 
     /// Returns the centre of the free region nearest to a direction. Returns `None` if the free directions cannot be
     /// computed or no region is free.
-    fn middle(
+    fn region_center_near(
         &self,
         parts: &[usize],
         others: &[usize],
         direction: DVec3,
     ) -> Result<Option<DVec3>, AssemblyError> {
         // Without exact free directions the found direction is used.
-        let Ok(removal) = Removal::among(self.bodies, parts, others) else { return Ok(None) };
-        let options = FreeOptions::DEFAULT.with_looks(MIDDLE_LOOKS);
+        let Ok(removal) = Removal::between(self.bodies, parts, others) else { return Ok(None) };
+        let options = FreeOptions::DEFAULT.with_looks(MAX_REGION_LOOKS);
         let never = AtomicBool::new(false);
         let free = match removal.directions(options, self.watch.flag().unwrap_or(&never)) {
             Ok(free) => free,
@@ -669,43 +695,52 @@ impl<'a> Planner<'a> {
     }
 
     /// Searches for a removal path of several moves. Returns the path, or else the outcome of the search.
-    fn several(
+    fn search_path(
         &self,
         order: &Order,
         left: &[usize],
         matrix: &Matrix,
-    ) -> Result<(Option<Way>, Option<Moves>), AssemblyError> {
-        if left.iter().all(|&k| self.fixed(k)) {
+    ) -> Result<(Option<GroupRemoval>, Option<Moves>), AssemblyError> {
+        if left.iter().all(|&k| self.is_fixed(k)) {
             return Ok((None, None));
         }
-        let stays = |part: usize| order.stays(part);
+        let is_stationary = |part: usize| order.is_stationary(part);
         let among = (left, matrix);
-        Ok(match several::search(self.bodies, among, stays, self.options, self.watch)? {
-            Ok(aside) => {
-                let (parts, direction) = (aside.parts.clone(), aside.direction);
-                (Some(Way { aside: Some(aside), ..Way::straight(parts, direction) }), None)
-            }
-            Err(moves) => (None, Some(moves)),
-        })
+        Ok(
+            match several::search_path(self.bodies, among, is_stationary, self.options, self.watch)?
+            {
+                Ok(path) => {
+                    let (parts, direction) = (path.parts.clone(), path.direction);
+                    (
+                        Some(GroupRemoval {
+                            path: Some(path),
+                            ..GroupRemoval::straight(parts, direction)
+                        }),
+                        None,
+                    )
+                }
+                Err(moves) => (None, Some(moves)),
+            },
+        )
     }
 
-    fn explain(
+    fn explain_stuck(
         &mut self,
         left: &[usize],
         matrix: &Matrix,
         (asked, proven, moves): (usize, Option<usize>, Option<Moves>),
     ) {
-        let movable = left.iter().any(|&k| !self.fixed(k));
+        let movable = left.iter().any(|&k| !self.is_fixed(k));
         if !movable {
             return;
         }
-        let fixed = left.iter().any(|&k| self.fixed(k));
+        let fixed = left.iter().any(|&k| self.is_fixed(k));
         let moves = moves.unwrap_or(Moves::NotAsked("all parts are fixed"));
         let known = (asked, proven, moves);
-        self.plan.stuck.push(hold::explain(self.bodies, left, matrix, fixed, known));
+        self.plan.stuck.push(hold::explain_stuck(self.bodies, left, matrix, fixed, known));
     }
 
-    fn fixed(&self, part: usize) -> bool {
+    fn is_fixed(&self, part: usize) -> bool {
         self.bodies.assembly().parts()[part].fixed()
     }
 }
@@ -724,11 +759,11 @@ mod tests {
     use crate::bodies::Fit;
     use crate::part::{Assembly, Piece};
 
-    fn cube(name: usize, at: DVec3) -> Part {
-        sized(name, at, DVec3::ONE)
+    fn cube_part(name: usize, at: DVec3) -> Part {
+        box_part(name, at, DVec3::ONE)
     }
 
-    fn sized(name: usize, at: DVec3, size: DVec3) -> Part {
+    fn box_part(name: usize, at: DVec3, size: DVec3) -> Part {
         let cube = block(DVec3::ZERO, size);
         let mesh = Mesh::new(cube.vertices, cube.faces);
         let piece = Piece { mesh, world_from_piece: DAffine3::from_translation(at) };
@@ -736,22 +771,22 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_come_out_alone_need_no_graph() {
-        let parts = (0..40).map(|k| cube(k, DVec3::X * 2.0 * k as f64)).collect();
+    fn single_part_removals_build_no_blocking_graph() {
+        let parts = (0..40).map(|k| cube_part(k, DVec3::X * 2.0 * k as f64)).collect();
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
         let (all, start, watch) = (vec![true; 40], StartOverlap::Refuse, Watch::default());
         let matrix = Matrix::new(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start, watch).unwrap();
-        GRAPHS.with(|graphs| graphs.set(0));
+        GRAPH_COUNT.with(|graphs| graphs.set(0));
         let plan = disassemble(&bodies, &matrix, &[], PlanOptions::default(), watch).unwrap();
         assert_eq!(plan.steps.len(), 39);
         assert_eq!(plan.last.len(), 1);
         assert!(plan.steps.iter().all(|step| step.parts.len() == 1));
-        assert_eq!(GRAPHS.with(std::cell::Cell::get), 0, "of 40 steps along 2 directions");
+        assert_eq!(GRAPH_COUNT.with(std::cell::Cell::get), 0, "of 40 steps along 2 directions");
     }
 
     #[test]
-    fn the_ranked_choice_is_that_of_a_scan_of_all_that_can_leave() {
+    fn best_single_part_equals_scan_of_removable_parts() {
         let mut random = Random::new(23);
         let (start, watch) = (StartOverlap::Refuse, Watch::default());
         let axes: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&d| [d, -d]).collect();
@@ -764,7 +799,7 @@ mod tests {
                 let [x, y, z] = [cell % 4, cell / 4 % 3, cell / 12].map(|k| k as f64);
                 let sizes = [DVec3::ONE, DVec3::new(0.4, 1.0, 1.0), DVec3::new(0.9, 0.9, 1.0)];
                 let (at, size) = (DVec3::new(gap * x, gap * y, z), sizes[random.index(3)]);
-                parts.push(sized(parts.len(), at, size));
+                parts.push(box_part(parts.len(), at, size));
             }
             let count = parts.len();
             let assembly = Assembly::new(parts).unwrap();
@@ -773,14 +808,14 @@ mod tests {
             let matrix = Matrix::on_demand(&bodies, &axes, &all, start);
             let mut order = Order::new(&bodies, &matrix, &likes, &all, DVec3::Z, None, &[])
                 .with_shortcuts(42, start);
-            let movable = |_, part: usize| !order.stays(part);
-            let mut single = Single::new(&bodies, &matrix, &[], &all, movable, watch).unwrap();
-            while let Some(Choice { parts, direction }) = order.alone(&mut single) {
-                let ways = |part| Some((part, single.ways(part)?.to_vec()));
+            let movable = |_, part: usize| !order.is_stationary(part);
+            let mut single = SingleParts::new(&bodies, &matrix, &[], &all, movable, watch).unwrap();
+            while let Some(GroupChoice { parts, direction }) = order.best_single_part(&mut single) {
+                let ways = |part| Some((part, single.free_directions(part)?.to_vec()));
                 let free: Vec<(usize, Vec<usize>)> = (0..count).filter_map(ways).collect();
                 let groups =
                     free.iter().map(|(part, ways)| (std::slice::from_ref(part), &ways[..]));
-                let scanned = order.best(&groups).unwrap();
+                let scanned = order.best_group(&groups).unwrap();
                 assert_eq!((&parts, direction), (&scanned.parts, scanned.direction));
                 order.remove(&parts, direction);
                 single.remove(parts[0]);
@@ -791,25 +826,26 @@ mod tests {
     }
 
     #[test]
-    fn of_parts_in_a_row_each_watches_one_and_few_pairs_are_asked() {
+    fn removals_from_a_row_query_n_log_n_pairs() {
         let mut random = Random::new(5);
         let (start, watch) = (StartOverlap::Refuse, Watch::default());
         for count in [100, 200, 400] {
-            let parts = (0..count).map(|k| cube(k, DVec3::X * 2.0 * k as f64)).collect();
+            let parts = (0..count).map(|k| cube_part(k, DVec3::X * 2.0 * k as f64)).collect();
             let assembly = Assembly::new(parts).unwrap();
             let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
             let all = vec![true; count];
             let matrix = Matrix::on_demand(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start);
             bodies.asked.store(0, Relaxed);
-            let mut single = Single::new(&bodies, &matrix, &[], &all, |_, _| true, watch).unwrap();
-            assert_eq!(single.entries(), 2 * count);
+            let mut single =
+                SingleParts::new(&bodies, &matrix, &[], &all, |_, _| true, watch).unwrap();
+            assert_eq!(single.entry_count(), 2 * count);
             // Parts are removed in random order. The expected number of parts that each part watches in turn is about
             // `ln n`.
             let mut left: Vec<usize> = (0..count).collect();
             while !left.is_empty() {
-                let gone = left.swap_remove(random.index(left.len()));
-                single.remove(gone);
-                let ways = |part| Some((part, single.ways(part)?.to_vec()));
+                let removed = left.swap_remove(random.index(left.len()));
+                single.remove(removed);
+                let ways = |part| Some((part, single.free_directions(part)?.to_vec()));
                 let free: Vec<(usize, Vec<usize>)> = (0..count).filter_map(ways).collect();
                 let expected = match (left.iter().min(), left.iter().max()) {
                     (Some(low), Some(high)) if low < high => {

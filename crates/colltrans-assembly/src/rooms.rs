@@ -95,10 +95,10 @@ pub fn room_of(
     start: StartOverlap,
     workspace: &mut Workspace,
 ) -> PartRoom {
-    room_with(bodies, group, others, d, start, workspace, &mut Witnesses::default())
+    room_using(bodies, group, others, d, start, workspace, &mut Witnesses::default())
 }
 
-fn room_with(
+fn room_using(
     bodies: &Bodies,
     group: &[usize],
     others: &[bool],
@@ -116,7 +116,7 @@ fn room_with(
             let mut near = near.filter(|&by| others[by] && !group.contains(&by));
             let noise = bodies.noise();
             let known = near.find_map(|by| {
-                let stop = witnesses.stop(bodies, [part, by], d, noise, start)?;
+                let stop = witnesses.find_stop(bodies, [part, by], d, noise, start)?;
                 Some(PartRoom::Blocked { part, by, stop })
             });
             best = known.unwrap_or(best);
@@ -144,7 +144,7 @@ fn room_with(
                 Room::Overlapping => return PartRoom::Overlapping { part, by },
                 Room::Blocked(stop) => {
                     if overlapping && stop.displaced.value <= bodies.noise() {
-                        witnesses.keep([part, by], &stop);
+                        witnesses.store([part, by], &stop);
                     }
                     let nearer = match best {
                         PartRoom::Blocked { part: p, by: b, stop: s } => {
@@ -184,7 +184,7 @@ pub fn rooms(
                 // The witnesses belong to a chunk, so that results do not depend on the number of threads.
                 let mut witnesses = Witnesses::default();
                 let mut room = |d: &DVec3| {
-                    room_with(bodies, &[part], &all, *d, start, workspace, &mut witnesses)
+                    room_using(bodies, &[part], &all, *d, start, workspace, &mut witnesses)
                 };
                 let rooms = chunk.iter().map(&mut room).collect();
                 tally.step().map(|()| rooms)

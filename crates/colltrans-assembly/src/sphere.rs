@@ -63,14 +63,15 @@ impl Sphere {
             return;
         }
         let [a, b, c] = self.triangles[triangle].corners;
-        let (ab, bc, ca) = (self.middle(a, b), self.middle(b, c), self.middle(c, a));
+        let (ab, bc, ca) =
+            (self.edge_midpoint(a, b), self.edge_midpoint(b, c), self.edge_midpoint(c, a));
         self.triangles[triangle].parts = self.triangles.len() as u32;
         for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
             self.triangles.push(Triangle { corners, parts: 0 });
         }
     }
 
-    fn middle(&mut self, a: u32, b: u32) -> u32 {
+    fn edge_midpoint(&mut self, a: u32, b: u32) -> u32 {
         let next = self.directions.len() as u32;
         let index = *self.middles.entry([a.min(b), a.max(b)]).or_insert(next);
         if index == next {
@@ -84,7 +85,7 @@ impl Sphere {
     pub fn locate(&self, d: DVec3) -> (usize, DVec3) {
         let nearest = |range: std::ops::Range<usize>| {
             range
-                .map(|t| (t, self.weights(t, d)))
+                .map(|t| (t, self.corner_weights(t, d)))
                 .max_by(|x, y| x.1.min_element().total_cmp(&y.1.min_element()))
                 .unwrap_or((0, DVec3::X))
         };
@@ -96,7 +97,7 @@ impl Sphere {
         best
     }
 
-    fn weights(&self, triangle: usize, d: DVec3) -> DVec3 {
+    fn corner_weights(&self, triangle: usize, d: DVec3) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
         let weights = DVec3::new(d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
         let sum = weights.element_sum();
@@ -169,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_triangles_cover_the_sphere_once() {
+    fn triangles_of_all_levels_have_the_area_of_the_sphere() {
         for levels in 0..4 {
             let sphere = Sphere::new(levels);
             assert_eq!(sphere.directions.len(), 10 * 4_usize.pow(levels) + 2);
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_direction_lies_in_the_triangle_that_is_found() {
+    fn located_triangle_contains_the_direction() {
         let mut sphere = Sphere::new(2);
         let t = sphere.locate(DVec3::new(0.3, 0.2, 0.9).normalize()).0;
         sphere.cut(t);

@@ -34,17 +34,17 @@ use crate::start::{Overlap, Start};
 use crate::threads::{Round, Thread};
 
 /// Words in the names of soft parts.
-const SOFT: [&str; 8] =
+const SOFT_NAMES: [&str; 8] =
     ["o-ring", "oring", "o_ring", "seal", "gasket", "belt", "rubber", "grommet"];
 /// Words in the names of rings that snap into a groove.
-const SNAPS: [&str; 7] =
+const SNAP_NAMES: [&str; 7] =
     ["circlip", "snap ring", "snap_ring", "snapring", "retaining ring", "retaining_ring", "e-clip"];
 /// Maximum depth of a shallow overlap as a fraction of the thickness of both parts. This is the chord error of a
 /// round part of 16 sides. Deeper overlaps belong to the model, and a plan that ignores them need not apply to the
 /// real parts.
-const FACETS: f64 = 0.01;
+const MAX_SHALLOW_DEPTH: f64 = 0.01;
 /// Factor by which a tolerance exceeds the depth of an overlap.
-const BEYOND: f64 = 1.05;
+const TOLERANCE_FACTOR: f64 = 1.05;
 
 /// A suggested fit of a pair.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ pub struct Suggestion {
 /// that snap into a groove.
 pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
     let is_unsaid = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
-    let snaps = snaps(bodies);
+    let snaps = find_snaps(bodies);
     let rings: BTreeSet<usize> = snaps.iter().map(|(ring, _)| *ring).collect();
     let snaps = snaps.into_iter().map(|(_, snap)| snap);
     let snaps: Vec<Suggestion> = snaps.filter(|snap| is_unsaid(snap.parts)).collect();
@@ -71,15 +71,15 @@ pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
         .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
         // Pairs that only violate the minimum gap do not overlap.
         .filter(|o| !matches!(bodies.fit(), Fit::Apart(_)) || o.depth != Some(0.0));
-    unsaid.filter_map(|overlap| suggestion(bodies, &rings, overlap)).chain(snaps.clone()).collect()
+    unsaid.filter_map(|overlap| suggest_fit(bodies, &rings, overlap)).chain(snaps.clone()).collect()
 }
 
 /// Finds rings by their names, each with the part in whose groove it lies. This part stops the ring in both
 /// directions along its axis, within its thickness.
-fn snaps(bodies: &Bodies) -> Vec<(usize, Suggestion)> {
+fn find_snaps(bodies: &Bodies) -> Vec<(usize, Suggestion)> {
     let parts = bodies.assembly().parts();
     let mut found = Vec::new();
-    for ring in (0..parts.len()).filter(|&k| is_called(&parts[k], &SNAPS)) {
+    for ring in (0..parts.len()).filter(|&k| is_called(&parts[k], &SNAP_NAMES)) {
         let thickness = |axis: DVec3| {
             let along = parts[ring].solid().vertices().iter().map(|p| p.dot(axis));
             let [low, high] = span(along);
@@ -126,23 +126,23 @@ fn is_called(part: &Part, words: &[&str]) -> bool {
     words.iter().any(|word| name.contains(word))
 }
 
-fn suggestion(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> Option<Suggestion> {
+fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> Option<Suggestion> {
     let parts = overlap.parts;
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let solids = of.map(Part::solid);
-    let tolerance = overlap.depth.map(|depth| two_digits_up(depth * BEYOND));
+    let tolerance = overlap.depth.map(|depth| two_digits_up(depth * TOLERANCE_FACTOR));
     let said =
         |role, tolerance, why| Some(Suggestion { parts, fit: PairFit { role, tolerance }, why });
-    let soft = of.iter().find(|part| is_called(part, &SOFT));
+    let soft = of.iter().find(|part| is_called(part, &SOFT_NAMES));
     if let Some(soft) = soft {
         return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
     }
     let screwed = !parts.iter().any(|part| rings.contains(part));
-    let thread = screwed.then(|| helix(solids)).flatten();
+    let thread = screwed.then(|| find_helix(solids)).flatten();
     if let Some((thread, pitch)) =
         thread.filter(|(thread, _)| thread.is_surrounded(solids[1 - thread.screw]))
     {
-        return said(Some(Role::Thread), None, helix_words(&thread, pitch));
+        return said(Some(Role::Thread), None, describe_helix(&thread, pitch));
     }
     let tolerance = Some(tolerance?);
     if let Some(round) = Round::of(solids) {
@@ -154,17 +154,17 @@ fn suggestion(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> Op
             said(None, tolerance, format!("{why}: chord errors"))
         };
     }
-    overlap.is_within(bodies, FACETS).then_some(())?;
+    overlap.is_within(bodies, MAX_SHALLOW_DEPTH).then_some(())?;
     said(None, tolerance, "a shallow overlap".into())
 }
 
 /// Returns the thread of two parts and its pitch, or `None` if there is no helix.
-fn helix(solids: [&Solid; 2]) -> Option<(Thread, f64)> {
+fn find_helix(solids: [&Solid; 2]) -> Option<(Thread, f64)> {
     let thread = Thread::of(solids)?;
     Some((thread, thread.pitch?))
 }
 
-fn helix_words(thread: &Thread, pitch: f64) -> String {
+fn describe_helix(thread: &Thread, pitch: f64) -> String {
     let hand = if pitch < 0.0 { ", left-handed" } else { "" };
     let [hole, crest] = thread.radii.map(short);
     format!("a helix of pitch {}{hand}, between radii of {hole} and {crest}", short(pitch.abs()))
@@ -180,7 +180,7 @@ fn helix_words(thread: &Thread, pitch: f64) -> String {
 pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>, AssemblyError> {
     let among = bodies.mask(stuck);
     let mut pairs = bodies.neighbours(0.0)?;
-    let rings: BTreeSet<usize> = snaps(bodies).into_iter().map(|(ring, _)| ring).collect();
+    let rings: BTreeSet<usize> = find_snaps(bodies).into_iter().map(|(ring, _)| ring).collect();
     pairs.retain(|&[a, b]| {
         let stuck = among[a] && among[b] && !bodies.overlaps(a, b);
         let said = bodies.assembly().pair(a, b).is_some();
@@ -200,11 +200,11 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
         if !DVec3::AXES.into_iter().all(|axis| held(axis, f64::INFINITY)) {
             return None;
         }
-        let (thread, pitch) = helix(solids)?;
+        let (thread, pitch) = find_helix(solids)?;
         let holds =
             thread.is_surrounded(solids[1 - thread.screw]) && held(thread.axis[1], pitch.abs());
         let fit = PairFit { role: Some(Role::Thread), tolerance: None };
-        let why = format!("{}, with play", helix_words(&thread, pitch));
+        let why = format!("{}, with play", describe_helix(&thread, pitch));
         holds.then_some(Suggestion { parts, fit, why })
     });
     Ok(found.collect())

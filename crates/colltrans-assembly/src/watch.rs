@@ -69,7 +69,7 @@ impl<'a> Watch<'a> {
     /// Starts a stage with a total number of items.
     pub(crate) fn stage(&self, stage: Stage, total: usize) -> Tally<'a> {
         let tally = Tally { watch: *self, stage, total, done: AtomicUsize::new(0) };
-        tally.tell(0);
+        tally.notify(0);
         tally
     }
 }
@@ -85,11 +85,11 @@ pub(crate) struct Tally<'a> {
 impl Tally<'_> {
     /// Counts a finished item. Returns an error if the run is cancelled.
     pub(crate) fn step(&self) -> Result<(), AssemblyError> {
-        self.tell(self.done.fetch_add(1, Ordering::Relaxed) + 1);
+        self.notify(self.done.fetch_add(1, Ordering::Relaxed) + 1);
         self.watch.check()
     }
 
-    fn tell(&self, done: usize) {
+    fn notify(&self, done: usize) {
         if let Some(progress) = self.watch.progress {
             progress(self.stage, done, self.total);
         }

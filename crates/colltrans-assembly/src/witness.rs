@@ -20,9 +20,9 @@ struct Witness {
 }
 
 /// Maximum number of facet pairs that are stored for an ordered pair of parts.
-const MOST: usize = 24;
+const MAX_WITNESSES: usize = 24;
 /// Cosine between normal and direction below which a pair is not tested, because it hardly blocks there.
-const ASKEW: f64 = 0.02;
+const MIN_COSINE: f64 = 0.02;
 
 /// The facet pairs that met, for each ordered pair of parts.
 #[derive(Default)]
@@ -30,16 +30,16 @@ pub(crate) struct Witnesses(HashMap<[usize; 2], Vec<Witness>>);
 
 impl Witnesses {
     /// Stores the facets of a contact.
-    pub(crate) fn keep(&mut self, pair: [usize; 2], stop: &Stop) {
+    pub(crate) fn store(&mut self, pair: [usize; 2], stop: &Stop) {
         let kept = self.0.entry(pair).or_default();
-        if kept.len() >= MOST || kept.iter().any(|w| w.triangles == stop.triangles) {
+        if kept.len() >= MAX_WITNESSES || kept.iter().any(|w| w.triangles == stop.triangles) {
             return;
         }
         kept.push(Witness { triangles: stop.triangles, normal: stop.normal });
     }
 
     /// Returns a contact along `d` within a distance from the stored facets, or `None` if they give none.
-    pub(crate) fn stop(
+    pub(crate) fn find_stop(
         &self,
         bodies: &Bodies,
         pair: [usize; 2],
@@ -47,7 +47,7 @@ impl Witnesses {
         within: f64,
         start: StartOverlap,
     ) -> Option<Stop> {
-        let kept = self.0.get(&pair)?.iter().filter(|w| w.normal.dot(d) > ASKEW);
+        let kept = self.0.get(&pair)?.iter().filter(|w| w.normal.dot(d) > MIN_COSINE);
         kept.filter_map(|w| bodies.stop_by(pair, w.triangles, d, start))
             .find(|stop| stop.displaced.value <= within)
     }
@@ -62,7 +62,7 @@ pub(crate) struct Memory {
 
 impl Memory {
     /// Checks whether a part ever meets another one along a direction of length 1.
-    pub(crate) fn meets(
+    pub(crate) fn pair_meets(
         &mut self,
         bodies: &Bodies,
         pair: [usize; 2],
@@ -70,12 +70,12 @@ impl Memory {
         start: StartOverlap,
     ) -> bool {
         let Self { workspace, witnesses } = self;
-        if witnesses.stop(bodies, pair, d, f64::INFINITY, start).is_some() {
+        if witnesses.find_stop(bodies, pair, d, f64::INFINITY, start).is_some() {
             return true;
         }
         let room = bodies.room(pair, d, None, start, workspace);
         if let Room::Blocked(stop) = &room {
-            witnesses.keep(pair, stop);
+            witnesses.store(pair, stop);
         }
         room != Room::Free
     }
@@ -90,6 +90,6 @@ impl Memory {
         start: StartOverlap,
     ) -> bool {
         let ahead = bodies.pairs_ahead(group, d, there);
-        !ahead.into_iter().any(|pair| self.meets(bodies, pair, d, start))
+        !ahead.into_iter().any(|pair| self.pair_meets(bodies, pair, d, start))
     }
 }

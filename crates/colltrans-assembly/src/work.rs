@@ -25,13 +25,13 @@ const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\
     4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
 /// Returns an assembly of 3,000 unit cubes at distances of 2.
-fn grid() -> Assembly {
+fn grid_assembly() -> Assembly {
     let at = |k: usize| [k % GRID[0], k / GRID[0] % GRID[1], k / GRID[0] / GRID[1]];
-    cubes((0..GRID.iter().product()).map(|k| at(k).map(|x| 2 * x)))
+    cube_assembly((0..GRID.iter().product()).map(|k| at(k).map(|x| 2 * x)))
 }
 
 /// Returns an assembly of unit cubes at the given positions.
-fn cubes(places: impl Iterator<Item = [usize; 3]>) -> Assembly {
+fn cube_assembly(places: impl Iterator<Item = [usize; 3]>) -> Assembly {
     let mesh = colltrans_mesh::parse(Format::Off, CUBE.into(), Path::new("cube.off")).unwrap();
     let parts = places.enumerate().map(|(k, place)| {
         let at = DVec3::from_array(place.map(|x| x as f64));
@@ -42,9 +42,9 @@ fn cubes(places: impl Iterator<Item = [usize; 3]>) -> Assembly {
 }
 
 #[test]
-fn parts_in_a_row_are_planned_by_a_few_pairs_each() {
+fn plan_of_a_row_queries_at_most_four_pairs_per_part() {
     for count in [300, 600, 1_200] {
-        let assembly = cubes((0..count).map(|k| [2 * k, 0, 0]));
+        let assembly = cube_assembly((0..count).map(|k| [2 * k, 0, 0]));
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         let asked = || bodies.asked.swap(0, Relaxed);
         asked();
@@ -58,9 +58,9 @@ fn parts_in_a_row_are_planned_by_a_few_pairs_each() {
 }
 
 #[test]
-fn each_step_of_a_row_looks_at_a_few_parts() {
+fn plan_of_a_row_visits_n_log_n_items() {
     for count in [250, 1_000] {
-        let assembly = cubes((0..count).map(|k| [2 * k, 0, 0]));
+        let assembly = cube_assembly((0..count).map(|k| [2 * k, 0, 0]));
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         let (question, watch) = (Question::default(), Watch::default());
         let found = question.look(&bodies, watch).unwrap();
@@ -75,7 +75,7 @@ fn each_step_of_a_row_looks_at_a_few_parts() {
 }
 
 /// Counts the ordered pairs of boxes of which the first meets the second along a direction, by testing all pairs.
-fn pairs_ahead(boxes: &[Aabb], d: DVec3) -> usize {
+fn count_pairs_ahead(boxes: &[Aabb], d: DVec3) -> usize {
     let meets = |a: &Aabb, b: &Aabb| {
         let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
         for k in 0..3 {
@@ -97,8 +97,8 @@ fn pairs_ahead(boxes: &[Aabb], d: DVec3) -> usize {
 }
 
 #[test]
-fn of_3_000_parts_only_those_in_each_others_way_are_asked_about() {
-    let (assembly, watch) = (grid(), Watch::default());
+fn grid_of_3000_parts_queries_only_blocking_pairs() {
+    let (assembly, watch) = (grid_assembly(), Watch::default());
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let asked = || bodies.asked.swap(0, Relaxed);
     assert_eq!(bodies.len(), 3_000);
@@ -125,7 +125,7 @@ fn of_3_000_parts_only_those_in_each_others_way_are_asked_about() {
     let boxes: Vec<Aabb> = (0..3_000).map(|k| bodies.bounds(k)).collect();
     for d in [DVec3::new(0.6, 0.0, -0.8), DVec3::new(2.0, -3.0, 6.0) / 7.0] {
         rooms(&bodies, &[d], start, watch).unwrap();
-        let (count, most) = (asked(), pairs_ahead(&boxes, d));
+        let (count, most) = (asked(), count_pairs_ahead(&boxes, d));
         assert!(count > 1_000 && count <= most && most < 100_000, "{count} of {most}");
     }
 }

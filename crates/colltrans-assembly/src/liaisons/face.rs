@@ -15,9 +15,9 @@ use glam::{DVec2, DVec3};
 use super::Triangle;
 
 /// Maximum distance of corners from the plane of a face, as a fraction of the reach of contacts.
-const FLAT: f64 = 1.0 / 1024.0;
+const MAX_OFFSET: f64 = 1.0 / 1024.0;
 /// Minimum cosine between the normals of a facet and its face.
-const TURNED: f64 = 0.5;
+const MIN_COSINE: f64 = 0.5;
 /// Marks a side without a unique neighbour.
 const NONE: usize = usize::MAX;
 
@@ -35,7 +35,7 @@ impl Face {
     fn new(solid: &Solid, facets: &[[u32; 3]], normal: DVec3) -> Self {
         let corner = |v: u32| solid.vertices()[v as usize];
         let mut edges: Vec<([u32; 2], bool)> =
-            facets.iter().flat_map(|&facet| sides(facet)).collect();
+            facets.iter().flat_map(|&facet| facet_sides(facet)).collect();
         edges.sort_unstable();
         let alone = edges.chunk_by(|a, b| a.0 == b.0).filter_map(|same| {
             let turned = same.iter().filter(|(_, turned)| *turned).count();
@@ -58,7 +58,7 @@ impl Face {
         let areas: Vec<DVec3> = facets.iter().map(|t| twice_area(&t.map(corner))).collect();
         let mut order: Vec<usize> = (0..facets.len()).collect();
         order.sort_by(|&a, &b| areas[b].length_squared().total_cmp(&areas[a].length_squared()));
-        let neighbours = neighbours(&facets);
+        let neighbours = facet_neighbours(&facets);
         let mut taken = vec![false; facets.len()];
         let mut faces = Vec::new();
         for seed in order {
@@ -72,8 +72,8 @@ impl Face {
             while let Some(&at) = own.get(next) {
                 next += 1;
                 for other in neighbours[at].into_iter().filter(|&other| other != NONE) {
-                    let flat = |v: u32| (normal.dot(corner(v)) - foot).abs() <= reach * FLAT;
-                    let along = areas[other].dot(normal) >= TURNED * areas[other].length();
+                    let flat = |v: u32| (normal.dot(corner(v)) - foot).abs() <= reach * MAX_OFFSET;
+                    let along = areas[other].dot(normal) >= MIN_COSINE * areas[other].length();
                     if !taken[other] && along && facets[other].into_iter().all(flat) {
                         taken[other] = true;
                         own.push(other);
@@ -102,16 +102,17 @@ impl Face {
 }
 
 /// Returns the sides of a facet, the smaller vertex first, and whether the facet has the reversed orientation.
-fn sides([a, b, c]: [u32; 3]) -> [([u32; 2], bool); 3] {
+fn facet_sides([a, b, c]: [u32; 3]) -> [([u32; 2], bool); 3] {
     [[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], a > b))
 }
 
 /// Returns for each side the other facet that has it, if there is exactly one, otherwise [`NONE`].
-fn neighbours(facets: &[[u32; 3]]) -> Vec<[usize; 3]> {
+fn facet_neighbours(facets: &[[u32; 3]]) -> Vec<[usize; 3]> {
     let mut edges: Vec<([u32; 2], usize, usize)> = Vec::with_capacity(3 * facets.len());
     for (k, facet) in facets.iter().enumerate() {
-        edges
-            .extend(sides(*facet).into_iter().enumerate().map(|(side, (ends, _))| (ends, k, side)));
+        edges.extend(
+            facet_sides(*facet).into_iter().enumerate().map(|(side, (ends, _))| (ends, k, side)),
+        );
     }
     edges.sort_unstable();
     let mut across = vec![[NONE; 3]; facets.len()];
@@ -144,7 +145,7 @@ impl Strip {
         [(l, low[0]), (r, low[1]), (r, high[1]), (l, high[0])].map(|(x, y)| DVec2::new(x, y))
     }
 
-    fn meets(&self, other: &Self) -> bool {
+    fn overlaps_across(&self, other: &Self) -> bool {
         let ends = |s: &Self| [s.low[0].min(s.low[1]), s.high[0].max(s.high[1])];
         let ([low, high], [least, most]) = (ends(self), ends(other));
         low < most && least < high
@@ -190,7 +191,7 @@ impl Swept {
                     active.push(line);
                 }
             }
-            between(&active, x, &mut strips);
+            strips_between(&active, x, &mut strips);
         }
         Self(strips)
     }
@@ -203,7 +204,7 @@ impl Swept {
                 first += 1;
             }
             for strip in all[first..].iter().take_while(|strip| strip.x[0] < own.x[1]) {
-                if own.meets(strip) {
+                if own.overlaps_across(strip) {
                     call(own, strip);
                 }
             }
@@ -212,7 +213,7 @@ impl Swept {
 }
 
 /// Adds the strips between lines that have no end between two positions.
-fn between(active: &[([DVec2; 2], i32)], x: [f64; 2], strips: &mut Vec<Strip>) {
+fn strips_between(active: &[([DVec2; 2], i32)], x: [f64; 2], strips: &mut Vec<Strip>) {
     let at = |[a, b]: [DVec2; 2], x: f64| {
         let share = ((x - a.x) / (b.x - a.x)).clamp(0.0, 1.0);
         if share < 1.0 { a.y + (b.y - a.y) * share } else { b.y }

@@ -14,7 +14,7 @@ use crate::free::Removal;
 use crate::watch::Watch;
 
 /// Maximum number of box pairs that are visited for a map.
-const LOOKS: u64 = 5_000_000;
+const MAX_LOOKS: u64 = 5_000_000;
 
 /// The exact free directions, and the undecided cells.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl Cover {
             Err(error) => return Ok(Err(error.to_string())),
         };
         let never = AtomicBool::new(false);
-        let options = FreeOptions::DEFAULT.with_looks(LOOKS).with_start_overlap(start);
+        let options = FreeOptions::DEFAULT.with_looks(MAX_LOOKS).with_start_overlap(start);
         let free = match removal.directions(options, watch.flag().unwrap_or(&never)) {
             Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
             Err(error) => return Ok(Err(error.to_string())),
@@ -85,16 +85,16 @@ impl Cover {
 
     /// Returns the regions, and the single directions of length 1. Regions below the solid angle `smallest` are
     /// reported as single directions.
-    pub(super) fn told(&self, smallest: f64) -> (Vec<Region>, Vec<DVec3>) {
+    pub(super) fn report_regions(&self, smallest: f64) -> (Vec<Region>, Vec<DVec3>) {
         let (large, small): (Vec<_>, Vec<_>) =
             self.regions.iter().partition(|region| region.area >= smallest);
         let points = self.points.iter().map(|d| d.normalize());
         let single = small.into_iter().map(|region| region.center).chain(points);
-        (large.into_iter().map(of_free).collect(), single.collect())
+        (large.into_iter().map(region_from_exact).collect(), single.collect())
     }
 }
 
-fn of_free(region: &FreeRegion) -> Region {
+fn region_from_exact(region: &FreeRegion) -> Region {
     let center = region.center;
     let (u, v) = center.any_orthonormal_pair();
     let around = |d: &DVec3| d.dot(v).atan2(d.dot(u));

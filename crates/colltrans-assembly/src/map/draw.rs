@@ -9,7 +9,7 @@ use std::fmt::Write;
 use colltrans_picture::escaped;
 use glam::{DVec2, DVec3};
 
-use super::trace::{arcs, is_inside, outlines};
+use super::trace::{arc_lines, is_inside, polygon_outlines};
 use super::{Cover, RemovalMap};
 use crate::rooms::PartRoom;
 
@@ -25,12 +25,12 @@ const BLOCKED: [[u8; 3]; 8] = [
     [211, 228, 243],
 ];
 const FREE: [u8; 3] = [246, 150, 40];
-const RIM: [u8; 3] = [140, 70, 0];
+const BORDER: [u8; 3] = [140, 70, 0];
 const UNKNOWN: [u8; 3] = [120, 120, 120];
 const OVERLAP: [u8; 3] = [150, 60, 60];
 
 /// Returns the direction at a point of the map, an ellipse of semi-axes 2 and 1. Returns `None` outside.
-fn direction(at: DVec2) -> Option<DVec3> {
+fn direction_at(at: DVec2) -> Option<DVec3> {
     if at.x * at.x / 4.0 + at.y * at.y >= 1.0 {
         return None;
     }
@@ -42,7 +42,7 @@ fn direction(at: DVec2) -> Option<DVec3> {
 }
 
 /// Returns the point of a direction on the map.
-pub(super) fn place(d: DVec3) -> DVec2 {
+pub(super) fn map_position(d: DVec3) -> DVec2 {
     let latitude = d.z.clamp(-1.0, 1.0).asin();
     let longitude = d.y.atan2(d.x);
     let mut theta = latitude;
@@ -60,7 +60,7 @@ pub(super) fn place(d: DVec3) -> DVec2 {
 
 impl RemovalMap {
     /// Returns the class of a direction: 0 to 7 blocked, 8 free, 9 overlapping.
-    fn class(&self, d: DVec3) -> usize {
+    fn direction_class(&self, d: DVec3) -> usize {
         let (t, weights) = self.sphere.locate(d);
         let corners = self.sphere.triangles[t].corners;
         // Free regions of a cover are drawn over this, so the nearest blocked corner decides.
@@ -71,17 +71,17 @@ impl RemovalMap {
             PartRoom::Free if self.cover.is_ok() => BLOCKED.len() - 1,
             PartRoom::Free => 8,
             PartRoom::Overlapping { .. } => 9,
-            PartRoom::Blocked { stop, .. } => step(stop.distance() / self.size),
+            PartRoom::Blocked { stop, .. } => distance_class(stop.distance() / self.size),
         }
     }
 }
 
 /// Returns one of eight classes of distance. Each spans a factor of two, and the last one starts at half the size.
-fn step(share: f64) -> usize {
+fn distance_class(share: f64) -> usize {
     (8.0 + share.max(1e-9).log2()).floor().clamp(0.0, 7.0) as usize
 }
 
-fn color(class: usize) -> [u8; 3] {
+fn class_color(class: usize) -> [u8; 3] {
     match class {
         8 => FREE,
         9 => OVERLAP,
@@ -89,7 +89,7 @@ fn color(class: usize) -> [u8; 3] {
     }
 }
 
-fn hex([r, g, b]: [u8; 3]) -> String {
+fn hex_color([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
@@ -99,23 +99,25 @@ fn hex([r, g, b]: [u8; 3]) -> String {
 pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
     let (width, height) = (width.max(16), width.max(16) / 2);
     let mut pixels = vec![0_u8; (width * height * 4) as usize];
-    let marks: Vec<DVec2> = map.isolated.iter().map(|d| place(*d)).collect();
-    let over =
-        map.cover.as_ref().map_or_else(|_| Vec::new(), |cover| raster(cover, [width, height]));
+    let marks: Vec<DVec2> = map.isolated.iter().map(|d| map_position(*d)).collect();
+    let over = map
+        .cover
+        .as_ref()
+        .map_or_else(|_| Vec::new(), |cover| cover_pixels(cover, [width, height]));
     for row in 0..height {
         for column in 0..width {
             let at = DVec2::new(
                 (f64::from(column) + 0.5) / f64::from(width) * 4.0 - 2.0,
                 1.0 - (f64::from(row) + 0.5) / f64::from(height) * 2.0,
             );
-            let Some(d) = direction(at) else { continue };
+            let Some(d) = direction_at(at) else { continue };
             let near = marks.iter().map(|m| m.distance(at)).fold(f64::INFINITY, f64::min);
             let rgb = match near {
                 r if r < 0.02 => [255, 255, 255],
                 r if r < 0.03 => [20, 20, 20],
                 _ => {
                     let known = over.get((row * width + column) as usize).copied().flatten();
-                    known.unwrap_or_else(|| color(map.class(d)))
+                    known.unwrap_or_else(|| class_color(map.direction_class(d)))
                 }
             };
             let first = ((row * width + column) * 4) as usize;
@@ -135,10 +137,10 @@ pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
 }
 
 /// Half of the width of arcs in a picture with semi-axes 2 and 1.
-const ARC: f64 = 0.009;
+const HALF_ARC_WIDTH: f64 = 0.009;
 
 /// Returns the colour of the cover at each pixel: free, or undecided (striped), or `None`.
-fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
+fn cover_pixels(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
     let mut pixels = vec![None; (width * height) as usize];
     let scale = f64::from(width) / 4.0;
     let mut fill = |outlines: &[Vec<DVec2>], paint: &dyn Fn(u32) -> Option<[u8; 3]>| {
@@ -160,17 +162,20 @@ fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
         }
     };
     for region in &cover.regions {
-        region.pieces.iter().for_each(|piece| fill(&outlines(&piece.corners), &|_| Some(FREE)));
+        region
+            .pieces
+            .iter()
+            .for_each(|piece| fill(&polygon_outlines(&piece.corners), &|_| Some(FREE)));
     }
     for &[a, b] in &cover.arcs {
-        for ends in arcs(a, b).iter().flat_map(|part| part.windows(2)) {
-            let across = (ends[1] - ends[0]).normalize_or_zero().perp() * ARC;
+        for ends in arc_lines(a, b).iter().flat_map(|part| part.windows(2)) {
+            let across = (ends[1] - ends[0]).normalize_or_zero().perp() * HALF_ARC_WIDTH;
             let strip = [ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across];
             fill(&[strip.to_vec()], &|_| Some(FREE));
         }
     }
     for cell in &cover.undecided {
-        fill(&outlines(cell), &|at| (at % 8 < 4).then_some(UNKNOWN));
+        fill(&polygon_outlines(cell), &|at| (at % 8 < 4).then_some(UNKNOWN));
     }
     pixels
 }
@@ -189,11 +194,13 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
          font-family=\"sans-serif\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"470\" \
          fill=\"#fff\"/>\n",
     );
-    for (class, path) in runs(map).into_iter().enumerate().filter(|(_, path)| !path.is_empty()) {
-        let _ = writeln!(text, "<path fill=\"{}\" d=\"{path}\"/>", hex(color(class)));
+    for (class, path) in
+        class_runs(map).into_iter().enumerate().filter(|(_, path)| !path.is_empty())
+    {
+        let _ = writeln!(text, "<path fill=\"{}\" d=\"{path}\"/>", hex_color(class_color(class)));
     }
     if let Ok(cover) = &map.cover {
-        exactly(&mut text, cover);
+        draw_cover(&mut text, cover);
     }
     let _ = writeln!(
         text,
@@ -202,9 +209,10 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
         MIDDLE.y,
         2.0 * SCALE
     );
-    graticule(&mut text);
-    let dots: Vec<DVec2> = map.isolated.iter().map(|d| in_picture(place(*d))).collect();
-    axes(&mut text, &dots);
+    draw_graticule(&mut text);
+    let dots: Vec<DVec2> =
+        map.isolated.iter().map(|d| picture_position(map_position(*d))).collect();
+    draw_axis_names(&mut text, &dots);
     for at in &dots {
         let _ = writeln!(
             text,
@@ -213,7 +221,7 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
             at.x, at.y
         );
     }
-    legend(&mut text, map);
+    draw_legend(&mut text, map);
     let _ = writeln!(
         text,
         "<text x=\"360\" y=\"4\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n</svg>",
@@ -223,10 +231,10 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
 }
 
 /// Returns the SVG path of closed or open lines.
-fn lines(parts: &[Vec<DVec2>], close: bool) -> String {
+fn path_data(parts: &[Vec<DVec2>], close: bool) -> String {
     let mut path = String::new();
     for part in parts {
-        for (k, at) in part.iter().map(|at| in_picture(*at)).enumerate() {
+        for (k, at) in part.iter().map(|at| picture_position(*at)).enumerate() {
             let _ = write!(path, "{}{:.2} {:.2}", if k == 0 { "M" } else { "L" }, at.x, at.y);
         }
         path += if close { "z" } else { "" };
@@ -235,28 +243,33 @@ fn lines(parts: &[Vec<DVec2>], close: bool) -> String {
 }
 
 /// Draws a cover: regions with their borders and centres, arcs, and undecided cells (hatched).
-fn exactly(text: &mut String, cover: &Cover) {
-    let rgb = hex(FREE);
+fn draw_cover(text: &mut String, cover: &Cover) {
+    let rgb = hex_color(FREE);
     for region in &cover.regions {
-        let pieces: String =
-            region.pieces.iter().map(|piece| lines(&outlines(&piece.corners), true)).collect();
+        let pieces: String = region
+            .pieces
+            .iter()
+            .map(|piece| path_data(&polygon_outlines(&piece.corners), true))
+            .collect();
         let border: String =
-            region.border.iter().map(|[a, b]| lines(&arcs(*a, *b), false)).collect();
+            region.border.iter().map(|[a, b]| path_data(&arc_lines(*a, *b), false)).collect();
         let _ = writeln!(
             text,
             "<path fill=\"{rgb}\" stroke=\"{rgb}\" stroke-width=\"0.4\" d=\"{pieces}\"/>\n\
              <path fill=\"none\" stroke=\"{}\" d=\"{border}\"/>",
-            hex(RIM)
+            hex_color(BORDER)
         );
     }
-    let alone: String = cover.arcs.iter().map(|[a, b]| lines(&arcs(*a, *b), false)).collect();
+    let alone: String =
+        cover.arcs.iter().map(|[a, b]| path_data(&arc_lines(*a, *b), false)).collect();
     if !alone.is_empty() {
         let _ = writeln!(
             text,
             "<path fill=\"none\" stroke=\"{rgb}\" stroke-width=\"3\" d=\"{alone}\"/>"
         );
     }
-    let unknown: String = cover.undecided.iter().map(|cell| lines(&outlines(cell), true)).collect();
+    let unknown: String =
+        cover.undecided.iter().map(|cell| path_data(&polygon_outlines(cell), true)).collect();
     if !unknown.is_empty() {
         text.push_str(HATCH);
         let _ = writeln!(text, "<path fill=\"url(#unknown)\" d=\"{unknown}\"/>");
@@ -265,8 +278,11 @@ fn exactly(text: &mut String, cover: &Cover) {
         let (x, y) = (at.x, at.y);
         format!("M{:.1} {y:.1}h8M{x:.1} {:.1}v8", x - 4.0, y - 4.0)
     };
-    let centers: String =
-        cover.regions.iter().map(|region| cross(in_picture(place(region.center)))).collect();
+    let centers: String = cover
+        .regions
+        .iter()
+        .map(|region| cross(picture_position(map_position(region.center))))
+        .collect();
     if !centers.is_empty() {
         let _ = writeln!(text, "<path fill=\"none\" stroke=\"#111\" d=\"{centers}\"/>");
     }
@@ -276,19 +292,19 @@ const HATCH: &str = "<defs><pattern id=\"unknown\" width=\"5\" height=\"5\" \
      patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\">\
      <rect width=\"2.5\" height=\"5\" fill=\"#787878\"/></pattern></defs>\n";
 
-fn in_picture(at: DVec2) -> DVec2 {
+fn picture_position(at: DVec2) -> DVec2 {
     MIDDLE + DVec2::new(at.x, -at.y) * SCALE
 }
 
 /// Returns for each class the SVG path of its cells, as runs along rows.
-fn runs(map: &RemovalMap) -> Vec<String> {
+fn class_runs(map: &RemovalMap) -> Vec<String> {
     let mut paths = vec![String::new(); 10];
     let (w, h) = (4.0 * SCALE / COLUMNS as f64, 2.0 * SCALE / ROWS as f64);
     for row in 0..ROWS {
         let y = 1.0 - (row as f64 + 0.5) / ROWS as f64 * 2.0;
         let class = |column: usize| {
             let x = (column as f64 + 0.5) / COLUMNS as f64 * 4.0 - 2.0;
-            direction(DVec2::new(x, y)).map(|d| map.class(d))
+            direction_at(DVec2::new(x, y)).map(|d| map.direction_class(d))
         };
         let classes: Vec<Option<usize>> = (0..COLUMNS).map(class).collect();
         let mut from = 0;
@@ -307,11 +323,11 @@ fn runs(map: &RemovalMap) -> Vec<String> {
 }
 
 /// Draws meridians and parallels every 30 degrees.
-fn graticule(text: &mut String) {
+fn draw_graticule(text: &mut String) {
     let line = |points: Vec<DVec3>| {
         let mut path = String::new();
         for (k, d) in points.into_iter().enumerate() {
-            let at = in_picture(place(d));
+            let at = picture_position(map_position(d));
             let _ = write!(path, "{}{:.1} {:.1}", if k == 0 { "M" } else { "L" }, at.x, at.y);
         }
         path
@@ -338,7 +354,7 @@ fn graticule(text: &mut String) {
 }
 
 /// Draws the names of the axes, next to dots that they would hide.
-fn axes(text: &mut String, dots: &[DVec2]) {
+fn draw_axis_names(text: &mut String, dots: &[DVec2]) {
     let names = [
         (DVec3::X, "+x"),
         (DVec3::Y, "+y"),
@@ -359,37 +375,37 @@ fn axes(text: &mut String, dots: &[DVec2]) {
     };
     for (d, name) in names {
         // Names of the poles are moved inside.
-        label(in_picture(place(d)) + DVec2::Y * 12.0 * d.z, name);
+        label(picture_position(map_position(d)) + DVec2::Y * 12.0 * d.z, name);
     }
-    label(in_picture(DVec2::new(-2.0, 0.0)), "−x");
-    label(in_picture(DVec2::new(2.0, 0.0)), "−x");
+    label(picture_position(DVec2::new(-2.0, 0.0)), "−x");
+    label(picture_position(DVec2::new(2.0, 0.0)), "−x");
 }
 
-fn legend(text: &mut String, map: &RemovalMap) {
+fn draw_legend(text: &mut String, map: &RemovalMap) {
     let mut x = 40.0;
     let mut entry = |class: usize, name: &str, width: f64| {
         let _ = writeln!(
             text,
             "<rect x=\"{x}\" y=\"388\" width=\"22\" height=\"14\" fill=\"{}\" stroke=\"#333\" \
              stroke-width=\"0.5\"/><text x=\"{x}\" y=\"418\" font-size=\"11\">{name}</text>",
-            hex(color(class))
+            hex_color(class_color(class))
         );
         x += width;
     };
     entry(8, "free", 60.0);
     for k in 0..8 {
         let from = map.size * 2.0_f64.powi(k - 8);
-        let name = if k == 0 { "0".to_owned() } else { rounded(from) };
+        let name = if k == 0 { "0".to_owned() } else { format_three_digits(from) };
         entry(k as usize, &name, 58.0);
     }
     entry(9, "overlapping", 60.0);
     let told = match &map.cover {
         Ok(cover) => format!(
             "free: {} % of all directions, exactly. {}",
-            percent(cover.free_share()),
+            format_percent(cover.free_share()),
             match cover.undecided_share() {
                 0.0 => "Nothing is undecided".to_owned(),
-                share => format!("Undecided, hatched: {} %", percent(share)),
+                share => format!("Undecided, hatched: {} %", format_percent(share)),
             }
         ),
         Err(_) => "free: as sampled, without a proof".to_owned(),
@@ -410,17 +426,17 @@ fn legend(text: &mut String, map: &RemovalMap) {
 }
 
 /// Formats a fraction as a percentage; small ones with an exponent.
-fn percent(share: f64) -> String {
+fn format_percent(share: f64) -> String {
     let x = 100.0 * share;
     match x {
         0.0 => "0".to_owned(),
         x if x < 1e-3 => format!("{x:.2e}"),
-        x => rounded(x),
+        x => format_three_digits(x),
     }
 }
 
 /// Formats a number with three significant digits.
-fn rounded(x: f64) -> String {
+fn format_three_digits(x: f64) -> String {
     let digits = (2 - x.abs().max(1e-12).log10().floor() as i32).max(0) as usize;
     format!("{x:.digits$}")
 }
@@ -430,11 +446,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_and_directions_are_inverse() {
+    fn map_position_and_direction_are_inverse() {
         let mut random = colltrans_testkit::random::Random::new(2);
         for _ in 0..1_000 {
             let d = random.direction();
-            let back = direction(place(d)).expect("inside");
+            let back = direction_at(map_position(d)).expect("inside");
             assert!((back - d).length() < 1e-6, "{d} {back}");
         }
     }

@@ -21,26 +21,26 @@ pub struct Region {
     pub border: Vec<DVec3>,
 }
 
-pub(super) fn regions(sphere: &Sphere, rooms: &[PartRoom]) -> Vec<Region> {
+pub(super) fn connected_regions(sphere: &Sphere, rooms: &[PartRoom]) -> Vec<Region> {
     let free = |k: u32| rooms[k as usize].is_free();
-    let mut set = Sets::new(rooms.len());
+    let mut set = DisjointSets::new(rooms.len());
     for t in sphere.leaves() {
         let [a, b, c] = sphere.triangles[t].corners;
         for (a, b) in [(a, b), (b, c), (c, a)] {
             if free(a) && free(b) {
-                set.join(a, b);
+                set.merge_sets(a, b);
             }
         }
     }
-    let mut found: Vec<(u32, Gathered)> = Vec::new();
+    let mut found: Vec<(u32, RegionSums)> = Vec::new();
     for t in sphere.leaves() {
         let corners = sphere.triangles[t].corners;
         let share = sphere.area(t) / 3.0;
         for k in corners.into_iter().filter(|&k| free(k)) {
-            let root = set.root(k);
+            let root = set.find_root(k);
             let place = found.iter().position(|f| f.0 == root).unwrap_or_else(|| {
                 let first = sphere.directions[k as usize];
-                found.push((root, Gathered { first, ..Gathered::default() }));
+                found.push((root, RegionSums { first, ..RegionSums::default() }));
                 found.len() - 1
             });
             let region = &mut found[place].1;
@@ -52,21 +52,22 @@ pub(super) fn regions(sphere: &Sphere, rooms: &[PartRoom]) -> Vec<Region> {
             }
         }
     }
-    let mut regions: Vec<Region> = found.into_iter().map(|(_, region)| region.finish()).collect();
+    let mut regions: Vec<Region> =
+        found.into_iter().map(|(_, region)| region.into_region()).collect();
     regions.sort_by(|x, y| y.solid_angle.total_cmp(&x.solid_angle));
     regions
 }
 
 #[derive(Default)]
-struct Gathered {
+struct RegionSums {
     area: f64,
     sum: DVec3,
     first: DVec3,
     border: Vec<DVec3>,
 }
 
-impl Gathered {
-    fn finish(mut self) -> Region {
+impl RegionSums {
+    fn into_region(mut self) -> Region {
         let center = self.sum.try_normalize().unwrap_or(self.first);
         let (u, v) = center.any_orthonormal_pair();
         let around = |d: &DVec3| d.dot(v).atan2(d.dot(u));
@@ -77,14 +78,14 @@ impl Gathered {
 }
 
 /// Disjoint sets of indices (union-find).
-struct Sets(Vec<u32>);
+struct DisjointSets(Vec<u32>);
 
-impl Sets {
+impl DisjointSets {
     fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
 
-    fn root(&mut self, mut k: u32) -> u32 {
+    fn find_root(&mut self, mut k: u32) -> u32 {
         while self.0[k as usize] != k {
             let above = self.0[self.0[k as usize] as usize];
             self.0[k as usize] = above;
@@ -93,8 +94,8 @@ impl Sets {
         k
     }
 
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
+    fn merge_sets(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find_root(a), self.find_root(b));
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

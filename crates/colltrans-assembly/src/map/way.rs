@@ -26,20 +26,20 @@ use crate::watch::Watch;
 use crate::witness::Witnesses;
 
 /// A group counts as held if its travel along all samples is below this fraction of its size.
-const FAR: f64 = 0.5;
+const MIN_TRAVEL: f64 = 0.5;
 /// Increase of this fraction after each round. A part that moves a little further in its groove does not continue the
 /// search.
-const FARTHER: f64 = 0.125;
+const MIN_TRAVEL_STEP: f64 = 0.125;
 /// Relative difference below which two distances are equal.
-const CHANGE: f64 = 0.1;
+const MIN_CHANGE: f64 = 0.1;
 /// Maximum number of triangles that are subdivided in a round, and number of rounds.
-const CUTS: usize = 128;
+const MAX_CUTS: usize = 128;
 const ROUNDS: usize = 8;
 /// Minimum width of a triangle that is subdivided, in radians.
-const NARROWEST: f64 = 0.01;
+const MIN_WIDTH: f64 = 0.01;
 
 /// Maximum number of box pairs that are visited for the exact free directions.
-const LOOKS: u64 = 2_000_000;
+const MAX_LOOKS: u64 = 2_000_000;
 
 /// Returns a direction along which a group is free of `others`.
 ///
@@ -52,29 +52,29 @@ pub(crate) fn way_out(
     options: MapOptions,
     watch: Watch,
 ) -> Result<Option<DVec3>, AssemblyError> {
-    if let Some(exact) = exactly(bodies, group, others, options, watch)? {
+    if let Some(exact) = exact_way_out(bodies, group, others, options, watch)? {
         return Ok(exact);
     }
     let mut mapper = Mapper::new(bodies, group, others.to_vec(), options, watch);
     let bounds = group.iter().map(|&k| bodies.bounds(k)).reduce(|a, b| a.join(&b));
     let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
-    if !mapper.reaches(FAR * size)? {
+    if !mapper.reaches_any(MIN_TRAVEL * size)? {
         return Ok(None);
     }
-    mapper.ask()?;
+    mapper.sample_pending()?;
     for round in 0..ROUNDS {
         if let Some(k) = mapper.rooms.iter().position(PartRoom::is_free) {
             return Ok(Some(mapper.sphere.directions[k]));
         }
         let farthest = mapper.rooms.iter().map(PartRoom::distance).fold(0.0, f64::max);
-        let cuts = mapper.changes();
-        if farthest < (FAR + FARTHER * round as f64) * size {
+        let cuts = mapper.triangles_to_cut();
+        if farthest < (MIN_TRAVEL + MIN_TRAVEL_STEP * round as f64) * size {
             return Ok(None);
         }
         if cuts.is_empty() {
             return Ok(None);
         }
-        mapper.cut(cuts)?;
+        mapper.cut_triangles(cuts)?;
     }
     let free = mapper.rooms.iter().position(PartRoom::is_free);
     Ok(free.map(|k| mapper.sphere.directions[k]))
@@ -83,7 +83,7 @@ pub(crate) fn way_out(
 /// Returns the free direction farthest from the borders of its region. The inner `None` means that there is none, the
 /// outer one that the exact computation does not decide it.
 #[expect(clippy::option_option, reason = "none at all, or not known")]
-fn exactly(
+fn exact_way_out(
     bodies: &Bodies,
     group: &[usize],
     others: &[bool],
@@ -92,9 +92,9 @@ fn exactly(
 ) -> Result<Option<Option<DVec3>>, AssemblyError> {
     let others: Vec<usize> =
         (0..bodies.len()).filter(|k| others[*k] && !group.contains(k)).collect();
-    let Ok(removal) = Removal::among(bodies, group, &others) else { return Ok(None) };
+    let Ok(removal) = Removal::between(bodies, group, &others) else { return Ok(None) };
     let never = AtomicBool::new(false);
-    let asked = FreeOptions::DEFAULT.with_looks(LOOKS).with_start_overlap(options.start);
+    let asked = FreeOptions::DEFAULT.with_looks(MAX_LOOKS).with_start_overlap(options.start);
     let free = match removal.directions(asked, watch.flag().unwrap_or(&never)) {
         Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
         Err(_) => return Ok(None),
@@ -109,9 +109,9 @@ fn exactly(
 
 impl Mapper<'_> {
     /// Checks whether the group travels at least `far` along any of the samples.
-    fn reaches(&self, far: f64) -> Result<bool, AssemblyError> {
+    fn reaches_any(&self, far: f64) -> Result<bool, AssemblyError> {
         let look = |(workspace, witnesses): &mut (Workspace, Witnesses), d: &DVec3| {
-            self.watch.check().map(|()| !self.is_held(*d, far, workspace, witnesses))
+            self.watch.check().map(|()| !self.is_stopped_within(*d, far, workspace, witnesses))
         };
         let reached = self.sphere.directions.par_iter().map_init(Default::default, look);
         // The search ends with a direction that reaches `far` or with a cancelled run.
@@ -119,7 +119,7 @@ impl Mapper<'_> {
     }
 
     /// Checks whether a contact stops the group before it has travelled `far`.
-    fn is_held(
+    fn is_stopped_within(
         &self,
         d: DVec3,
         far: f64,
@@ -135,20 +135,20 @@ impl Mapper<'_> {
         }
         let within = far.next_down();
         let mut known = pairs.iter();
-        if known.any(|&p| witnesses.stop(self.bodies, p, d, within, start).is_some()) {
+        if known.any(|&p| witnesses.find_stop(self.bodies, p, d, within, start).is_some()) {
             return true;
         }
         pairs.into_iter().any(|pair| {
             let room = self.bodies.room(pair, d, Some(far), start, workspace);
             if let Room::Blocked(stop) = &room {
-                witnesses.keep(pair, stop);
+                witnesses.store(pair, stop);
             }
             room != Room::Free
         })
     }
 
     /// Returns the triangles to subdivide next.
-    fn changes(&self) -> Vec<usize> {
+    fn triangles_to_cut(&self) -> Vec<usize> {
         let score = |t: usize| {
             let rooms = self.sphere.triangles[t].corners.map(|k| &self.rooms[k as usize]);
             let distances = rooms.map(PartRoom::distance);
@@ -156,12 +156,12 @@ impl Mapper<'_> {
             let near = distances.into_iter().fold(f64::INFINITY, f64::min);
             let same = rooms.iter().all(|r| r.by() == rooms[0].by());
             let width = self.sphere.widest(t);
-            let wanted = width > NARROWEST && far > 0.0 && (!same || far - near > CHANGE * far);
+            let wanted = width > MIN_WIDTH && far > 0.0 && (!same || far - near > MIN_CHANGE * far);
             wanted.then_some((far * width, t))
         };
         let mut found: Vec<(f64, usize)> = self.sphere.leaves().filter_map(score).collect();
         found.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        found.truncate(CUTS);
+        found.truncate(MAX_CUTS);
         found.into_iter().map(|x| x.1).collect()
     }
 }

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::PlanOptions;
 use super::order::Order;
-use super::shadow::larger;
+use super::shadow::max_bounded;
 use super::step::{Leg, Turn, TurnProof};
 use crate::bodies::{Bodies, Turned};
 use crate::boxes::span;
@@ -22,22 +22,22 @@ use crate::watch::Watch;
 use crate::{cylinders, inertia};
 
 /// Maximum number of parts of a group that is searched, and of axes of each part.
-const MOST_PARTS: usize = 24;
-const MOST_AXES: usize = 3;
+const MAX_PARTS: usize = 24;
+const MAX_AXES: usize = 3;
 /// Maximum number of visited pairs for a group, and the number of pairs for which a cast counts.
-const LOOKS: u64 = 1_000_000;
-const CAST: u64 = 500;
+const MAX_WORK: u64 = 1_000_000;
+const CAST_WORK: u64 = 500;
 /// Number of evenly spaced angles for a full turn, their minimum number, and the number of angles that halve the
 /// distance to the stop.
-const IN_A_TURN: f64 = 360.0;
-const FEWEST: f64 = 48.0;
+const ANGLES_PER_TURN: f64 = 360.0;
+const MIN_ANGLES: f64 = 48.0;
 const HALVES: i32 = 12;
 /// Maximum deviation from a round shape, as a fraction of the radius, for which turning is pointless.
-const ROUND: f64 = 0.02;
+const ROUND_TOLERANCE: f64 = 0.02;
 /// Minimum number of turns that is considered.
-const LEAST: f64 = 1e-4;
+const MIN_TURNS: f64 = 1e-4;
 /// Number of rounding errors of a turned vertex and of the sums that follow.
-const SUMS: f64 = 32.0;
+const ROUNDINGS: f64 = 32.0;
 
 /// A part that is turned and then leaves.
 pub(super) struct Bayonet {
@@ -47,38 +47,38 @@ pub(super) struct Bayonet {
 }
 
 /// Returns the first remaining part that a turn releases. Returns `None` if no turn is found or a limit is exceeded.
-pub(super) fn search(
+pub(super) fn search_bayonet(
     bodies: &Bodies,
     order: &Order,
     left: &[usize],
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Option<Bayonet>, AssemblyError> {
-    if options.legs < 2 || left.len() > MOST_PARTS || bodies.fit().tolerance() < 0.0 {
+    if options.legs < 2 || left.len() > MAX_PARTS || bodies.fit().tolerance() < 0.0 {
         return Ok(None);
     }
     let work = Cell::new(0);
-    for &part in left.iter().filter(|part| !order.stays(**part)) {
+    for &part in left.iter().filter(|part| !order.is_stationary(**part)) {
         let others: Vec<usize> = left.iter().copied().filter(|k| *k != part).collect();
-        let about = About { bodies, part, others: &others, options, work: &work };
-        if others.iter().any(|&b| bodies.overlaps(part, b) && !about.passes(b)) {
+        let about = TurningPart { bodies, part, others: &others, options, work: &work };
+        if others.iter().any(|&b| bodies.overlaps(part, b) && !about.is_ignored(b)) {
             continue;
         }
-        for [point, axis] in axes(bodies, part) {
+        for [point, axis] in candidate_axes(bodies, part) {
             watch.check()?;
             let solid = bodies.assembly().parts()[part].solid();
-            if is_round(solid, [point, axis], ROUND) {
+            if is_round(solid, [point, axis], ROUND_TOLERANCE) {
                 continue;
             }
             for d in [axis, DVec3::ZERO - axis] {
-                if order.way(&[part], left, d).is_none_or(|way| way.parts != [part]) {
+                if order.choice_for(&[part], left, d).is_none_or(|way| way.parts != [part]) {
                     continue;
                 }
                 for sense in [1.0, -1.0] {
-                    if work.get() > LOOKS {
+                    if work.get() > MAX_WORK {
                         return Ok(None);
                     }
-                    if let Some(found) = about.turned([point, d], sense) {
+                    if let Some(found) = about.removal_after_turn([point, d], sense) {
                         return Ok(Some(found));
                     }
                 }
@@ -89,12 +89,12 @@ pub(super) fn search(
 }
 
 /// Returns axes through the middle of a part: those of its cylinders, then principal axes of inertia.
-fn axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
+fn candidate_axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut found: Vec<DVec3> = Vec::new();
     let cylinders = cylinders::axes(solid).into_iter().map(|(_, axis)| axis);
     for axis in cylinders.chain(inertia::axes(solid)) {
-        if found.len() < MOST_AXES && !found.iter().any(|a| a.cross(axis).length() < 1e-6) {
+        if found.len() < MAX_AXES && !found.iter().any(|a| a.cross(axis).length() < 1e-6) {
             found.push(axis);
         }
     }
@@ -112,7 +112,7 @@ fn axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
 
 /// A part that may turn among others.
 #[derive(Clone, Copy)]
-struct About<'a> {
+struct TurningPart<'a> {
     bodies: &'a Bodies<'a>,
     part: usize,
     others: &'a [usize],
@@ -120,38 +120,38 @@ struct About<'a> {
     work: &'a Cell<u64>,
 }
 
-impl About<'_> {
-    fn count(&self, looks: u64) {
+impl TurningPart<'_> {
+    fn add_work(&self, looks: u64) {
         self.work.set(self.work.get() + looks);
     }
 
-    fn passes(&self, other: usize) -> bool {
+    fn is_ignored(&self, other: usize) -> bool {
         self.bodies.lets_pass(self.part, other, self.options.start)
     }
 
     /// Returns a leg with a number of turns about an axis, without a proof.
-    fn leg(&self, [point, axis]: [DVec3; 2], turns: f64) -> Leg {
+    fn turn_leg(&self, [point, axis]: [DVec3; 2], turns: f64) -> Leg {
         let (aside, proof) = (DVec3::ZERO, Err(String::new()));
         let turn = Turn { point, turns, phase: 0.0, aside, proof };
         Leg { parts: vec![self.part], direction: axis, travel: 0.0, turn: Some(turn) }
     }
 
     /// Searches for a turn in one sense after which the part leaves along the axis.
-    fn turned(&self, about: [DVec3; 2], sense: f64) -> Option<Bayonet> {
-        let stop = self.stop(about, sense)?;
-        if stop < LEAST {
+    fn removal_after_turn(&self, about: [DVec3; 2], sense: f64) -> Option<Bayonet> {
+        let stop = self.turns_to_stop(about, sense)?;
+        if stop < MIN_TURNS {
             return None;
         }
-        let count = (IN_A_TURN * stop).ceil().max(FEWEST);
+        let count = (ANGLES_PER_TURN * stop).ceil().max(MIN_ANGLES);
         let even = (1..=count as usize).map(|k| stop * k as f64 / count * (1.0 - 1e-9));
         let near = (7..=HALVES + 6).map(|k| stop * (1.0 - 0.5_f64.powi(k)));
         let mut angles: Vec<f64> = even.chain(near).collect();
         angles.sort_by(f64::total_cmp);
-        if self.work.get() > LOOKS {
+        if self.work.get() > MAX_WORK {
             return None;
         }
         let free: Vec<bool> =
-            angles.iter().map(|turns| self.leaves(about, sense * turns)).collect();
+            angles.iter().map(|turns| self.leaves_after(about, sense * turns)).collect();
         let mut longest: Option<[f64; 2]> = None;
         let mut first = 0;
         while first < free.len() {
@@ -166,22 +166,24 @@ impl About<'_> {
         }
         let [from, to] = longest?;
         // If the middle of the run is between samples and not free, its first angle is used.
-        [from.midpoint(to), from].into_iter().find_map(|turns| self.proven(about, sense * turns))
+        [from.midpoint(to), from]
+            .into_iter()
+            .find_map(|turns| self.prove_removal(about, sense * turns))
     }
 
     /// Returns the number of turns, at most one, before the part is stopped. Returns `None` if the motion is invalid
     /// or a query fails.
-    fn stop(&self, about: [DVec3; 2], sense: f64) -> Option<f64> {
+    fn turns_to_stop(&self, about: [DVec3; 2], sense: f64) -> Option<f64> {
         let mut stop = 1.0_f64;
-        let motion = self.leg(about, sense).motion().ok()?;
+        let motion = self.turn_leg(about, sense).motion().ok()?;
         for &other in self.others {
-            if self.passes(other) || !self.bodies.may_meet_turning([self.part, other], about) {
+            if self.is_ignored(other) || !self.bodies.may_meet_turning([self.part, other], about) {
                 continue;
             }
             let (share, looks) = self.bodies.stopped([self.part, other], &motion)?;
-            self.count(looks);
+            self.add_work(looks);
             stop = stop.min(share);
-            if stop < LEAST {
+            if stop < MIN_TURNS {
                 break;
             }
         }
@@ -189,12 +191,12 @@ impl About<'_> {
     }
 
     /// Checks whether the part is free along the axis after a number of turns.
-    fn leaves(&self, about: [DVec3; 2], turns: f64) -> bool {
-        let Ok(motion) = self.leg(about, turns).motion() else { return false };
+    fn leaves_after(&self, about: [DVec3; 2], turns: f64) -> bool {
+        let Ok(motion) = self.turn_leg(about, turns).motion() else { return false };
         let free = |&other: &usize| {
             let pair = [self.part, other];
-            self.count(CAST);
-            self.passes(other)
+            self.add_work(CAST_WORK);
+            self.is_ignored(other)
                 || !self.bodies.may_meet_turning(pair, about)
                 || self.bodies.goes_on(pair, (&motion, about[1])).unwrap_or(false)
         };
@@ -202,14 +204,14 @@ impl About<'_> {
     }
 
     /// Proves the turn and the move along the axis. Returns `None` if a pair is not proven free.
-    fn proven(&self, about: [DVec3; 2], turns: f64) -> Option<Bayonet> {
-        let mut leg = self.leg(about, turns);
+    fn prove_removal(&self, about: [DVec3; 2], turns: f64) -> Option<Bayonet> {
+        let mut leg = self.turn_leg(about, turns);
         let motion = leg.motion().ok()?;
         let (direction, mut pairs) = (about[1], 0);
         let mut travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
         for &other in self.others {
             let pair = [self.part, other];
-            if self.passes(other) || !self.bodies.may_meet_turning(pair, about) {
+            if self.is_ignored(other) || !self.bodies.may_meet_turning(pair, about) {
                 continue;
             }
             match self.bodies.turned(pair, (&motion, direction), None) {
@@ -217,8 +219,8 @@ impl About<'_> {
                 _ => return None,
             }
             let moved = |p: DVec3| leg.moved(p, 1.0);
-            let past = self.bodies.past_moved((self.part, moved), other, direction, SUMS);
-            travel = larger(travel, past);
+            let past = self.bodies.past_moved((self.part, moved), other, direction, ROUNDINGS);
+            travel = max_bounded(travel, past);
         }
         let tolerance = self.bodies.fit().tolerance();
         if let Some(turn) = &mut leg.turn {

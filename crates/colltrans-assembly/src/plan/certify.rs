@@ -22,16 +22,16 @@ use crate::roles::Tolerated;
 use crate::watch::Watch;
 
 /// Maximum number of subdivisions of a side of the cube.
-const DEEPEST: u32 = 14;
+const MAX_DEPTH: u32 = 14;
 /// Maximum number of cells that are processed.
-const MOST_CELLS: usize = 20_000;
+const MAX_CELLS: usize = 20_000;
 /// Maximum number of parts, because memory grows with the number of pairs.
-const MOST_PARTS: usize = 40;
+const MAX_PARTS: usize = 40;
 /// Maximum number of centres of unproven cells that are returned.
-const MOST_OPEN: usize = 48;
+const MAX_OPEN: usize = 48;
 
 /// Outcome of a proof over the sphere.
-pub(super) enum Proof {
+pub(super) enum SphereProof {
     /// No direction separates the parts. The value is the number of cells.
     Proven(usize),
     /// Not proven. Some of these directions may separate the parts.
@@ -39,7 +39,7 @@ pub(super) enum Proof {
 }
 
 /// A cell with the arcs that hold in all of it.
-struct Task {
+struct CellTask {
     cell: DirectionCell,
     arcs: Vec<(usize, usize)>,
 }
@@ -53,14 +53,14 @@ struct Certifier<'a> {
 }
 
 /// Tries to prove that no group of these parts leaves the others along any direction.
-pub(super) fn certify(
+pub(super) fn prove_interlocked(
     bodies: &Bodies,
     parts: &[usize],
     start: StartOverlap,
     watch: Watch,
-) -> Result<Proof, AssemblyError> {
-    if parts.len() > MOST_PARTS || !is_plain(bodies, parts, start) {
-        return Ok(Proof::Open(Vec::new()));
+) -> Result<SphereProof, AssemblyError> {
+    if parts.len() > MAX_PARTS || !has_plain_contacts(bodies, parts, start) {
+        return Ok(SphereProof::Open(Vec::new()));
     }
     let among = bodies.mask(parts);
     let mut certifier = Certifier { bodies, parts, among, blockers: HashMap::new() };
@@ -70,33 +70,34 @@ pub(super) fn certify(
     let all = certifier.is_any_fixed(parts) || constraints.is_ordered(&certifier.among);
     let sides = if all { 6 } else { 3 };
     let overlapping = bodies.overlapping().iter().flat_map(|&[a, b]| [(a, b), (b, a)]);
-    let order = constraints.arcs(&certifier.among);
+    let order = constraints.order_arcs(&certifier.among);
     let arcs: Vec<(usize, usize)> = overlapping.chain(order).collect();
     let all = DirectionCell::sphere().into_iter().enumerate();
     let wanted = all.filter(|(k, _)| sides == 6 || k % 2 == 0);
-    let mut tasks: Vec<Task> = wanted.map(|(_, cell)| Task { cell, arcs: arcs.clone() }).collect();
+    let mut tasks: Vec<CellTask> =
+        wanted.map(|(_, cell)| CellTask { cell, arcs: arcs.clone() }).collect();
     let (mut cells, mut open) = (0, Vec::new());
     while let Some(mut task) = tasks.pop() {
         watch.check()?;
         cells += 1;
-        if certifier.holds(&mut task) {
+        if certifier.prove_cell(&mut task) {
             continue;
         }
-        if task.cell.depth() >= DEEPEST || cells >= MOST_CELLS {
+        if task.cell.depth() >= MAX_DEPTH || cells >= MAX_CELLS {
             open.push(task.cell.center().normalize());
-            if open.len() >= MOST_OPEN || cells >= MOST_CELLS {
-                return Ok(Proof::Open(open));
+            if open.len() >= MAX_OPEN || cells >= MAX_CELLS {
+                return Ok(SphereProof::Open(open));
             }
             continue;
         }
         let quarters = task.cell.quarters().into_iter();
-        tasks.extend(quarters.map(|cell| Task { cell, arcs: task.arcs.clone() }));
+        tasks.extend(quarters.map(|cell| CellTask { cell, arcs: task.arcs.clone() }));
     }
-    Ok(if open.is_empty() { Proof::Proven(cells) } else { Proof::Open(open) })
+    Ok(if open.is_empty() { SphereProof::Proven(cells) } else { SphereProof::Open(open) })
 }
 
 /// Checks whether all pairs block each other without exceptions: closed solids, no ignored pair, no minimum gap.
-fn is_plain(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
+fn has_plain_contacts(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
     let assembly = bodies.assembly();
     let lets_pass = |a, b| {
         let own = bodies.tolerated([a, b]);
@@ -111,7 +112,7 @@ fn is_plain(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
 
 impl<'a> Certifier<'a> {
     /// Checks whether no group leaves along any direction of a cell. Adds the arcs that it computes to the task.
-    fn holds(&mut self, task: &mut Task) -> bool {
+    fn prove_cell(&mut self, task: &mut CellTask) -> bool {
         let middle = task.cell.center().normalize();
         let mut asked = Vec::new();
         loop {
@@ -122,7 +123,7 @@ impl<'a> Certifier<'a> {
                 return true;
             }
             for group in groups {
-                match self.leaving(&group, &task.cell, middle, &mut asked) {
+                match self.blocking_arc(&group, &task.cell, middle, &mut asked) {
                     Some(arc) => task.arcs.push(arc),
                     None => return false,
                 }
@@ -132,7 +133,7 @@ impl<'a> Certifier<'a> {
 
     /// Returns an arc from a group to a part outside that holds in the whole cell. Returns `None` if no untested pair
     /// gives one.
-    fn leaving(
+    fn blocking_arc(
         &mut self,
         group: &[usize],
         cell: &DirectionCell,
@@ -145,7 +146,7 @@ impl<'a> Certifier<'a> {
                     continue;
                 }
                 asked.push([a, b]);
-                if self.blocker([a, b]).is_some_and(|of| of.covers(cell)) {
+                if self.cell_blocker([a, b]).is_some_and(|of| of.covers(cell)) {
                     return Some((a, b));
                 }
             }
@@ -153,7 +154,7 @@ impl<'a> Certifier<'a> {
         None
     }
 
-    fn blocker(&mut self, pair: [usize; 2]) -> Option<&mut CellBlocker<'a>> {
+    fn cell_blocker(&mut self, pair: [usize; 2]) -> Option<&mut CellBlocker<'a>> {
         let bodies = self.bodies;
         self.blockers.entry(pair).or_insert_with(|| bodies.cell_blocker(pair)).as_mut()
     }

@@ -13,9 +13,9 @@ use crate::digits::short;
 use crate::matrix::Matrix;
 
 /// Maximum number of smallest blocking sets that are listed for a part.
-const MOST_SETS: usize = 4;
+const MAX_SETS: usize = 4;
 /// Number of names in a sentence before the rest is counted; one more is named if it is the last.
-const MOST_NAMES: usize = 3;
+const MAX_NAMES: usize = 3;
 
 /// The smallest sets of parts that block a part.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Hold {
 }
 
 /// Builds the description of an interlocked group. The blocking sets are taken over the directions of the matrix.
-pub(super) fn explain(
+pub(super) fn explain_stuck(
     bodies: &Bodies,
     left: &[usize],
     matrix: &Matrix,
@@ -42,12 +42,12 @@ pub(super) fn explain(
     }
     let mut overlapping = Vec::new();
     let constraints = bodies.assembly().constraints();
-    let order = constraints.arcs(&among);
+    let order = constraints.order_arcs(&among);
     for (k, &d) in matrix.directions().iter().enumerate() {
         let graph = Blocking::with_order(matrix, k, &order, &among);
         for hold in &mut holds {
-            if constraints.allows(&[hold.part], d) {
-                keep_least(&mut hold.by, graph.blockers(hold.part), d);
+            if constraints.allows_direction(&[hold.part], d) {
+                keep_smallest_sets(&mut hold.by, graph.blockers(hold.part), d);
             }
         }
         let met = matrix.meetings(k).iter().filter(|m| m.stop.is_none());
@@ -58,7 +58,7 @@ pub(super) fn explain(
     }
     overlapping.sort_unstable();
     overlapping.dedup();
-    let constrained = constraints.concern(left);
+    let constrained = constraints.is_concerned(left);
     Stuck {
         parts: left.to_vec(),
         directions,
@@ -71,10 +71,10 @@ pub(super) fn explain(
     }
 }
 
-fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
+fn keep_smallest_sets(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
     match sets.first().map_or(usize::MAX, |s| s.0.len()).cmp(&set.len()) {
         std::cmp::Ordering::Greater => *sets = vec![(set, d)],
-        std::cmp::Ordering::Equal if sets.len() < MOST_SETS && sets.iter().all(|s| s.0 != set) => {
+        std::cmp::Ordering::Equal if sets.len() < MAX_SETS && sets.iter().all(|s| s.0 != set) => {
             sets.push((set, d));
         }
         _ => (),
@@ -94,15 +94,15 @@ struct Claim {
 impl Stuck {
     /// Returns the reason why the parts do not come apart, in one sentence.
     pub fn reason(&self, bodies: &Bodies) -> String {
-        if let Some(near) = self.near(bodies) {
+        if let Some(near) = self.overlap_reason(bodies) {
             return near;
         }
-        let sentence = self.claim(bodies).sentence;
-        match self.easiest().filter(|_| self.parts.len() > 2) {
+        let sentence = self.established_claim(bodies).sentence;
+        match self.least_held_part().filter(|_| self.parts.len() > 2) {
             Some((part, by)) => format!(
                 "{sentence}; along the directions asked, {} is held by the fewest: {}.",
                 bodies.assembly().parts()[part].name(),
-                listed(bodies, by)
+                join_names(bodies, by)
             ),
             None => format!("{sentence}."),
         }
@@ -110,12 +110,12 @@ impl Stuck {
 
     /// Returns the heading of the group in a list.
     pub fn heading(&self, bodies: &Bodies) -> &'static str {
-        self.claim(bodies).heading
+        self.established_claim(bodies).heading
     }
 
     /// Returns the established facts. They cover only translations of a group as one body: parts that move at the
     /// same time in different directions may come apart although no group leaves.
-    fn claim(&self, bodies: &Bodies) -> Claim {
+    fn established_claim(&self, bodies: &Bodies) -> Claim {
         let along = match (self.proven, self.directions) {
             (Some(_), _) => "in any direction".into(),
             (None, 1) => "along the direction asked".into(),
@@ -153,7 +153,7 @@ impl Stuck {
 
     /// Returns a sentence about the parts that overlap with this fit or violate the minimum gap. Returns `None` if
     /// there are none.
-    fn near(&self, bodies: &Bodies) -> Option<String> {
+    fn overlap_reason(&self, bodies: &Bodies) -> Option<String> {
         let [first, rest @ ..] = &self.overlapping[..] else { return None };
         let names = bodies.assembly().names(first).join(" and ");
         let (one, several) = match bodies.fit() {
@@ -189,34 +189,35 @@ impl Stuck {
     /// Returns sentences with the evidence, its limits, and possible remedies.
     pub fn details(&self, bodies: &Bodies) -> String {
         let overlaps = !self.overlapping.is_empty();
-        let Claim { sentence, evidence, .. } = self.claim(bodies);
-        let mut said = Vec::new();
+        let Claim { sentence, evidence, .. } = self.established_claim(bodies);
+        let mut sentences = Vec::new();
         if overlaps {
-            said.push(self.as_one(bodies));
-            said.push(format!("{sentence}."));
+            sentences.push(self.describe_overlapping(bodies));
+            sentences.push(format!("{sentence}."));
         }
-        said.push(evidence);
-        said.push(self.moves.words());
+        sentences.push(evidence);
+        sentences.push(self.moves.describe());
         if self.parts.len() > 2 {
-            said.push("Motions of several parts at once, each its own way, were not tried.".into());
+            sentences
+                .push("Motions of several parts at once, each its own way, were not tried.".into());
         }
         if self.constrained {
-            said.push("What is asked of their order and directions counts.".into());
+            sentences.push("What is asked of their order and directions counts.".into());
         }
         // If they are few, the reason already names them all.
-        let held = self.easiest().filter(|(_, by)| overlaps || by.len() > MOST_NAMES + 1);
+        let held = self.least_held_part().filter(|(_, by)| overlaps || by.len() > MAX_NAMES + 1);
         if let Some((part, by)) = held {
             let names = bodies.assembly().names(by).join(", ");
             let part = bodies.assembly().parts()[part].name();
-            said.push(format!(
+            sentences.push(format!(
                 "The least that holds a part along the directions asked: {part} is held by {names}."
             ));
         }
-        said.join(" ")
+        sentences.join(" ")
     }
 
     /// Returns a sentence about the treatment of overlapping parts.
-    fn as_one(&self, bodies: &Bodies) -> String {
+    fn describe_overlapping(&self, bodies: &Bodies) -> String {
         let parts = bodies.assembly().parts();
         let open = self.parts.iter().filter(|&&part| parts[part].is_surface()).count();
         let open = match open {
@@ -234,22 +235,22 @@ impl Stuck {
     }
 
     /// Returns the part with the smallest blocking set, and this set. Returns `None` if no part is blocked.
-    fn easiest(&self) -> Option<(usize, &[usize])> {
+    fn least_held_part(&self) -> Option<(usize, &[usize])> {
         let held = self.holds.iter().filter_map(|hold| Some((hold.part, &hold.by.first()?.0[..])));
         held.filter(|(_, by)| !by.is_empty()).min_by_key(|(_, by)| by.len())
     }
 }
 
 /// Joins the names of parts for a sentence. Of many parts only the first are named.
-fn listed(bodies: &Bodies, parts: &[usize]) -> String {
+fn join_names(bodies: &Bodies, parts: &[usize]) -> String {
     let names = bodies.assembly().names(parts);
     match &names[..] {
-        [first @ .., last] if (1..=MOST_NAMES).contains(&first.len()) => {
+        [first @ .., last] if (1..=MAX_NAMES).contains(&first.len()) => {
             format!("{} and {last}", first.join(", "))
         }
         [first @ .., _] if !first.is_empty() => {
-            let more = names.len() - MOST_NAMES;
-            format!("{} and {more} more", names[..MOST_NAMES].join(", "))
+            let more = names.len() - MAX_NAMES;
+            format!("{} and {more} more", names[..MAX_NAMES].join(", "))
         }
         _ => names.concat(),
     }
@@ -257,7 +258,7 @@ fn listed(bodies: &Bodies, parts: &[usize]) -> String {
 
 impl Moves {
     /// Returns a sentence about the search for removal paths of several moves.
-    fn words(&self) -> String {
+    fn describe(&self) -> String {
         match self {
             Self::NotAsked(why) => {
                 format!("Several moves, one after another, were not looked for: {why}.")

@@ -23,11 +23,11 @@ use crate::matrix::Matrix;
 use crate::part::Part;
 
 /// Maximum number of sets that are tried, and of 64-bit words that they take together.
-const MOST_SETS: usize = 20_000;
-const MOST_WORDS: usize = 1 << 22;
+const MAX_SETS: usize = 20_000;
+const MAX_WORDS: usize = 1 << 22;
 
 /// A sufficient set of parts.
-pub(super) struct Enough {
+pub(super) struct SufficientSet {
     pub(super) parts: Vec<usize>,
     /// Whether no smaller set suffices along the directions of the matrix.
     pub(super) least: bool,
@@ -37,29 +37,35 @@ pub(super) struct Enough {
 /// matrix.
 ///
 /// Returns `None` if no set suffices. After [`MAX_SETS`] sets the search becomes greedy, and `least` is false.
-pub(super) fn enough(bodies: &Bodies, matrix: &Matrix, wanted: &[usize]) -> Option<Enough> {
+pub(super) fn smallest_sufficient_set(
+    bodies: &Bodies,
+    matrix: &Matrix,
+    wanted: &[usize],
+) -> Option<SufficientSet> {
     if wanted.len() >= bodies.len() {
         return None;
     }
-    let search = Search::new(bodies, matrix, wanted);
-    let first = Set::of(wanted, bodies.len());
+    let search = SubsetSearch::new(bodies, matrix, wanted);
+    let first = PartSet::from_parts(wanted, bodies.len());
     let mut queue = BinaryHeap::from([Reverse((first.len(), first.clone()))]);
     let mut seen = HashSet::from([first]);
     let words = bodies.len().div_ceil(64);
-    let mut best: Option<Set> = None;
+    let mut best: Option<PartSet> = None;
     while let Some(Reverse((_, set))) = queue.pop() {
-        let left = match search.tried(&set) {
-            Tried::Enough => return Some(Enough { parts: set.parts(), least: best.is_none() }),
-            Tried::Left(left) => left,
+        let left = match search.try_removal(&set) {
+            TrialOutcome::Enough => {
+                return Some(SufficientSet { parts: set.to_parts(), least: best.is_none() });
+            }
+            TrialOutcome::Left(left) => left,
         };
-        let over = seen.len() >= MOST_SETS || seen.len() * words >= MOST_WORDS;
+        let over = seen.len() >= MAX_SETS || seen.len() * words >= MAX_WORDS;
         if over {
             // From here on only the smallest addition is followed. This is fast, but the result need not be a
             // smallest set.
             best = Some(set.clone());
             queue.clear();
         }
-        for larger in search.additions(&set, &left) {
+        for larger in search.larger_sets(&set, &left) {
             if seen.insert(larger.clone()) {
                 queue.push(Reverse((larger.len(), larger)));
             }
@@ -73,10 +79,10 @@ pub(super) fn enough(bodies: &Bodies, matrix: &Matrix, wanted: &[usize]) -> Opti
 
 /// A set of parts, with one bit for each part.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
-struct Set(Vec<u64>);
+struct PartSet(Vec<u64>);
 
-impl Set {
-    fn of(parts: &[usize], count: usize) -> Self {
+impl PartSet {
+    fn from_parts(parts: &[usize], count: usize) -> Self {
         let mut set = Self(vec![0; count.div_ceil(64)]);
         for &part in parts {
             set.add(part);
@@ -88,7 +94,7 @@ impl Set {
         self.0[part / 64] |= 1 << (part % 64);
     }
 
-    fn has(&self, part: usize) -> bool {
+    fn contains(&self, part: usize) -> bool {
         self.0[part / 64] >> (part % 64) & 1 == 1
     }
 
@@ -96,38 +102,39 @@ impl Set {
         self.0.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    fn parts(&self) -> Vec<usize> {
-        (0..64 * self.0.len()).filter(|&part| self.has(part)).collect()
+    fn to_parts(&self) -> Vec<usize> {
+        (0..64 * self.0.len()).filter(|&part| self.contains(part)).collect()
     }
 
-    fn holds(&self, other: &Self) -> bool {
+    fn is_superset_of(&self, other: &Self) -> bool {
         self.0.iter().zip(&other.0).all(|(a, b)| a & b == *b)
     }
 }
 
-enum Tried {
+enum TrialOutcome {
     Enough,
     /// The mask of present parts when no further part of the set can leave.
     Left(Vec<bool>),
 }
 
-struct Search<'a> {
+struct SubsetSearch<'a> {
     wanted: &'a [usize],
     /// For each direction and part, its blockers and the parts that must leave before it. `None` if the part must not
     /// move along the direction.
-    met: Vec<Vec<Option<Vec<usize>>>>,
+    blockers: Vec<Vec<Option<Vec<usize>>>>,
     /// Parts that leave as one body.
     units: &'a [Unit],
     fixed: Vec<bool>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> SubsetSearch<'a> {
     fn new(bodies: &Bodies<'a>, matrix: &Matrix, wanted: &'a [usize]) -> Self {
         let (count, assembly) = (bodies.len(), bodies.assembly());
         let constraints = assembly.constraints();
         let along = |(k, d): (usize, &DVec3)| {
-            let mut met: Vec<Option<Vec<usize>>> =
-                (0..count).map(|part| constraints.allows(&[part], *d).then(Vec::new)).collect();
+            let mut met: Vec<Option<Vec<usize>>> = (0..count)
+                .map(|part| constraints.allows_direction(&[part], *d).then(Vec::new))
+                .collect();
             let arcs = matrix.meetings(k).iter().map(|m| (m.moving, m.fixed));
             for (a, b) in arcs.chain(constraints.before().iter().map(|&[a, b]| (b, a))) {
                 if let Some(met) = &mut met[a] {
@@ -136,18 +143,18 @@ impl<'a> Search<'a> {
             }
             met
         };
-        let met = matrix.directions().iter().enumerate().map(along).collect();
+        let blockers = matrix.directions().iter().enumerate().map(along).collect();
         let fixed = assembly.parts().iter().map(Part::fixed).collect();
-        Self { wanted, met, units: constraints.units(), fixed }
+        Self { wanted, blockers, units: constraints.units(), fixed }
     }
 
     /// Removes the removable subsets of a set repeatedly, and checks whether the selected parts leave.
-    fn tried(&self, set: &Set) -> Tried {
+    fn try_removal(&self, set: &PartSet) -> TrialOutcome {
         let mut there = vec![true; self.fixed.len()];
-        let parts = set.parts();
+        let parts = set.to_parts();
         loop {
             let before = there.iter().filter(|t| **t).count();
-            for met in &self.met {
+            for met in &self.blockers {
                 let mut leaving = vec![false; there.len()];
                 for &part in &parts {
                     leaving[part] = there[part] && !self.fixed[part] && met[part].is_some();
@@ -170,17 +177,17 @@ impl<'a> Search<'a> {
                 }
             }
             if !self.wanted.iter().any(|&part| there[part]) {
-                return Tried::Enough;
+                return TrialOutcome::Enough;
             }
             if there.iter().filter(|t| **t).count() == before {
-                return Tried::Left(there);
+                return TrialOutcome::Left(there);
             }
         }
     }
 
     /// Returns the supersets of the branching rule, smallest first. Omits sets that contain another one.
-    fn additions(&self, set: &Set, there: &[bool]) -> Vec<Set> {
-        let mut found: Vec<Set> = Vec::new();
+    fn larger_sets(&self, set: &PartSet, there: &[bool]) -> Vec<PartSet> {
+        let mut found: Vec<PartSet> = Vec::new();
         let mut add = |parts: &mut dyn Iterator<Item = usize>| {
             let (mut larger, mut free) = (set.clone(), true);
             for part in parts.filter(|&part| there[part]) {
@@ -192,9 +199,9 @@ impl<'a> Search<'a> {
                 found.push(larger);
             }
         };
-        for part in set.parts().into_iter().filter(|&part| there[part]) {
+        for part in set.to_parts().into_iter().filter(|&part| there[part]) {
             let with = || self.units.iter().filter(|unit| unit.parts.contains(&part));
-            for met in self.met.iter().filter_map(|met| met[part].as_ref()) {
+            for met in self.blockers.iter().filter_map(|met| met[part].as_ref()) {
                 let as_one = with().filter(|unit| !unit.is_released(there));
                 let as_one = as_one.flat_map(|unit| unit.parts.iter().copied());
                 add(&mut met.iter().copied().chain(as_one));
@@ -204,9 +211,9 @@ impl<'a> Search<'a> {
             }
         }
         found.sort_by_key(|set| (set.len(), set.clone()));
-        let mut least: Vec<Set> = Vec::new();
+        let mut least: Vec<PartSet> = Vec::new();
         for set in found {
-            if !least.iter().any(|smaller| set.holds(smaller)) {
+            if !least.iter().any(|smaller| set.is_superset_of(smaller)) {
                 least.push(set);
             }
         }

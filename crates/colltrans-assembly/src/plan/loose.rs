@@ -15,28 +15,28 @@ use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Way;
+use super::GroupRemoval;
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
-use crate::matrix::bits;
+use crate::matrix::direction_bits;
 use crate::watch::Watch;
 use crate::witness::Memory;
 
 /// Cached contacts: for each direction, whether one part blocks another.
 #[derive(Default)]
-pub(super) struct Known(HashMap<[u64; 3], Answers>);
+pub(super) struct ContactCache(HashMap<[u64; 3], Answers>);
 
 type Answers = HashMap<[usize; 2], bool>;
 
-impl Known {
-    fn take(&mut self, d: DVec3) -> Mutex<Answers> {
-        Mutex::new(self.0.remove(&bits(d)).unwrap_or_default())
+impl ContactCache {
+    fn take_answers(&mut self, d: DVec3) -> Mutex<Answers> {
+        Mutex::new(self.0.remove(&direction_bits(d)).unwrap_or_default())
     }
 
     fn put_back(&mut self, d: DVec3, answers: Mutex<Answers>) {
         let answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
-        self.0.entry(bits(d)).or_default().extend(answers);
+        self.0.entry(direction_bits(d)).or_default().extend(answers);
     }
 }
 
@@ -45,20 +45,20 @@ impl Known {
 /// `allowed` returns the number of parts that move for a group along a direction, or `None` if it may not move.
 /// Returns `None` if no allowed group is removable. Along `-d` all arcs are reversed, so one component along `d` is
 /// one along `-d`. The opposite direction is then skipped, unless order constraints add arcs, which are not reversed.
-pub(super) fn smallest(
+pub(super) fn smallest_group(
     bodies: &Bodies,
     directions: &[DVec3],
     alive: &[bool],
     start: StartOverlap,
     allowed: impl Fn(&[usize], DVec3) -> Option<usize> + Sync,
-    known: &mut Known,
+    known: &mut ContactCache,
     watch: Watch,
-) -> Result<Option<Way>, AssemblyError> {
-    let answers: Vec<Mutex<Answers>> = directions.iter().map(|d| known.take(*d)).collect();
+) -> Result<Option<GroupRemoval>, AssemblyError> {
+    let answers: Vec<Mutex<Answers>> = directions.iter().map(|d| known.take_answers(*d)).collect();
     let constraints = bodies.assembly().constraints();
-    let (order, is_ordered) = (constraints.arcs(alive), constraints.is_ordered(alive));
+    let (order, is_ordered) = (constraints.order_arcs(alive), constraints.is_ordered(alive));
     let opposite = |k: usize| directions.iter().position(|d| *d == -directions[k]);
-    let look = |memory: &mut Memory, k: usize| {
+    let search_direction = |memory: &mut Memory, k: usize| {
         watch.check()?;
         if opposite(k).is_some_and(|o| o < k) {
             return Ok(Vec::new());
@@ -69,11 +69,11 @@ pub(super) fn smallest(
             let search = |g: &[usize]| allowed(g, d).is_some();
             // Each direction is processed by one thread.
             let mut known = answers[k].lock().unwrap_or_else(PoisonError::into_inner);
-            let asked = Asked { bodies, d, start, known: &mut known, memory };
-            match removable(asked, &order, alive, search) {
-                Search::OneComponent if !is_ordered => break,
-                Search::OneComponent | Search::NoneAllowed => (),
-                Search::Found(group) => {
+            let asked = ContactQueries { bodies, d, start, known: &mut known, memory };
+            match removable_group(asked, &order, alive, search) {
+                SearchOutcome::OneComponent if !is_ordered => break,
+                SearchOutcome::OneComponent | SearchOutcome::NoneAllowed => (),
+                SearchOutcome::Found(group) => {
                     let moving = allowed(&group, d).unwrap_or(usize::MAX);
                     found.push(((moving, k), group));
                 }
@@ -82,19 +82,19 @@ pub(super) fn smallest(
         Ok(found)
     };
     let found: Result<Vec<Vec<Ranked>>, AssemblyError> =
-        (0..directions.len()).into_par_iter().map_init(Memory::default, look).collect();
+        (0..directions.len()).into_par_iter().map_init(Memory::default, search_direction).collect();
     for (d, answers) in directions.iter().zip(answers) {
         known.put_back(*d, answers);
     }
     let best = found?.into_iter().flatten().min_by_key(|x| x.0);
-    Ok(best.map(|((_, k), parts)| Way::straight(parts, directions[k])))
+    Ok(best.map(|((_, k), parts)| GroupRemoval::straight(parts, directions[k])))
 }
 
 /// The number of parts that move and the index of the direction, with the group.
 type Ranked = ((usize, usize), Vec<usize>);
 
 /// Contact queries along one direction.
-struct Asked<'a> {
+struct ContactQueries<'a> {
     bodies: &'a Bodies<'a>,
     d: DVec3,
     start: StartOverlap,
@@ -102,19 +102,19 @@ struct Asked<'a> {
     memory: &'a mut Memory,
 }
 
-impl Asked<'_> {
+impl ContactQueries<'_> {
     /// Checks whether one part ever meets another, at any distance.
-    fn meets(&mut self, pair: [usize; 2]) -> bool {
+    fn pair_meets(&mut self, pair: [usize; 2]) -> bool {
         if let Some(known) = self.known.get(&pair) {
             return *known;
         }
-        let meets = self.memory.meets(self.bodies, pair, self.d, self.start);
+        let meets = self.memory.pair_meets(self.bodies, pair, self.d, self.start);
         self.known.insert(pair, meets);
         meets
     }
 }
 
-enum Search {
+enum SearchOutcome {
     /// All parts are one component.
     OneComponent,
     /// Removable groups exist, but none is allowed to move.
@@ -123,18 +123,18 @@ enum Search {
 }
 
 /// Searches for an allowed removable group along one direction. Smaller groups are tried first.
-fn removable(
-    mut asked: Asked,
+fn removable_group(
+    mut asked: ContactQueries,
     order: &[(usize, usize)],
     alive: &[bool],
     allowed: impl Fn(&[usize]) -> bool,
-) -> Search {
+) -> SearchOutcome {
     let count = alive.iter().filter(|a| **a).count();
     let ahead = |part: usize| -> Vec<usize> {
         let all = asked.bodies.ahead(part, asked.d).into_iter().map(|x| x.1);
         all.filter(|&k| alive[k]).collect()
     };
-    let mut unasked: Vec<Vec<usize>> =
+    let mut untested: Vec<Vec<usize>> =
         (0..alive.len()).map(|k| if alive[k] { ahead(k) } else { Vec::new() }).collect();
     let mut arcs = order.to_vec();
     loop {
@@ -142,40 +142,40 @@ fn removable(
         let mut groups = graph.removable();
         groups.retain(|g| g.len() < count);
         if groups.is_empty() {
-            return Search::OneComponent;
+            return SearchOutcome::OneComponent;
         }
         groups.sort_by_key(Vec::len);
         let before = arcs.len();
         for group in groups {
-            match leaving(&mut asked, &group, &mut unasked) {
+            match blocking_arc(&mut asked, &group, &mut untested) {
                 Some(arc) => arcs.push(arc),
-                None if allowed(&group) => return Search::Found(group),
+                None if allowed(&group) => return SearchOutcome::Found(group),
                 None => (),
             }
         }
         if arcs.len() == before {
-            return Search::NoneAllowed;
+            return SearchOutcome::NoneAllowed;
         }
     }
 }
 
 /// Returns an arc from the group to a part outside, from pairs that were not tested before. Returns `None` if no pair
 /// blocks.
-fn leaving(
-    asked: &mut Asked,
+fn blocking_arc(
+    asked: &mut ContactQueries,
     group: &[usize],
-    unasked: &mut [Vec<usize>],
+    untested: &mut [Vec<usize>],
 ) -> Option<(usize, usize)> {
     for &a in group {
         let mut k = 0;
-        while k < unasked[a].len() {
-            let b = unasked[a][k];
+        while k < untested[a].len() {
+            let b = untested[a][k];
             if group.contains(&b) {
                 k += 1;
                 continue;
             }
-            unasked[a].remove(k);
-            if asked.meets([a, b]) {
+            untested[a].remove(k);
+            if asked.pair_meets([a, b]) {
                 return Some((a, b));
             }
         }

@@ -23,47 +23,47 @@ use rayon::prelude::*;
 
 use super::ranking::{OwnCost, ShapeState, is_better};
 use super::shadow::Shadow;
-use super::single::Single;
-use super::stand::{Base, Standing};
+use super::single::SingleParts;
+use super::stand::{Stability, Support};
 use crate::bodies::Bodies;
 use crate::boxes::Living;
 use crate::constraints::Constraints;
 use crate::liaisons::reach;
-use crate::matrix::{Matrix, bits};
+use crate::matrix::{Matrix, direction_bits};
 use crate::sphere::Sphere;
 use crate::witness::Memory;
 
 /// Maximum ratio of a considered travel to the shortest one.
-const LONGER: f64 = 1.1;
+const TRAVEL_SLACK: f64 = 1.1;
 /// Ratio of travels above which a shorter sampled direction replaces the chosen one, ...
-const MUCH_LONGER: f64 = 1.5;
+const SHORTCUT_RATIO: f64 = 1.5;
 /// ... unless the chosen travel is at most this fraction of the assembly's size.
-const SHORT: f64 = 1e-3;
+const SHORT_TRAVEL: f64 = 1e-3;
 /// A part rests on the parts that block it within this multiple of the contact reach. Both are shrunk, and they may
 /// touch at a slant.
-const RESTS: f64 = 4.0;
+const SUPPORT_REACH: f64 = 4.0;
 /// Two directions are equal if their dot product exceeds this: 0.8 degrees.
-const SAME: f64 = 0.9999;
+const SAME_DIRECTION: f64 = 0.9999;
 
 /// Costs that are added to the travel as a fraction of the assembly's size. For each part that falls, ...
-const FALL: f64 = 2.0;
+const FALL_COST: f64 = 2.0;
 /// ... for each part that is then off balance, ...
-const TIP: f64 = 1.0;
+const TIP_COST: f64 = 1.0;
 /// ... for another shape than in the step before, because it needs another tool, ...
-const OTHER_SHAPE: f64 = 0.8;
+const SHAPE_CHANGE_COST: f64 = 0.8;
 /// ... in addition, if other parts of the new shape cannot leave yet, because the shape then needs a third turn, ...
-const NOT_ALL: f64 = 0.4;
+const INCOMPLETE_SHAPE_COST: f64 = 0.4;
 /// ... for another direction than in the step before, ...
-const TURN: f64 = 0.3;
+const DIRECTION_CHANGE_COST: f64 = 0.3;
 /// ... for a direction down (half of it for a horizontal one), ...
-const DOWN: f64 = 0.3;
+const DOWNWARD_COST: f64 = 0.3;
 /// ... for a direction that is not along an axis of the world, ...
-const OBLIQUE: f64 = 0.2;
+const OBLIQUE_COST: f64 = 0.2;
 /// ... and for a group of all parts; a smaller group costs its fraction.
-const GROUP: f64 = 0.3;
+const GROUP_COST: f64 = 0.3;
 
 /// The chosen group and its direction.
-pub(super) struct Choice {
+pub(super) struct GroupChoice {
     pub(super) parts: Vec<usize>,
     pub(super) direction: DVec3,
 }
@@ -79,11 +79,11 @@ pub(super) struct Order<'a> {
     /// For each shape (named by its first part), the number of present parts that may move.
     counts: Vec<usize>,
     /// Mask of the parts that do not move: the base, and parts that must not be moved.
-    stays: Vec<bool>,
+    stationary: Vec<bool>,
     /// For each part, the parts that rest on it, of all parts.
     carried: Vec<Vec<usize>>,
     /// For each part, what it rests on; `None` if it cannot fall.
-    bases: Vec<Option<Base>>,
+    supports: Vec<Option<Support>>,
     /// One for each direction; the directions of the matrix come first.
     shadows: Vec<Shadow>,
     last: Option<(DVec3, usize)>,
@@ -118,20 +118,20 @@ impl<'a> Order<'a> {
         wanted: &[usize],
     ) -> Self {
         let moves = |part: usize| movable.unwrap_or(wanted).contains(&part);
-        let base = base(bodies, there, up, moves);
+        let base = base_parts(bodies, there, up, moves);
         let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, there, *d));
         let shadows = shadows.collect();
         let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
-        let (carried, bases) = supports(bodies, matrix, there, &base, up);
+        let (carried, supports) = find_supports(bodies, matrix, there, &base, up);
         let living = bodies.living(there);
-        let stays = if movable.is_some() {
+        let stationary = if movable.is_some() {
             (0..likes.len()).map(|part| there[part] && !moves(part)).collect()
         } else {
             base
         };
         let mut counts = vec![0; likes.len()];
         for part in (0..likes.len()).filter(|&part| there[part]) {
-            counts[likes[part]] += usize::from(!stays[part]);
+            counts[likes[part]] += usize::from(!stationary[part]);
         }
         let (last, shortcuts, changed) = (None, Shortcuts::default(), Vec::new());
         Self {
@@ -141,9 +141,9 @@ impl<'a> Order<'a> {
             likes,
             living,
             counts,
-            stays,
+            stationary,
             carried,
-            bases,
+            supports,
             shadows,
             last,
             shortcuts,
@@ -158,13 +158,13 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the mask of present parts.
-    pub(super) fn there(&self) -> &[bool] {
+    pub(super) fn present(&self) -> &[bool] {
         self.living.there()
     }
 
     /// Returns the arcs of the order constraints among the present parts.
-    pub(super) fn arcs(&self) -> Vec<(usize, usize)> {
-        self.constraints().arcs(self.there())
+    pub(super) fn order_arcs(&self) -> Vec<(usize, usize)> {
+        self.constraints().order_arcs(self.present())
     }
 
     fn constraints(&self) -> &'a Constraints {
@@ -175,32 +175,39 @@ impl<'a> Order<'a> {
     ///
     /// This is the group, or all others if the group contains stationary parts. Returns `None` if both contain
     /// stationary parts, or if the order constraints forbid the motion.
-    pub(super) fn moving(&self, group: &[usize], left: &[usize]) -> Option<Vec<usize>> {
-        let stays = |&part: &usize| self.stays[part];
+    pub(super) fn moving_parts(&self, group: &[usize], left: &[usize]) -> Option<Vec<usize>> {
+        let stays = |&part: &usize| self.stationary[part];
         let mut moving = group.to_vec();
         if group.iter().any(stays) {
             moving = left.iter().copied().filter(|k| !group.contains(k)).collect();
         }
         let may = !moving.is_empty() && !moving.iter().any(stays);
-        (may && self.constraints().lets_go(&moving, self.there())).then_some(moving)
+        (may && self.constraints().allows_leaving(&moving, self.present())).then_some(moving)
     }
 
     /// Returns the parts that move and their direction if a group is separated along `d`: the group along `d`, or the
     /// others along `-d`. Returns `None` if constraints forbid both.
-    pub(super) fn way(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<Choice> {
-        let parts = self.moving(group, left)?;
+    pub(super) fn choice_for(
+        &self,
+        group: &[usize],
+        left: &[usize],
+        d: DVec3,
+    ) -> Option<GroupChoice> {
+        let parts = self.moving_parts(group, left)?;
         let direction = if parts == group { d } else { DVec3::ZERO - d };
-        self.constraints().allows(&parts, direction).then_some(Choice { parts, direction })
+        self.constraints()
+            .allows_direction(&parts, direction)
+            .then_some(GroupChoice { parts, direction })
     }
 
     /// Returns the number of parts that move if a group is separated along `d`, or `None` if it may not be.
-    pub(super) fn how_many(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<usize> {
-        self.way(group, left, d).map(|way| way.parts.len())
+    pub(super) fn moving_count(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<usize> {
+        self.choice_for(group, left, d).map(|way| way.parts.len())
     }
 
     /// Checks whether a part is stationary.
-    pub(super) fn stays(&self, part: usize) -> bool {
-        self.stays[part]
+    pub(super) fn is_stationary(&self, part: usize) -> bool {
+        self.stationary[part]
     }
 
     /// Updates the state after parts have left along a direction.
@@ -216,7 +223,7 @@ impl<'a> Order<'a> {
             }
             // The removal of these parts now unsettles others: the parts below it, and those that carry the same
             // parts.
-            let below = |part: usize| self.bases[part].iter().flat_map(Base::below);
+            let below = |part: usize| self.supports[part].iter().flat_map(Support::parts_below);
             let beside = self.carried[part].iter().flat_map(|&above| below(above));
             self.changed.extend(below(part).chain(beside));
         }
@@ -224,58 +231,59 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the best of the parts that can leave alone, with its direction. Returns `None` if no part can.
-    pub(super) fn alone(&mut self, single: &mut Single) -> Option<Choice> {
+    pub(super) fn best_single_part(&mut self, single: &mut SingleParts) -> Option<GroupChoice> {
         let mut changed = std::mem::take(&mut self.changed);
         changed.append(&mut single.changed);
         changed.sort_unstable();
         changed.dedup();
         for &part in &changed {
-            self.rank(single, part);
+            self.rank_part(single, part);
         }
         for shape in changed.into_iter().map(|part| self.likes[part]) {
             single.ranking.set_count(shape, self.counts[shape]);
         }
         let last = self.last.map(|last| last.1);
         loop {
-            let (part, k) = single.ranking.best(last, |state, way| self.cost(1, state, way))?;
+            let (part, k) =
+                single.ranking.best_removal(last, |state, way| self.step_cost(1, state, way))?;
             if !self.find_shortcut(&[part], k) {
                 let direction = self.shadows[k].direction;
-                return Some(Choice { parts: vec![part], direction });
+                return Some(GroupChoice { parts: vec![part], direction });
             }
-            self.rank(single, part);
+            self.rank_part(single, part);
         }
     }
 
     /// Recomputes the rank of a part. Drops it if it cannot leave alone.
-    fn rank(&mut self, single: &mut Single, part: usize) {
+    fn rank_part(&mut self, single: &mut SingleParts, part: usize) {
         single.ranking.remove(part);
-        let Some(ways) = single.ways(part) else { return };
+        let Some(ways) = single.free_directions(part) else { return };
         let ways = self.own_costs(&[part], ways);
         single.ranking.insert(part, self.likes[part], ways);
     }
 
     /// Returns the best of some groups, each given with the indices of its free directions. Returns `None` if there
     /// are none.
-    pub(super) fn best<'g>(
+    pub(super) fn best_group<'g>(
         &mut self,
         groups: &(impl Iterator<Item = (&'g [usize], &'g [usize])> + Clone),
-    ) -> Option<Choice> {
+    ) -> Option<GroupChoice> {
         let mut ready: BTreeMap<usize, usize> = BTreeMap::new();
         for (parts, _) in groups.clone() {
             *ready.entry(self.likes[parts[0]]).or_default() += 1;
         }
         loop {
-            let (parts, k) = self.cheapest(groups.clone(), &ready)?;
+            let (parts, k) = self.cheapest_group(groups.clone(), &ready)?;
             if !self.find_shortcut(parts, k) {
                 let (parts, direction) = (parts.to_vec(), self.shadows[k].direction);
-                return Some(Choice { parts, direction });
+                return Some(GroupChoice { parts, direction });
             }
         }
     }
 
     /// Returns the group of least cost and the index of its direction. `ready` maps a shape to its number of
     /// removable groups.
-    fn cheapest<'g>(
+    fn cheapest_group<'g>(
         &mut self,
         groups: impl Iterator<Item = (&'g [usize], &'g [usize])>,
         ready: &BTreeMap<usize, usize>,
@@ -286,7 +294,7 @@ impl<'a> Order<'a> {
             let all = parts.len() == 1 && ready[&shape] >= self.counts[shape];
             let state = ShapeState { other: self.last.is_some_and(|last| last.1 != shape), all };
             for way in self.own_costs(parts, ways) {
-                let cost = self.cost(parts.len(), state, way);
+                let cost = self.step_cost(parts.len(), state, way);
                 if is_better(cost, best.map(|best| best.0)) {
                     best = Some((cost, parts, way.0));
                 }
@@ -301,31 +309,31 @@ impl<'a> Order<'a> {
         self.bodies.count_look();
         let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);
         let (bodies, shadows, living) = (self.bodies, &mut self.shadows, &self.living);
-        let travel = |&k: &usize| (k, shadows[k].travel(bodies, parts, living));
+        let travel = |&k: &usize| (k, shadows[k].travel_of(bodies, parts, living));
         let travels: Vec<(usize, f64)> = ways.iter().chain(more).map(travel).collect();
         let least = travels.iter().map(|way| way.1).fold(f64::INFINITY, f64::min);
-        let unsettled = self.unsettled(parts).map(|parts| parts.len() as f64);
-        let falls = FALL * unsettled[0] + TIP * unsettled[1];
+        let unsettled = self.unsettled_parts(parts).map(|parts| parts.len() as f64);
+        let falls = FALL_COST * unsettled[0] + TIP_COST * unsettled[1];
         let mut near = travels;
-        near.retain(|way| way.1 <= LONGER * least + bodies.noise());
+        near.retain(|way| way.1 <= TRAVEL_SLACK * least + bodies.noise());
         near.into_iter().map(|(k, travel)| (k, falls + travel / self.size)).collect()
     }
 
     /// Searches for a much shorter direction of a group that would leave along direction `k`, and stores it. Returns
     /// whether one was found.
     fn find_shortcut(&mut self, parts: &[usize], k: usize) -> bool {
-        let Some(shortcut) = self.shortcut(parts, k) else { return false };
+        let Some(shortcut) = self.shortest_alternative(parts, k) else { return false };
         self.shortcuts.found.entry(parts.to_vec()).or_default().push(shortcut);
         true
     }
 
     /// Returns the index of the shortest free direction of a group, if the travel along `k` is more than
     /// [`SHORTCUT_RATIO`] times as long.
-    fn shortcut(&mut self, parts: &[usize], k: usize) -> Option<usize> {
+    fn shortest_alternative(&mut self, parts: &[usize], k: usize) -> Option<usize> {
         let Self { bodies, living, shadows, shortcuts, .. } = self;
         let there = living.there();
-        let way = shadows[k].travel(bodies, parts, living);
-        if way <= SHORT * self.size {
+        let way = shadows[k].travel_of(bodies, parts, living);
+        if way <= SHORT_TRAVEL * self.size {
             return None;
         }
         if shortcuts.shadows.is_empty() && shortcuts.samples > 0 {
@@ -335,8 +343,8 @@ impl<'a> Order<'a> {
         }
         let mut shorter: Vec<(f64, DVec3)> = Vec::new();
         for shadow in shadows.iter_mut().chain(&mut shortcuts.shadows) {
-            let travel = shadow.travel(bodies, parts, living);
-            if MUCH_LONGER * travel < way {
+            let travel = shadow.travel_of(bodies, parts, living);
+            if SHORTCUT_RATIO * travel < way {
                 shorter.push((travel, shadow.direction));
             }
         }
@@ -344,24 +352,28 @@ impl<'a> Order<'a> {
         let constraints = bodies.assembly().constraints();
         let (memory, start) = (&mut shortcuts.memory, shortcuts.start);
         let mut free = shorter.into_iter().map(|(_, d)| d).filter(|&d| {
-            constraints.allows(parts, d) && memory.is_free(bodies, parts, there, d, start)
+            constraints.allows_direction(parts, d) && memory.is_free(bodies, parts, there, d, start)
         });
         let direction = free.next()?;
-        Some(self.position(direction))
+        Some(self.direction_index(direction))
     }
 
     /// Returns bounds of the distance that a removed group travels along a direction until it is beyond all remaining
     /// parts.
     pub(super) fn bounded_travel(&self, parts: &[usize], direction: DVec3) -> Bounded {
-        let known = self.shadows.iter().find(|s| bits(s.direction) == bits(direction));
-        let new = || Shadow::new(self.bodies, self.there(), direction);
+        let known =
+            self.shadows.iter().find(|s| direction_bits(s.direction) == direction_bits(direction));
+        let new = || Shadow::new(self.bodies, self.present(), direction);
         let travel = |shadow: &Shadow| shadow.bounded_travel(self.bodies, parts, &self.living);
         known.map_or_else(|| travel(&new()), travel)
     }
 
     /// Returns the index of a direction, which is added if it is new.
-    pub(super) fn position(&mut self, direction: DVec3) -> usize {
-        let known = self.shadows.iter().position(|s| bits(s.direction) == bits(direction));
+    pub(super) fn direction_index(&mut self, direction: DVec3) -> usize {
+        let known = self
+            .shadows
+            .iter()
+            .position(|s| direction_bits(s.direction) == direction_bits(direction));
         known.unwrap_or_else(|| {
             self.shadows.push(Shadow::new(self.bodies, self.living.there(), direction));
             self.shadows.len() - 1
@@ -369,21 +381,26 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the cost of removing a group of `count` parts.
-    fn cost(&self, count: usize, ShapeState { other, all }: ShapeState, (k, own): OwnCost) -> f64 {
+    fn step_cost(
+        &self,
+        count: usize,
+        ShapeState { other, all }: ShapeState,
+        (k, own): OwnCost,
+    ) -> f64 {
         let when = |what: bool, cost: f64| if what { cost } else { 0.0 };
         let d = self.shadows[k].direction;
-        let turn = self.last.is_some_and(|(last, _)| last.dot(d) < SAME);
-        own + when(turn, TURN)
-            + when(other, OTHER_SHAPE)
-            + when(other && !all, NOT_ALL)
-            + when(d.abs().max_element() < SAME, OBLIQUE)
-            + DOWN * (1.0 - d.dot(self.up)) / 2.0
-            + GROUP * (count - 1) as f64 / self.likes.len() as f64
+        let turn = self.last.is_some_and(|(last, _)| last.dot(d) < SAME_DIRECTION);
+        own + when(turn, DIRECTION_CHANGE_COST)
+            + when(other, SHAPE_CHANGE_COST)
+            + when(other && !all, INCOMPLETE_SHAPE_COST)
+            + when(d.abs().max_element() < SAME_DIRECTION, OBLIQUE_COST)
+            + DOWNWARD_COST * (1.0 - d.dot(self.up)) / 2.0
+            + GROUP_COST * (count - 1) as f64 / self.likes.len() as f64
     }
 
     /// Returns the parts that fall after a group is removed, and the parts that are then off balance but were not
     /// before.
-    pub(super) fn unsettled(&self, parts: &[usize]) -> [Vec<usize>; 2] {
+    pub(super) fn unsettled_parts(&self, parts: &[usize]) -> [Vec<usize>; 2] {
         if parts.iter().all(|&part| self.carried[part].is_empty()) {
             return [Vec::new(), Vec::new()];
         }
@@ -394,12 +411,12 @@ impl<'a> Order<'a> {
         above.retain(|part| self.living.has(*part) && !parts.contains(part));
         let (mut falls, mut tips) = (Vec::new(), Vec::new());
         for part in above {
-            let Some(base) = &self.bases[part] else { continue };
+            let Some(base) = &self.supports[part] else { continue };
             let carries = |below: usize| self.living.has(below) && !parts.contains(&below);
-            match base.standing(carries) {
-                Standing::Falls => falls.push(part),
-                Standing::OffBalance
-                    if base.standing(|below| self.living.has(below)) == Standing::Stands =>
+            match base.stability(carries) {
+                Stability::Falls => falls.push(part),
+                Stability::OffBalance
+                    if base.stability(|below| self.living.has(below)) == Stability::Stands =>
                 {
                     tips.push(part);
                 }
@@ -415,7 +432,12 @@ impl<'a> Order<'a> {
 /// Parts are compared by the volume of their boxes, then the area of these, their own volume, and their height (the
 /// lower part wins). A part for which `moves` holds is never the base. A part that must leave before others is the
 /// base only if all are such parts.
-fn base(bodies: &Bodies, there: &[bool], up: DVec3, moves: impl Fn(usize) -> bool) -> Vec<bool> {
+fn base_parts(
+    bodies: &Bodies,
+    there: &[bool],
+    up: DVec3,
+    moves: impl Fn(usize) -> bool,
+) -> Vec<bool> {
     let parts = bodies.assembly().parts();
     let mut base: Vec<bool> = parts.iter().zip(there).map(|(p, t)| *t && p.fixed()).collect();
     if base.contains(&true) {
@@ -446,15 +468,15 @@ fn base(bodies: &Bodies, there: &[bool], up: DVec3, moves: impl Fn(usize) -> boo
 }
 
 /// Returns for each part the parts that rest on it, and what it rests on.
-fn supports(
+fn find_supports(
     bodies: &Bodies,
     matrix: &Matrix,
     there: &[bool],
     base: &[bool],
     up: DVec3,
-) -> (Vec<Vec<usize>>, Vec<Option<Base>>) {
+) -> (Vec<Vec<usize>>, Vec<Option<Support>>) {
     let count = bodies.len();
-    let near = RESTS * reach(bodies);
+    let near = SUPPORT_REACH * reach(bodies);
     let lowest = |k: usize| {
         let heights = bodies.assembly().parts()[k].solid().vertices().iter().map(|p| p.dot(up));
         heights.fold(f64::INFINITY, f64::min)
@@ -465,13 +487,13 @@ fn supports(
     let mut below: Vec<Option<Vec<usize>>> =
         (0..count).map(|k| (!held(k)).then(Vec::new)).collect();
     let mut carried = vec![Vec::new(); count];
-    let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME);
+    let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME_DIRECTION);
     let living = bodies.living(there);
     let found: Vec<Vec<usize>> = below
         .par_iter()
         .enumerate()
         .map(|(part, below)| match (below, down) {
-            (Some(_), Some(k)) => matrix.within(k, part, near, &living),
+            (Some(_), Some(k)) => matrix.blockers_within(k, part, near, &living),
             _ => Vec::new(),
         })
         .collect();
@@ -482,8 +504,8 @@ fn supports(
         below[part] = below[part].take().map(|_| found);
     }
     let base = |(part, on): (usize, &Option<Vec<usize>>)| {
-        on.as_ref().map(|on| Base::new(bodies, part, on, up))
+        on.as_ref().map(|on| Support::new(bodies, part, on, up))
     };
-    let bases = below.par_iter().enumerate().map(base).collect();
-    (carried, bases)
+    let supports = below.par_iter().enumerate().map(base).collect();
+    (carried, supports)
 }

@@ -8,7 +8,7 @@ use crate::matrix::Matrix;
 use crate::part::Assembly;
 
 /// Maximum number of alternatives that are listed for a part.
-const MOST_WAYS: usize = 16;
+const MAX_WAYS: usize = 16;
 
 impl Plan {
     /// Returns the steps in rounds. Each step waits for a step of the round before, so the steps of one round are
@@ -96,8 +96,8 @@ impl Plan {
 pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
     let parts = assembly.parts();
     let constraints = assembly.constraints();
-    let order = constraints.arcs(&vec![true; parts.len()]);
-    let mut told = serde_json::Map::new();
+    let order = constraints.order_arcs(&vec![true; parts.len()]);
+    let mut graph = serde_json::Map::new();
     for (part, of) in parts.iter().enumerate().filter(|(_, of)| !of.fixed()) {
         let mut ways: Vec<(Vec<usize>, usize)> = Vec::new();
         let before = || order.iter().filter(|arc| arc.0 == part).map(|arc| arc.1);
@@ -106,7 +106,8 @@ pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
                 matrix.of_part(k, part).iter().map(|m| m.fixed).chain(before()).collect();
             met.sort_unstable();
             met.dedup();
-            if constraints.allows(&[part], d) && !met.iter().any(|&by| parts[by].fixed()) {
+            if constraints.allows_direction(&[part], d) && !met.iter().any(|&by| parts[by].fixed())
+            {
                 ways.push((met, k));
             }
         }
@@ -114,15 +115,15 @@ pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
         let mut least: Vec<(Vec<usize>, usize)> = Vec::new();
         for (met, k) in ways {
             let holds = |(known, _): &(Vec<usize>, usize)| known.iter().all(|x| met.contains(x));
-            if least.len() < MOST_WAYS && !least.iter().any(holds) {
+            if least.len() < MAX_WAYS && !least.iter().any(holds) {
                 least.push((met, k));
             }
         }
         let way = |(met, k): &(Vec<usize>, usize)| json!({ "direction": matrix.directions()[*k].to_array(), "and": assembly.names(met) });
-        told.insert(
+        graph.insert(
             of.name().to_owned(),
             json!({ "or": least.iter().map(way).collect::<Value>() }),
         );
     }
-    Value::Object(told)
+    Value::Object(graph)
 }

@@ -31,9 +31,9 @@ pub(super) struct ShapeState {
 /// Removals along one direction. The key is the bits of the own cost, which sort like the numbers. Each entry is a
 /// part and the index of the removal among those of the part.
 #[derive(Default)]
-struct Class(BTreeMap<u64, BTreeSet<(usize, usize)>>);
+struct CostClass(BTreeMap<u64, BTreeSet<(usize, usize)>>);
 
-impl Class {
+impl CostClass {
     fn insert(&mut self, own: f64, way: (usize, usize)) {
         self.0.entry(own.to_bits()).or_default().insert(way);
     }
@@ -52,9 +52,9 @@ impl Class {
 #[derive(Default)]
 pub(super) struct Ranking {
     /// Classes by whether all parts of the shape can leave, and by direction.
-    ways: BTreeMap<(bool, usize), Class>,
+    ways: BTreeMap<(bool, usize), CostClass>,
     /// Classes of the same removals by shape and direction.
-    of_shape: BTreeMap<(usize, usize), Class>,
+    of_shape: BTreeMap<(usize, usize), CostClass>,
     /// For each part, its shape and removals.
     parts: BTreeMap<usize, (usize, Vec<OwnCost>)>,
     /// For each shape, its parts, and whether all can leave.
@@ -113,7 +113,7 @@ impl Ranking {
     /// The first removal of the chain that the scan meets is better than all removals outside. The scan therefore
     /// ends in the chain, and only the chain is examined; it ends at a step of more than three times [`EQUAL`]. Of
     /// several removals with one own cost the first counts.
-    pub(super) fn best(
+    pub(super) fn best_removal(
         &self,
         last: Option<usize>,
         cost: impl Fn(ShapeState, OwnCost) -> f64,
@@ -128,7 +128,7 @@ impl Ranking {
         });
         let cost = &cost;
         let mut classes: Vec<_> = Vec::new();
-        for (state, direction, Class(class)) in listed.chain(of_last) {
+        for (state, direction, CostClass(class)) in listed.chain(of_last) {
             let ways = class.iter().filter_map(move |(&own, equal)| {
                 let &first = equal.first()?;
                 Some((cost(state, (direction, f64::from_bits(own))), first, direction))
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     /// Returns the best of all parts by a scan.
-    fn scanned(
+    fn best_by_scan(
         all: &BTreeMap<usize, (usize, Vec<OwnCost>)>,
         cost: impl Fn(usize, OwnCost) -> f64,
     ) -> Option<(usize, usize)> {
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_of_all_is_that_of_a_scan_also_where_costs_nearly_equal_each_other() {
+    fn best_removal_equals_scan_for_nearly_equal_costs() {
         let mut random = Random::new(21);
         for round in 0..400 {
             let (mut ranking, mut all) = (Ranking::default(), BTreeMap::new());
@@ -210,11 +210,11 @@ mod tests {
                     })
                     .collect();
                 let last = [None, Some(0), Some(1), Some(7)][random.index(4)];
-                let expected = scanned(&all, |shape, way| {
+                let expected = best_by_scan(&all, |shape, way| {
                     let other = last.is_some_and(|last| last != shape);
                     cost(ShapeState { other, all: can_all[shape] }, way)
                 });
-                assert_eq!(ranking.best(last, cost), expected, "round {round}");
+                assert_eq!(ranking.best_removal(last, cost), expected, "round {round}");
             }
         }
     }

@@ -4,61 +4,65 @@ use colltrans::Bounded;
 use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
-use super::Way;
+use super::GroupRemoval;
 use super::order::Order;
-use super::several::Aside;
-use super::shadow::{NOTHING, larger};
+use super::several::RemovalPath;
+use super::shadow::{ZERO_TRAVEL, max_bounded};
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 
 /// Positions that are tested for overlaps, as fractions of the travel.
-const PLACES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
+const POSITIONS: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
 
 /// Returns the distance that a removed group travels until it is beyond the other parts.
 ///
 /// # Errors
 /// Returns [`AssemblyError::Replay`] if a part blocks the step.
-pub(super) fn checked(
+pub(super) fn checked_travel(
     bodies: &Bodies,
-    way: &Way,
+    removal: &GroupRemoval,
     (order, others): (&Order, &[usize]),
     start: StartOverlap,
 ) -> Result<Bounded, AssemblyError> {
-    match &way.aside {
-        None => straight(bodies, way, order, start),
-        Some(aside) => several(bodies, aside, others),
+    match &removal.path {
+        None => straight_travel(bodies, removal, order, start),
+        Some(path) => path_travel(bodies, path, others),
     }
 }
 
 /// Checks a single move by casts of all pairs ahead and by overlap tests at a few positions.
-fn straight(
+fn straight_travel(
     bodies: &Bodies,
-    way: &Way,
+    removal: &GroupRemoval,
     order: &Order,
     start: StartOverlap,
 ) -> Result<Bounded, AssemblyError> {
-    let d = way.direction;
-    let travel = order.bounded_travel(&way.parts, d);
+    let d = removal.direction;
+    let travel = order.bounded_travel(&removal.parts, d);
     let mut workspace = Workspace::default();
-    let ahead = bodies.pairs_ahead(&way.parts, d, order.there());
+    let ahead = bodies.pairs_ahead(&removal.parts, d, order.present());
     let mut all = ahead.iter();
     if let Some(&pair) = all.find(|pair| bodies.meets(**pair, d, start, &mut workspace)) {
-        return Err(refused(bodies, pair, d, 0.0));
+        return Err(replay_error(bodies, pair, d, 0.0));
     }
     for &[a, b] in &ahead {
         let overlapping = bodies.lets_pass(a, b, start);
-        let place = PLACES.iter().map(|share| share * travel.value);
+        let place = POSITIONS.iter().map(|share| share * travel.value);
         let met = |t: &f64| bodies.overlaps_displaced(a, d * *t, b);
         if let Some(t) = place.filter(|t| *t > 0.0).find(met).filter(|_| !overlapping) {
-            return Err(refused(bodies, [a, b], d, t));
+            return Err(replay_error(bodies, [a, b], d, t));
         }
     }
     Ok(travel)
 }
 
 /// Checks a path of several moves by overlap tests at a few positions. Its proofs were checked before.
-fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, AssemblyError> {
-    let mut all = [&aside.parts[..], others].concat();
+fn path_travel(
+    bodies: &Bodies,
+    path: &RemovalPath,
+    others: &[usize],
+) -> Result<Bounded, AssemblyError> {
+    let mut all = [&path.parts[..], others].concat();
     all.sort_unstable();
     let mut at = vec![DVec3::ZERO; bodies.len()];
     let pairs = |moving: &[usize]| {
@@ -69,12 +73,12 @@ fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, 
     let look = |[a, b]: [usize; 2], by: DVec3, motion: DVec3| {
         // Parts that overlap at the start move as one, or the step was rejected.
         let met = |share: &&f64| bodies.overlaps_displaced(a, by + motion * **share, b);
-        let found = PLACES.iter().find(met);
+        let found = POSITIONS.iter().find(met);
         let length = motion.length();
-        let why = |share| refused(bodies, [a, b], motion / length, share * length);
+        let why = |share| replay_error(bodies, [a, b], motion / length, share * length);
         found.map_or(Ok(()), |share| Err(why(share)))
     };
-    for (leg, motion) in aside.legs.iter().zip(&aside.motions) {
+    for (leg, motion) in path.legs.iter().zip(&path.motions) {
         for [a, b] in pairs(&leg.parts) {
             look([a, b], at[a] - at[b], *motion)?;
         }
@@ -82,18 +86,18 @@ fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, 
             at[part] += *motion;
         }
     }
-    let (d, leaving) = (aside.direction, pairs(&aside.parts));
+    let (d, leaving) = (path.direction, pairs(&path.parts));
     let past = |travel, &[a, b]: &[usize; 2]| {
-        larger(travel, bodies.past_displaced(a, at[a] - at[b], b, d))
+        max_bounded(travel, bodies.past_displaced(a, at[a] - at[b], b, d))
     };
-    let travel = leaving.iter().fold(NOTHING, past);
+    let travel = leaving.iter().fold(ZERO_TRAVEL, past);
     for [a, b] in leaving {
         look([a, b], at[a] - at[b], d * travel.value)?;
     }
     Ok(travel)
 }
 
-fn refused(bodies: &Bodies, pair: [usize; 2], d: DVec3, t: f64) -> AssemblyError {
+fn replay_error(bodies: &Bodies, pair: [usize; 2], d: DVec3, t: f64) -> AssemblyError {
     let [a, b] = pair.map(|k| bodies.assembly().parts()[k].name());
     let facts = format!("{a} meets {b} after {t} along {:?}", d.to_array());
     AssemblyError::Replay { facts }

@@ -22,17 +22,17 @@ use crate::matrix::Matrix;
 use crate::watch::Watch;
 
 /// Maximum number of axes that are tried.
-const MOST_AXES: usize = 13;
+const MAX_AXES: usize = 13;
 /// Maximum number of repeated searches after a path violates the constraints. The violating parts are fixed in each
 /// repetition.
-const MOST_TRIES: usize = 3;
+const MAX_TRIES: usize = 3;
 /// Maximum number of parts of a group that is searched.
-const MOST_PARTS: usize = 24;
+const MAX_PARTS: usize = 24;
 /// Number of casts for each leg, and the divisor of the work limit for each leg.
 const CASTS: usize = 500;
 const SHARE: u64 = 40;
 /// Two axes are equal if their cross product is shorter than this.
-const ALIKE: f64 = 1e-6;
+const PARALLEL: f64 = 1e-6;
 
 /// Outcome of the search for removal paths of several moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,13 +57,13 @@ pub enum Moves {
 }
 
 /// A removal path: the legs before the last one, and the direction of the last one.
-pub(super) struct Aside {
+pub(super) struct RemovalPath {
     /// The legs before the last one.
     pub(super) legs: Vec<Leg>,
     /// The displacement of each of these legs.
     pub(super) motions: Vec<DVec3>,
     /// The legs that return other parts to their initial poses.
-    pub(super) back: Vec<Leg>,
+    pub(super) return_legs: Vec<Leg>,
     /// The group that leaves, and its direction.
     pub(super) parts: Vec<usize>,
     pub(super) direction: DVec3,
@@ -73,18 +73,18 @@ pub(super) struct Aside {
 ///
 /// Returns the path, or else the outcome of the search. For two parts the search may prove that no path exists,
 /// unless proofs are disabled. Parts for which `is_stationary` holds do not move, except against each other.
-pub(super) fn search(
+pub(super) fn search_path(
     bodies: &Bodies,
     (left, matrix): (&[usize], &Matrix),
-    stays: impl Fn(usize) -> bool,
+    is_stationary: impl Fn(usize) -> bool,
     options: PlanOptions,
     watch: Watch,
-) -> Result<Result<Aside, Moves>, AssemblyError> {
-    if let Some(why) = not_asked(bodies, left, options) {
+) -> Result<Result<RemovalPath, Moves>, AssemblyError> {
+    if let Some(why) = unsupported_reason(bodies, left, options) {
         return Ok(Err(Moves::NotAsked(why)));
     }
     let legs = options.legs;
-    if !anything_moves(bodies, left, matrix) {
+    if !can_any_group_move(bodies, left, matrix) {
         let why = "nothing can go by 2 % of the largest part along the directions asked";
         return Ok(Err(Moves::NotAsked(why)));
     }
@@ -98,14 +98,14 @@ pub(super) fn search(
         .with_legs(legs)
         .with_casts(CASTS * legs)
         .with_looks(options.looks / SHARE * legs as u64)
-        .with_directions(directions(&placed, matrix));
+        .with_directions(search_directions(&placed, matrix));
     let constraints = bodies.assembly().constraints();
     for tries in 0.. {
         let way = match WaysOut::among(&placed, &fixed, &options, watch.flag()) {
             Ok(WaysOut::Found(way)) => way,
             Ok(WaysOut::Proven(proof)) => {
                 let [a, b] = [&placed[0], &placed[1]];
-                proof.verify(a, b).map_err(refused)?;
+                proof.verify(a, b).map_err(to_assembly_error)?;
                 return Ok(Err(Moves::Proven { cells: proof.cells() }));
             }
             Ok(WaysOut::NotFound { searched }) => {
@@ -115,43 +115,45 @@ pub(super) fn search(
                 let why = "they overlap with 0.8 of the tolerance, with which moves are planned";
                 return Ok(Err(Moves::NotAsked(why)));
             }
-            Err(error) => return Err(refused(error)),
+            Err(error) => return Err(to_assembly_error(error)),
         };
-        let found = aside(bodies.len(), left, &stays, &way);
-        let against = found.against(constraints, &bodies.mask(left));
-        if against.is_empty() {
-            way.verify(&placed).map_err(refused)?;
+        let found = removal_path(bodies.len(), left, &is_stationary, &way);
+        let violating = found.violating_parts(constraints, &bodies.mask(left));
+        if violating.is_empty() {
+            way.verify(&placed).map_err(to_assembly_error)?;
             return Ok(Ok(found));
         }
-        fixed.extend((0..left.len()).filter(|&k| against.contains(&left[k])));
+        fixed.extend((0..left.len()).filter(|&k| violating.contains(&left[k])));
         fixed.sort_unstable();
         fixed.dedup();
-        if tries == MOST_TRIES || fixed.len() >= left.len() {
+        if tries == MAX_TRIES || fixed.len() >= left.len() {
             break;
         }
     }
     Ok(Err(Moves::NotKept))
 }
 
-impl Aside {
+impl RemovalPath {
     /// Returns the parts that violate the constraints, in increasing order.
     ///
     /// These are parts that leave too early, parts of a unit that moves incompletely, and parts that move along a
     /// forbidden direction. Return legs are checked as well.
-    fn against(&self, constraints: &Constraints, there: &[bool]) -> Vec<usize> {
+    fn violating_parts(&self, constraints: &Constraints, there: &[bool]) -> Vec<usize> {
         let mut found = Vec::new();
-        for (a, b) in constraints.arcs(there) {
+        for (a, b) in constraints.order_arcs(there) {
             if self.parts.contains(&a) && !self.parts.contains(&b) {
                 found.push(a);
             }
         }
         let last = Leg::straight(self.parts.clone(), self.direction, 0.0);
-        for leg in self.legs.iter().chain([&last]).chain(&self.back) {
+        for leg in self.legs.iter().chain([&last]).chain(&self.return_legs) {
             let torn =
                 |pair: &[usize; 2]| leg.parts.contains(&pair[0]) != leg.parts.contains(&pair[1]);
-            found.extend(constraints.pairs(there).into_iter().filter(torn).flatten());
+            found.extend(constraints.rigid_pairs(there).into_iter().filter(torn).flatten());
             found.extend(
-                leg.parts.iter().filter(|&&part| !constraints.allows(&[part], leg.direction)),
+                leg.parts
+                    .iter()
+                    .filter(|&&part| !constraints.allows_direction(&[part], leg.direction)),
             );
         }
         found.sort_unstable();
@@ -160,7 +162,7 @@ impl Aside {
     }
 }
 
-fn refused(error: FreeError) -> AssemblyError {
+fn to_assembly_error(error: FreeError) -> AssemblyError {
     match error {
         FreeError::Cancelled => AssemblyError::Cancelled,
         other => AssemblyError::Free(other),
@@ -169,7 +171,11 @@ fn refused(error: FreeError) -> AssemblyError {
 
 /// Returns the reason why no path is searched, for example because a pair is ignored. Returns `None` if the search
 /// applies.
-fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'static str> {
+fn unsupported_reason(
+    bodies: &Bodies,
+    left: &[usize],
+    options: PlanOptions,
+) -> Option<&'static str> {
     let assembly = bodies.assembly();
     let pairs = || left.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
     let ignored = |[a, b]: [usize; 2]| assembly.ignored(a, b).is_some();
@@ -178,7 +184,7 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
         Some("no more than one was asked for")
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the parts are to be kept apart")
-    } else if left.len() > MOST_PARTS {
+    } else if left.len() > MAX_PARTS {
         Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
         Some("there are open surfaces among them")
@@ -192,10 +198,10 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
 }
 
 /// Returns the axes normal to large facets, and then directions of the matrix that are not parallel to them.
-fn directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
+fn search_directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
     let mut axes = of_large_facets(placed);
     for &d in matrix.directions() {
-        if axes.len() < MOST_AXES && !axes.iter().any(|a| a.cross(d).length() < ALIKE) {
+        if axes.len() < MAX_AXES && !axes.iter().any(|a| a.cross(d).length() < PARALLEL) {
             axes.push(d);
         }
     }
@@ -203,7 +209,7 @@ fn directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
 }
 
 /// Checks whether some group can travel one search step along a direction of the matrix. If not, no cast is needed.
-fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
+fn can_any_group_move(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
     let among = bodies.mask(left);
     let size = |&k: &usize| bodies.bounds(k).size().max_element();
     let step = WayOptions::default().step * left.iter().map(size).fold(0.0, f64::max);
@@ -217,22 +223,31 @@ fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
 
 /// Returns the parts that a leg moves, and the sign of their motion. These are the parts of the leg, or all others in
 /// the opposite direction if only the leg's group contains stationary parts.
-fn moved(leg: &ways::Leg, left: &[usize], stays: &impl Fn(usize) -> bool) -> (Vec<usize>, f64) {
+fn moved_parts(
+    leg: &ways::Leg,
+    left: &[usize],
+    is_stationary: &impl Fn(usize) -> bool,
+) -> (Vec<usize>, f64) {
     let group: Vec<usize> = leg.bodies.iter().map(|&k| left[k]).collect();
     let others: Vec<usize> = left.iter().copied().filter(|k| !group.contains(k)).collect();
-    let holds = |parts: &[usize]| parts.iter().any(|&part| stays(part));
+    let holds = |parts: &[usize]| parts.iter().any(|&part| is_stationary(part));
     if holds(&group) && !holds(&others) { (others, -1.0) } else { (group, 1.0) }
 }
 
 /// Converts a path of the search to part indices of the assembly, and adds the legs that return the parts moved
 /// aside.
-fn aside(count: usize, left: &[usize], stays: &impl Fn(usize) -> bool, way: &WayOut) -> Aside {
+fn removal_path(
+    count: usize,
+    left: &[usize],
+    is_stationary: &impl Fn(usize) -> bool,
+    way: &WayOut,
+) -> RemovalPath {
     let turned = |v: DVec3, sign: f64| if sign < 0.0 { DVec3::ZERO - v } else { v };
     let (last, before) = way.legs.split_last().expect("a way has a leg");
-    let (mut at, mut legs, mut back) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
+    let (mut at, mut legs, mut return_legs) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
     let mut motions = Vec::new();
     for leg in before {
-        let (parts, sign) = moved(leg, left, stays);
+        let (parts, sign) = moved_parts(leg, left, is_stationary);
         let motion = turned(leg.motion, sign);
         for &part in &parts {
             at[part] += motion;
@@ -240,7 +255,7 @@ fn aside(count: usize, left: &[usize], stays: &impl Fn(usize) -> bool, way: &Way
         legs.push(Leg::straight(parts, turned(leg.direction, sign), leg.travel));
         motions.push(motion);
     }
-    let (gone, sign) = moved(last, left, stays);
+    let (gone, sign) = moved_parts(last, left, is_stationary);
     // Parts of a group that left without relative displacement need not return.
     let as_it_stood = gone.iter().all(|&part| at[part] == at[gone[0]]);
     for leg in legs.iter().rev() {
@@ -248,8 +263,8 @@ fn aside(count: usize, left: &[usize], stays: &impl Fn(usize) -> bool, way: &Way
         parts.retain(|part| !(as_it_stood && gone.contains(part)));
         if !parts.is_empty() {
             let direction = DVec3::ZERO - leg.direction;
-            back.push(Leg::straight(parts, direction, leg.travel));
+            return_legs.push(Leg::straight(parts, direction, leg.travel));
         }
     }
-    Aside { legs, motions, back, parts: gone, direction: turned(last.direction, sign) }
+    RemovalPath { legs, motions, return_legs, parts: gone, direction: turned(last.direction, sign) }
 }

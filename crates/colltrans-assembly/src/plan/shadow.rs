@@ -45,15 +45,15 @@ impl Shadow {
 
     /// Returns the distance that a group travels until it is beyond all other present parts. Caches the result of
     /// single parts.
-    pub(super) fn travel(&mut self, bodies: &Bodies, parts: &[usize], living: &Living) -> f64 {
+    pub(super) fn travel_of(&mut self, bodies: &Bodies, parts: &[usize], living: &Living) -> f64 {
         let &[part] = parts else {
-            let each = parts.iter().map(|&part| self.past(bodies, part, parts, living).0);
+            let each = parts.iter().map(|&part| self.travel_past(bodies, part, parts, living).0);
             return each.fold(0.0, f64::max);
         };
         if let Some(&known) = self.travels.get(&part) {
             return known;
         }
-        let (travel, last) = self.past(bodies, part, parts, living);
+        let (travel, last) = self.travel_past(bodies, part, parts, living);
         self.travels.insert(part, travel);
         if let Some(last) = last {
             self.behind.entry(last).or_default().push(part);
@@ -70,7 +70,7 @@ impl Shadow {
         living: &Living,
     ) -> Bounded {
         let all = self.bounds.first().map_or(0.0, |b| b.low.abs().max(b.high.abs()).max_element());
-        let found = Cell::new(NOTHING);
+        let found = Cell::new(ZERO_TRAVEL);
         for &part in parts {
             let own = bodies.seen(part, self.direction);
             // The frame is rotated, so coordinates in the world may be larger.
@@ -79,7 +79,7 @@ impl Shadow {
             bodies.visit_high(living, &self.bounds, is_further, |other| {
                 if is_further(&self.boxes[other]) {
                     let past = own.past(&bodies.seen(other, self.direction));
-                    found.set(larger(found.get(), past));
+                    found.set(max_bounded(found.get(), past));
                 }
             });
         }
@@ -97,7 +97,7 @@ impl Shadow {
 
     /// Returns the distance that a part travels along the third axis until it is beyond all present parts outside of
     /// its group, and the part behind which it ends.
-    fn past(
+    fn travel_past(
         &self,
         bodies: &Bodies,
         part: usize,
@@ -119,10 +119,10 @@ impl Shadow {
     }
 }
 
-pub(super) const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+pub(super) const ZERO_TRAVEL: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
 
 /// Returns the component-wise maximum of two bounded numbers.
-pub(super) fn larger(a: Bounded, b: Bounded) -> Bounded {
+pub(super) fn max_bounded(a: Bounded, b: Bounded) -> Bounded {
     Bounded {
         value: a.value.max(b.value),
         lower: a.lower.max(b.lower),

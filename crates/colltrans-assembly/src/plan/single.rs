@@ -17,16 +17,16 @@ use crate::matrix::Matrix;
 use crate::watch::{Stage, Watch};
 
 /// The parts of a group that no other part of the group blocks.
-pub(super) struct Single<'a> {
+pub(super) struct SingleParts<'a> {
     bodies: &'a Bodies<'a>,
     matrix: Matrix<'a>,
     living: Living,
     /// For each part, the number of present parts that must leave before it.
-    waits: Vec<usize>,
+    waiting_counts: Vec<usize>,
     /// For each part, the parts that must leave after it.
-    awaited: Vec<Vec<usize>>,
+    waiting_parts: Vec<Vec<usize>>,
     /// For each direction and part, the parts that watch it.
-    watched: Vec<Vec<Vec<u32>>>,
+    watchers: Vec<Vec<Vec<u32>>>,
     /// For each part, the directions without a blocker, in increasing order.
     free: BTreeMap<usize, Vec<usize>>,
     /// The parts that can leave now, ranked by cost.
@@ -36,7 +36,7 @@ pub(super) struct Single<'a> {
     workspace: Workspace,
 }
 
-impl<'a> Single<'a> {
+impl<'a> SingleParts<'a> {
     /// Searches a blocker for each part of the `alive` mask and each direction for which `movable` holds. Pair `(a,
     /// b)` of `order` demands that `b` leaves before `a`.
     pub(super) fn new(
@@ -48,27 +48,27 @@ impl<'a> Single<'a> {
         watch: Watch,
     ) -> Result<Self, AssemblyError> {
         let (count, directions) = (alive.len(), matrix.directions().len());
-        let (mut waits, mut awaited) = (vec![0; count], vec![Vec::new(); count]);
+        let (mut waiting_counts, mut waiting_parts) = (vec![0; count], vec![Vec::new(); count]);
         for &(waiting, before) in order.iter().filter(|(a, b)| alive[*a] && alive[*b]) {
-            waits[waiting] += 1;
-            awaited[before].push(waiting);
+            waiting_counts[waiting] += 1;
+            waiting_parts[before].push(waiting);
         }
         let living = bodies.living(alive);
         let parts = (0..count).filter(|&part| alive[part]);
         let jobs = parts.flat_map(|part| (0..directions).map(move |k| (k, part)));
         let jobs: Vec<(usize, usize)> = jobs.filter(|&(k, part)| movable(k, part)).collect();
         let tally = watch.stage(Stage::Rooms, jobs.len());
-        let look = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
-            let by = matrix.blocker(k, part, &living, workspace);
+        let find = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
+            let by = matrix.find_blocker(k, part, &living, workspace);
             tally.step().map(|()| by)
         };
         let found: Result<Vec<Option<usize>>, AssemblyError> =
-            jobs.par_iter().map_init(Workspace::default, look).collect();
-        let mut watched = vec![vec![Vec::new(); count]; directions];
+            jobs.par_iter().map_init(Workspace::default, find).collect();
+        let mut watchers = vec![vec![Vec::new(); count]; directions];
         let mut free = BTreeMap::<usize, Vec<usize>>::new();
         for ((k, part), by) in jobs.into_iter().zip(found?) {
             match by {
-                Some(by) => watched[k][by].push(part as u32),
+                Some(by) => watchers[k][by].push(part as u32),
                 None => free.entry(part).or_default().push(k),
             }
         }
@@ -79,9 +79,9 @@ impl<'a> Single<'a> {
             bodies,
             matrix,
             living,
-            waits,
-            awaited,
-            watched,
+            waiting_counts,
+            waiting_parts,
+            watchers,
             free,
             ranking,
             changed,
@@ -90,9 +90,9 @@ impl<'a> Single<'a> {
     }
 
     /// Returns the free directions of a part. Returns `None` if it has none or waits for another part.
-    pub(super) fn ways(&self, part: usize) -> Option<&[usize]> {
-        let ways = self.free.get(&part).filter(|_| self.waits[part] == 0);
-        ways.map(|ways| &ways[..])
+    pub(super) fn free_directions(&self, part: usize) -> Option<&[usize]> {
+        let directions = self.free.get(&part).filter(|_| self.waiting_counts[part] == 0);
+        directions.map(|directions| &directions[..])
     }
 
     /// Removes a part, and updates the parts that watched it or waited for it.
@@ -100,23 +100,23 @@ impl<'a> Single<'a> {
         self.free.remove(&part);
         self.changed.push(part);
         self.bodies.remove(&mut self.living, part);
-        for waiting in std::mem::take(&mut self.awaited[part]) {
-            self.waits[waiting] -= 1;
+        for waiting in std::mem::take(&mut self.waiting_parts[part]) {
+            self.waiting_counts[waiting] -= 1;
             self.changed.push(waiting);
         }
-        for k in 0..self.watched.len() {
-            for watching in std::mem::take(&mut self.watched[k][part]) {
+        for k in 0..self.watchers.len() {
+            for watching in std::mem::take(&mut self.watchers[k][part]) {
                 let moving = watching as usize;
                 if !self.living.has(moving) {
                     continue;
                 }
-                let by = self.matrix.blocker(k, moving, &self.living, &mut self.workspace);
+                let by = self.matrix.find_blocker(k, moving, &self.living, &mut self.workspace);
                 if let Some(by) = by {
-                    self.watched[k][by].push(watching);
+                    self.watchers[k][by].push(watching);
                 } else {
                     self.changed.push(moving);
-                    let ways = self.free.entry(moving).or_default();
-                    ways.insert(ways.partition_point(|&known| known < k), k);
+                    let directions = self.free.entry(moving).or_default();
+                    directions.insert(directions.partition_point(|&known| known < k), k);
                 }
             }
         }
@@ -124,8 +124,8 @@ impl<'a> Single<'a> {
 
     /// Returns the number of stored entries.
     #[cfg(test)]
-    pub(super) fn entries(&self) -> usize {
+    pub(super) fn entry_count(&self) -> usize {
         self.free.values().map(Vec::len).sum::<usize>()
-            + self.watched.iter().flatten().map(Vec::len).sum::<usize>()
+            + self.watchers.iter().flatten().map(Vec::len).sum::<usize>()
     }
 }

@@ -13,7 +13,7 @@ const SAME_TURNS: f64 = 0.01;
 /// Relative difference of travels below which parts that leave in different directions form one stage.
 const SAME_TRAVEL: f64 = 1e-3;
 /// Maximum number of stages in a repeated run.
-const MOST_PERIOD: usize = 12;
+const MAX_PERIOD: usize = 12;
 
 impl Plan {
     /// Returns the stages of the plan, as ranges of steps in their order.
@@ -27,7 +27,7 @@ impl Plan {
         for (k, step) in self.steps.iter().enumerate() {
             if let Some(stage) = stages.last_mut() {
                 one_way &= self.steps[stage.start].direction == step.direction;
-                if self.joins(stage, step, one_way) {
+                if self.joins_stage(stage, step, one_way) {
                     stage.end = k + 1;
                     continue;
                 }
@@ -51,13 +51,13 @@ impl Plan {
                 let block = |k: usize| stages.get(at + k * period..at + (k + 1) * period);
                 let again = |k: &usize| match (block(0), block(*k)) {
                     (Some(first), Some(next)) => {
-                        first.iter().zip(next).all(|(a, b)| self.are_alike(a, b))
+                        first.iter().zip(next).all(|(a, b)| self.are_repetitions(a, b))
                     }
                     _ => false,
                 };
                 1 + (1..stages.len()).take_while(again).count()
             };
-            let runs = (1..=MOST_PERIOD).map(|period| (period, times(period)));
+            let runs = (1..=MAX_PERIOD).map(|period| (period, times(period)));
             let several = runs.filter(|(_, times)| *times > 1);
             // If two choices cover equally many stages, the shorter run wins.
             let best = several.reduce(|a, b| if b.0 * b.1 > a.0 * a.1 { b } else { a });
@@ -69,7 +69,7 @@ impl Plan {
     }
 
     /// Checks whether two stages are the same operation on different parts.
-    fn are_alike(&self, a: &Range<usize>, b: &Range<usize>) -> bool {
+    fn are_repetitions(&self, a: &Range<usize>, b: &Range<usize>) -> bool {
         let likes = |step: &Step| {
             let mut likes: Vec<usize> = step.parts.iter().map(|&part| self.likes[part]).collect();
             likes.sort_unstable();
@@ -154,7 +154,7 @@ impl Plan {
 
     /// Checks whether a step belongs to the stage before it. `one_way` states whether all of them share one
     /// direction.
-    fn joins(&self, stage: &Range<usize>, step: &Step, one_way: bool) -> bool {
+    fn joins_stage(&self, stage: &Range<usize>, step: &Step, one_way: bool) -> bool {
         let first = &self.steps[stage.start];
         let turns = |step: &Step| step.turn().map_or(0.0, |turn| turn.turns);
         let plain = |step: &Step| {

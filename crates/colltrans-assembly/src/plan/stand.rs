@@ -14,11 +14,11 @@ use glam::{DVec2, DVec3};
 
 use crate::bodies::Bodies;
 use crate::inertia;
-use crate::liaisons::{footprint, reach};
+use crate::liaisons::{footprint_corners, reach};
 
 /// Stability of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum Stability {
     /// Its centre of mass is above the support, or no instability is established.
     Stands,
     /// Its centre of mass is outside of the support.
@@ -28,14 +28,14 @@ pub(super) enum Standing {
 }
 
 /// The support of a part, projected along `up`.
-pub(super) struct Base {
+pub(super) struct Support {
     /// Centre of mass and its error plus the contact reach; `None` for surfaces.
     center: Option<(DVec2, f64)>,
     /// The parts that it rests on, each with the corners of the contact; no corners if no downward facet touches.
-    on: Vec<(usize, Vec<DVec2>)>,
+    contacts: Vec<(usize, Vec<DVec2>)>,
 }
 
-impl Base {
+impl Support {
     /// Computes the support of a part that rests on others.
     pub(super) fn new(bodies: &Bodies, part: usize, on: &[usize], up: DVec3) -> Self {
         let parts = bodies.assembly().parts();
@@ -44,42 +44,42 @@ impl Base {
         let (solid, reach) = (parts[part].solid(), reach(bodies));
         let center = (!parts[part].is_surface()).then(|| inertia::center(solid)).flatten();
         let corners = |&below: &usize| {
-            let all = footprint(solid, parts[below].solid(), reach, -up);
-            (below, hull(all.into_iter().map(seen).collect()))
+            let all = footprint_corners(solid, parts[below].solid(), reach, -up);
+            (below, convex_hull(all.into_iter().map(seen).collect()))
         };
         let center = center.map(|(center, error)| (seen(center), error + reach));
-        Self { center, on: on.iter().map(corners).collect() }
+        Self { center, contacts: on.iter().map(corners).collect() }
     }
 
     /// Returns the parts that it rests on.
-    pub(super) fn below(&self) -> impl Iterator<Item = usize> {
-        self.on.iter().map(|(part, _)| *part)
+    pub(super) fn parts_below(&self) -> impl Iterator<Item = usize> {
+        self.contacts.iter().map(|(part, _)| *part)
     }
 
     /// Returns the stability of the part if only the parts for which `carry` holds support it.
-    pub(super) fn standing(&self, carry: impl Fn(usize) -> bool) -> Standing {
-        let mut under = self.on.iter().filter(|(part, _)| carry(*part)).peekable();
+    pub(super) fn stability(&self, carry: impl Fn(usize) -> bool) -> Stability {
+        let mut under = self.contacts.iter().filter(|(part, _)| carry(*part)).peekable();
         if under.peek().is_none() {
-            return Standing::Falls;
+            return Stability::Falls;
         }
-        let Some((center, slack)) = self.center else { return Standing::Stands };
+        let Some((center, slack)) = self.center else { return Stability::Stands };
         let mut corners = Vec::new();
         for (_, own) in under {
             if own.is_empty() {
-                return Standing::Stands;
+                return Stability::Stands;
             }
             corners.extend_from_slice(own);
         }
-        if inside(&hull(corners), center) < -slack {
-            Standing::OffBalance
+        if signed_depth(&convex_hull(corners), center) < -slack {
+            Stability::OffBalance
         } else {
-            Standing::Stands
+            Stability::Stands
         }
     }
 }
 
 /// Returns the corners of the convex hull, counter-clockwise (Andrew's monotone chain).
-fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
     if points.len() < 3 {
@@ -107,7 +107,7 @@ fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
 
 /// Returns the distance of a point to the boundary of a convex polygon, positive inside. Outside, the value is
 /// negative and its absolute value is a lower bound of the distance.
-fn inside(polygon: &[DVec2], point: DVec2) -> f64 {
+fn signed_depth(polygon: &[DVec2], point: DVec2) -> f64 {
     let to_segment = |a: DVec2, b: DVec2| {
         let along = (point - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
         (a + (b - a) * along.clamp(0.0, 1.0)).distance(point)

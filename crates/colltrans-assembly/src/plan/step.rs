@@ -10,7 +10,7 @@ use super::Passed;
 use crate::part::Assembly;
 
 /// Maximum number of ignored pairs that are named for a step.
-const MOST_NAMED: usize = 4;
+const MAX_NAMED: usize = 4;
 
 /// A motion of some parts as one body: a translation, or a screw motion about an axis along the translation.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,8 +158,8 @@ impl Step {
     /// Returns a description of the ignored pairs, or `None` if there are none.
     pub fn ignores(&self, assembly: &Assembly) -> Option<String> {
         let pair = |p: &[usize; 2]| assembly.names(p).join(" and ");
-        let named: Vec<String> = self.ignored.iter().take(MOST_NAMED).map(pair).collect();
-        let more = match self.ignored.len().saturating_sub(MOST_NAMED) {
+        let named: Vec<String> = self.ignored.iter().take(MAX_NAMED).map(pair).collect();
+        let more = match self.ignored.len().saturating_sub(MAX_NAMED) {
             0 => String::new(),
             more => format!(" and {more} more pairs"),
         };

@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_is_a_number_of_seconds() {
+    fn times_accept_known_names_and_reject_negative_seconds() {
         let read = |text: &str| serde_json::from_str::<Times>(text);
         assert_eq!(read(r#"{"grasp": 2.5}"#).unwrap(), Times { grasp: 2.5, ..Times::default() });
         assert!(read(r#"{"grip": 2.5}"#).is_err());

@@ -17,37 +17,37 @@ use crate::threads::{Seat, Thread};
 use colltrans::solid::StartOverlap;
 
 /// Maximum angle between a step and the axis of a thread, in radians.
-const ALONG: f64 = 0.02;
+const MAX_STEP_ANGLE: f64 = 0.02;
 /// Angle below which the direction of the step replaces the axis, in radians.
-const ONE: f64 = 1e-3;
+const SAME_AXIS: f64 = 1e-3;
 /// Two threads turn together if their axes differ by less than this fraction of the crest radius and their pitches by
 /// less than this fraction.
-const SAME: f64 = 0.02;
+const SAME_HELIX: f64 = 0.02;
 /// Maximum tolerance that is tried, as a fraction of the thread's depth. A tolerance given for the pair is never
 /// exceeded.
-const DEEPEST: f64 = 0.25;
+const MAX_TOLERANCE: f64 = 0.25;
 /// First tolerance that is tried after that of all parts, as a fraction of the thread's depth.
-const FIRST: f64 = 0.02;
+const FIRST_TOLERANCE: f64 = 0.02;
 /// Factor by which a tolerance exceeds the least possible one.
-const BEYOND: f64 = 1.05;
+const TOLERANCE_FACTOR: f64 = 1.05;
 
 /// Returns the two legs of a step that unscrews some parts from others, and the travel of the second leg.
 ///
 /// The first leg turns, the second is straight. Only the others are present. `travel` is the total distance. Returns
 /// `None` if no thread connects the parts, or if no helix was found.
-pub(super) fn unscrewed(
+pub(super) fn unscrewing_legs(
     bodies: &Bodies,
     (parts, direction): (&[usize], DVec3),
     (others, there): (&[usize], &[bool]),
     travel: Bounded,
     start: StartOverlap,
 ) -> Option<([Leg; 2], Bounded)> {
-    let threads = threads(bodies, parts, there, direction);
-    let screw = Screw::new(bodies, *threads.first()?, direction)?;
-    let one = threads.iter().all(|(_, thread)| screw.is_one_with(thread));
-    let mut turning = screw.leg(parts);
+    let threads = threads_along(bodies, parts, there, direction);
+    let screw = ScrewMotion::new(bodies, *threads.first()?, direction)?;
+    let one = threads.iter().all(|(_, thread)| screw.has_same_helix(thread));
+    let mut turning = screw.unproven_leg(parts);
     let proof = if one {
-        screw.proven(bodies, &turning, others, &threads, start)
+        screw.prove_turn(bodies, &turning, others, &threads, start)
     } else {
         Err("several threads would have to turn at once".into())
     };
@@ -66,21 +66,22 @@ pub(super) fn unscrewed(
 
 /// Returns the threads between moving parts and present ones whose axes are along the direction. The first part of
 /// each pair moves.
-fn threads(
+fn threads_along(
     bodies: &Bodies,
     parts: &[usize],
     there: &[bool],
     d: DVec3,
 ) -> Vec<([usize; 2], Thread)> {
     let pairs = bodies.partners(parts, there);
-    let along =
-        |thread: &Thread| thread.pitch.is_some() && thread.axis[1].cross(d).length() < ALONG;
+    let along = |thread: &Thread| {
+        thread.pitch.is_some() && thread.axis[1].cross(d).length() < MAX_STEP_ANGLE
+    };
     let found = pairs.filter_map(|pair| Some((pair, bodies.thread(pair).filter(along)?)));
     found.collect()
 }
 
 /// The screw motion of parts that are unscrewed.
-struct Screw {
+struct ScrewMotion {
     /// The thread, and whether the moving part has the external thread.
     thread: Thread,
     is_inner: bool,
@@ -92,13 +93,13 @@ struct Screw {
     turns: f64,
 }
 
-impl Screw {
+impl ScrewMotion {
     fn new(bodies: &Bodies, (pair, thread): ([usize; 2], Thread), d: DVec3) -> Option<Self> {
         let seat = bodies.seat(pair, &thread)?;
         let is_second = pair[0] > pair[1];
         let is_inner = (thread.screw == 1) == is_second;
-        let (sense, mut axis) = sense(&thread, d);
-        if axis.cross(d).length() < ONE {
+        let (sense, mut axis) = axis_along(&thread, d);
+        if axis.cross(d).length() < SAME_AXIS {
             axis = d;
         }
         // A moving hole takes the opposite direction of a moving screw.
@@ -110,24 +111,24 @@ impl Screw {
 
     /// Returns the sense of the motion along the thread's axis, 1 or -1 (reversed if the hole moves), and the axis
     /// along the motion.
-    fn sense(&self) -> (f64, DVec3) {
-        let (sense, axis) = sense(&self.thread, self.axis);
+    fn turn_sense(&self) -> (f64, DVec3) {
+        let (sense, axis) = axis_along(&self.thread, self.axis);
         (if self.is_inner { sense } else { -sense }, axis)
     }
 
-    fn is_one_with(&self, other: &Thread) -> bool {
+    fn has_same_helix(&self, other: &Thread) -> bool {
         let [point, axis] = other.axis;
         let off = (point - self.thread.axis[0]).reject_from(self.axis).length();
         let radius = self.thread.radii[1];
         let [a, b] = [self.thread.pitch, other.pitch].map(|pitch| pitch.unwrap_or(0.0));
-        axis.cross(self.axis).length() < ALONG
-            && off < SAME * radius
-            && (a - b).abs() < SAME * a.abs()
+        axis.cross(self.axis).length() < MAX_STEP_ANGLE
+            && off < SAME_HELIX * radius
+            && (a - b).abs() < SAME_HELIX * a.abs()
     }
 
     /// Returns the leg along the helix, from the pose in which the screw fits best. Its proof is still missing.
-    fn leg(&self, parts: &[usize]) -> Leg {
-        let (sense, _) = self.sense();
+    fn unproven_leg(&self, parts: &[usize]) -> Leg {
+        let (sense, _) = self.turn_sense();
         let turn = Turn {
             point: self.point,
             turns: self.turns,
@@ -142,7 +143,7 @@ impl Screw {
 
     /// Tries to prove the leg and the straight motion after it. Returns the tolerance of the thread that this needs,
     /// or the reason of the failure.
-    fn proven(
+    fn prove_turn(
         &self,
         bodies: &Bodies,
         leg: &Leg,
@@ -163,7 +164,7 @@ impl Screw {
         let motion = leg.motion().map_err(|error| error.to_string())?;
         let (mut tolerance, mut pairs) = (0.0_f64, 0);
         for (pair, _) in threads {
-            let (used, more) = self.tolerated(bodies, *pair, &motion)?;
+            let (used, more) = self.find_tolerance(bodies, *pair, &motion)?;
             (tolerance, pairs) = (tolerance.max(used), pairs + more);
         }
         let is_thread = |pair: [usize; 2]| threads.iter().any(|(known, _)| *known == pair);
@@ -181,13 +182,13 @@ impl Screw {
                 Turned::Overlapping(_) => {
                     return Err(format!("{part} and {other} overlap where it begins"));
                 }
-                Turned::Blocked(share) => return Err(self.met(share, part, other)),
+                Turned::Blocked(share) => return Err(self.contact_message(share, part, other)),
             }
         }
         Ok(TurnProof { tolerance, pairs })
     }
 
-    fn met(&self, share: f64, part: &str, other: &str) -> String {
+    fn contact_message(&self, share: f64, part: &str, other: &str) -> String {
         let turns = share * self.turns.abs();
         if share >= 1.0 {
             format!("once it is unscrewed, {part} meets {other} on its way")
@@ -198,7 +199,7 @@ impl Screw {
 
     /// Searches for a tolerance with which a thread turns freely. Returns it with the number of pairs that were
     /// visited, or the reason of the failure.
-    fn tolerated(
+    fn find_tolerance(
         &self,
         bodies: &Bodies,
         pair: [usize; 2],
@@ -207,7 +208,7 @@ impl Screw {
         let depth = self.thread.radii[1] - self.thread.radii[0];
         let asked = bodies.assembly().pair(pair[0], pair[1]).and_then(|fit| fit.tolerance);
         let mut tolerance = asked.unwrap_or_else(|| bodies.fit().tolerance().max(0.0));
-        let most = asked.unwrap_or(DEEPEST * depth).max(tolerance);
+        let most = asked.unwrap_or(MAX_TOLERANCE * depth).max(tolerance);
         let names = pair.map(|part| bodies.assembly().parts()[part].name());
         let refused = |error: QueryError| error.to_string();
         loop {
@@ -220,11 +221,11 @@ impl Screw {
                         "the threads of {} and {} overlap {deep} wherever they are turned to",
                         names[0], names[1]
                     );
-                    (least.unwrap_or(f64::INFINITY) * BEYOND, why)
+                    (least.unwrap_or(f64::INFINITY) * TOLERANCE_FACTOR, why)
                 }
-                Turned::Blocked(share) => (0.0, self.met(share, names[0], names[1])),
+                Turned::Blocked(share) => (0.0, self.contact_message(share, names[0], names[1])),
             };
-            let next = two_digits_up(least.max(2.0 * tolerance).max(FIRST * depth));
+            let next = two_digits_up(least.max(2.0 * tolerance).max(FIRST_TOLERANCE * depth));
             if next > most || tolerance >= most {
                 return Err(format!("{why}, and no more than {most:.2e} is let pass"));
             }
@@ -235,7 +236,7 @@ impl Screw {
 
 /// Returns 1 if a direction is along the axis of the thread and -1 if it is opposite, and the axis along the
 /// direction.
-fn sense(thread: &Thread, d: DVec3) -> (f64, DVec3) {
+fn axis_along(thread: &Thread, d: DVec3) -> (f64, DVec3) {
     let sense = if thread.axis[1].dot(d) < 0.0 { -1.0 } else { 1.0 };
     (sense, thread.axis[1] * sense)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::least::{Enough, enough};
+use super::least::{SufficientSet, smallest_sufficient_set};
 use super::{Plan, PlanOptions, Planner};
 use crate::bodies::Bodies;
 use crate::candidates::Finer;
@@ -57,18 +57,18 @@ pub fn remove<'a>(
     let likes = likes(bodies.assembly());
     let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
     planner.wanted = &parts;
-    let found = enough(bodies, matrix, &parts);
-    planner.movable = found.as_ref().map(|enough| &enough.parts[..]);
-    planner.whole(matrix)?;
+    let found = smallest_sufficient_set(bodies, matrix, &parts);
+    planner.movable = found.as_ref().map(|set| &set.parts[..]);
+    planner.plan_all(matrix)?;
     let mut plan = planner.plan;
     if found.is_none() {
-        plan.keep_needed(&parts, bodies.len());
+        plan.drop_unneeded_steps(&parts, bodies.len());
     }
     let moved =
         plan.steps.iter().filter(|step| step.within.is_none()).flat_map(|step| step.parts.clone());
     let (gone, mut others): (Vec<usize>, Vec<usize>) = moved.partition(|part| parts.contains(part));
     others.sort_unstable();
-    let least = found.is_some_and(|Enough { least, .. }| least);
+    let least = found.is_some_and(|SufficientSet { least, .. }| least);
     let out = gone.len() == parts.len();
     plan.wanted = Some(Wanted { parts, others, least, out });
     Ok(Plan { likes: likes.clone(), ..plan })
@@ -76,7 +76,7 @@ pub fn remove<'a>(
 
 impl Plan {
     /// Drops the steps that the selected parts do not need. Does nothing if a selected part does not come out.
-    fn keep_needed(&mut self, wanted: &[usize], count: usize) {
+    fn drop_unneeded_steps(&mut self, wanted: &[usize], count: usize) {
         let is_there = |part: &usize| self.left.contains(part) || self.last.contains(part);
         if wanted.iter().any(is_there) {
             return;
@@ -84,7 +84,7 @@ impl Plan {
         let takes = |step: &super::Step| step.parts.iter().any(|part| wanted.contains(part));
         let mut needed: Vec<bool> = self.steps.iter().map(takes).collect();
         for k in (0..self.steps.len()).rev().filter(|&k| needed[k]).collect::<Vec<_>>() {
-            self.need(k, &mut needed);
+            self.mark_needed(k, &mut needed);
         }
         let mut at = BTreeMap::new();
         let steps = std::mem::take(&mut self.steps).into_iter().enumerate();
@@ -100,10 +100,10 @@ impl Plan {
     }
 
     /// Marks all steps that must precede a step.
-    fn need(&self, step: usize, needed: &mut [bool]) {
+    fn mark_needed(&self, step: usize, needed: &mut [bool]) {
         for &k in &self.steps[step].after {
             if !std::mem::replace(&mut needed[k], true) {
-                self.need(k, needed);
+                self.mark_needed(k, needed);
             }
         }
     }

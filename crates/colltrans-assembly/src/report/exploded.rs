@@ -11,7 +11,7 @@ use colltrans::Aabb;
 use glam::{DMat3, DVec3};
 
 use super::{Findings, aside, there};
-use crate::matrix::bits;
+use crate::matrix::direction_bits;
 use crate::plan::Step;
 
 /// The room between two parts, as a share of the assembly's size.
@@ -94,7 +94,7 @@ impl Boxes<'_> {
 
     fn along(&mut self, d: DVec3) -> &(DMat3, Vec<Aabb>) {
         let parts = self.f.bodies.assembly().parts();
-        self.known.entry(bits(d)).or_insert_with(|| {
+        self.known.entry(direction_bits(d)).or_insert_with(|| {
             let (u, v) = d.any_orthonormal_pair();
             let to_frame = DMat3::from_cols(u, v, d).transpose();
             let around = |part: &crate::part::Part| {

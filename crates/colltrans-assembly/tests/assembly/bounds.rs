@@ -29,7 +29,7 @@ fn six_volumes(solid: &Solid) -> Dyadic {
 }
 
 #[test]
-fn volumes_lie_within_their_bounds() {
+fn exact_volume_is_within_volume_bounds() {
     let mut random = Random::new(3);
     for round in 0..200 {
         let side = 10.0_f64.powi(round % 7 - 3);
@@ -49,7 +49,7 @@ fn volumes_lie_within_their_bounds() {
 
 /// Bounds of travels of rotated boxes are compared with the exact heights of their corners.
 #[test]
-fn travels_lie_within_their_bounds() {
+fn exact_travel_is_within_travel_bounds() {
     let mut random = Random::new(9);
     for _ in 0..40 {
         let world = pose(&mut random);
@@ -91,7 +91,7 @@ fn travels_lie_within_their_bounds() {
 /// A head stops at 7 for every tolerance. Both bounds of its nominal contact are tight, and the lower one is the safe
 /// travel.
 #[test]
-fn a_head_is_safe_up_to_the_lower_bound_of_its_true_place() {
+fn safe_travel_is_the_lower_bound_of_the_nominal_contact() {
     let mut random = Random::new(4);
     for round in 0..60 {
         let tolerance = [0.0, 1e-5, 0.02, 0.1][round % 4];

@@ -237,7 +237,7 @@ fn asked(mut assembly: Assembly, random: &mut Random) -> (Assembly, Asked) {
 }
 
 #[test]
-fn plans_take_as_much_apart_as_all_groups_tried_and_in_an_order_that_is_asked_for() {
+fn constrained_plans_remove_as_much_as_exhaustive_search() {
     let mut random = Random::new(2);
     let (mut whole, mut held, mut moved) = (0, 0, 0);
     for round in 0..400 {
@@ -272,7 +272,7 @@ fn plans_take_as_much_apart_as_all_groups_tried_and_in_an_order_that_is_asked_fo
 }
 
 #[test]
-fn the_least_is_that_of_all_sets() {
+fn smallest_removal_set_equals_exhaustive_search() {
     let mut random = Random::new(5);
     let (mut out, mut alone, mut held) = (0, 0, 0);
     for round in 0..400 {
@@ -341,7 +341,7 @@ fn taken(assembly: &Assembly, wanted: &[&str]) -> (Vec<Vec<String>>, Plan) {
 }
 
 #[test]
-fn a_core_comes_out_without_what_is_not_in_its_way() {
+fn removal_of_a_core_takes_only_blocking_parts() {
     let assembly = closed().with_fixed(&["box"]).unwrap();
     let (steps, plan) = taken(&assembly, &["core"]);
     assert_eq!(steps, [["cup"], ["lid"], ["core"]]);
@@ -366,7 +366,7 @@ fn a_core_comes_out_without_what_is_not_in_its_way() {
 }
 
 #[test]
-fn a_subassembly_leaves_as_one_and_is_taken_apart_and_what_stays_together_is_not() {
+fn subassembly_leaves_as_one_and_only_units_stay_together() {
     let plain = closed().with_fixed(&["box"]).unwrap();
     let sub = plain.clone().with_subassembly("top", &["lid", "cup"]).unwrap();
     let (steps, plan) = taken(&sub, &[]);
@@ -393,7 +393,7 @@ fn assembly_left<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<&'a str> {
 }
 
 #[test]
-fn several_moves_keep_the_order_and_the_directions_that_are_asked_for() {
+fn paths_of_several_moves_obey_constraints() {
     let plan = |assembly: Assembly| {
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         planned(&bodies, PlanOptions::default().with_legs(4))

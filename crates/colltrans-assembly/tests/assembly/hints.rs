@@ -28,7 +28,7 @@ fn machine(size: f64) -> Vec<Part> {
 }
 
 #[test]
-fn identical_parts_are_said_and_nothing_else_of_a_sound_machine() {
+fn sound_machine_gets_only_the_identical_hint() {
     let hints = found(machine(1.0));
     assert_eq!(hints.len(), 1, "{hints:?}");
     assert_eq!((hints[0].kind, &hints[0].parts[..]), (HintKind::Identical, &[0, 1, 2, 3][..]));
@@ -37,7 +37,7 @@ fn identical_parts_are_said_and_nothing_else_of_a_sound_machine() {
 }
 
 #[test]
-fn parts_in_frames_of_their_own_are_told() {
+fn parts_around_a_common_origin_get_the_frames_hint() {
     // Bolts from one file each, none of them placed.
     let bolt = |k: usize| part(&format!("bolt_{k}"), &[cuboid([0.0; 3], [1.0, 1.0, 2.0])]);
     let hints = found((0..3).map(bolt).collect());
@@ -54,7 +54,7 @@ fn parts_in_frames_of_their_own_are_told() {
 }
 
 #[test]
-fn other_units_are_told_with_the_factor_that_corrects_them() {
+fn scaled_parts_get_the_units_hint_with_the_factor() {
     let hints = found(machine(0.001));
     let [units] = of_kind(&hints, HintKind::Units)[..] else { panic!("{hints:?}") };
     assert_eq!(units.parts, [0, 1, 2, 3]);
@@ -70,7 +70,7 @@ fn other_units_are_told_with_the_factor_that_corrects_them() {
 }
 
 #[test]
-fn link_meshes_in_millimetres_beside_metres_are_a_matter_of_units() {
+fn millimetre_meshes_in_a_metre_source_get_the_units_hint() {
     // A robot in metres whose base and upper arm have meshes in millimetres.
     let link = |name: &str, at: f64, size: f64| {
         part(name, &[cuboid([-size, -size, at - size], [size, size, at + size])])

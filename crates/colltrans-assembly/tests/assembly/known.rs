@@ -52,7 +52,7 @@ fn room_of_part(assembly: &Assembly, fit: Fit, part: usize, d: DVec3) -> PartRoo
 }
 
 #[test]
-fn linked_rings_do_not_come_apart() {
+fn linked_rings_are_interlocked() {
     let assembly = Assembly::new(links().to_vec()).unwrap();
     let plan = planned(&assembly);
     assert!(plan.steps.is_empty());
@@ -63,7 +63,7 @@ fn linked_rings_do_not_come_apart() {
 }
 
 #[test]
-fn that_linked_rings_are_stuck_is_proven_in_few_cells() {
+fn linked_rings_are_proven_interlocked_in_few_cells() {
     let assembly = Assembly::new(links().to_vec()).unwrap();
     let plan = planned(&assembly);
     let [stuck] = &plan.stuck[..] else { panic!("one group: {:?}", plan.stuck) };
@@ -106,7 +106,7 @@ fn ring_of_three() -> [Part; 3] {
 }
 
 #[test]
-fn parts_that_come_apart_only_all_at_once_are_not_said_to_hold_each_other() {
+fn report_of_simultaneous_separation_claims_only_group_motions() {
     let parts = ring_of_three();
     // Reference: along their relative velocities no pair collides, so all can leave simultaneously.
     let diagonal = DVec3::new(1.0, 1.0, 0.0).normalize();
@@ -143,7 +143,7 @@ fn parts_that_come_apart_only_all_at_once_are_not_said_to_hold_each_other() {
 }
 
 #[test]
-fn what_is_ignored_is_not_proven_to_be_stuck() {
+fn ignored_pair_is_not_proven_interlocked() {
     let [a, b] = links();
     let names = [a.name().to_owned(), b.name().to_owned()];
     let pair = [[names[0].as_str(), names[1].as_str()]];
@@ -154,7 +154,7 @@ fn what_is_ignored_is_not_proven_to_be_stuck() {
 }
 
 #[test]
-fn linked_rings_leave_a_well_as_one() {
+fn linked_rings_leave_a_well_as_one_group() {
     let [a, b] = links();
     let well = part("well", &well([-2.5, -2.5, -3.0], [4.5, 2.5, 5.0], 1.0)).with_fixed(true);
     let assembly = Assembly::new(vec![a, b, well]).unwrap();
@@ -168,7 +168,7 @@ fn linked_rings_leave_a_well_as_one() {
 }
 
 #[test]
-fn a_tight_peg_finds_its_only_direction_in_any_rotation() {
+fn rotated_tight_peg_leaves_along_its_axis() {
     let mut random = Random::new(21);
     for _ in 0..5 {
         let turn = DAffine3::from_rotation_translation(random.rotation(), random.direction() * 3.0);
@@ -184,7 +184,7 @@ fn a_tight_peg_finds_its_only_direction_in_any_rotation() {
 }
 
 #[test]
-fn the_lid_goes_before_what_it_covers() {
+fn lid_is_removed_before_the_covered_core() {
     let assembly = boxed();
     let plan = planned(&assembly);
     let order = steps(&assembly, &plan);
@@ -194,7 +194,7 @@ fn the_lid_goes_before_what_it_covers() {
 }
 
 #[test]
-fn what_is_walled_in_by_what_is_fixed_stays() {
+fn part_enclosed_by_fixed_walls_stays() {
     let core = part("core", &[cuboid([1.0; 3], [2.0; 3])]);
     let mut walls = well([0.0; 3], [3.0; 3], 1.0);
     walls.push(cuboid([-1.0, -1.0, 3.0], [4.0, 4.0, 4.0]));
@@ -207,7 +207,7 @@ fn what_is_walled_in_by_what_is_fixed_stays() {
 }
 
 #[test]
-fn no_parts_one_part_and_parts_far_apart() {
+fn plans_of_zero_one_and_distant_parts() {
     let none = Assembly::default();
     assert_eq!(planned(&none), Plan::default());
     let one = Assembly::new(vec![part("one", &[cuboid([0.0; 3], [1.0; 3])])]).unwrap();
@@ -224,7 +224,7 @@ fn no_parts_one_part_and_parts_far_apart() {
 }
 
 #[test]
-fn a_thousand_cubes_come_out_one_by_one() {
+fn thousand_cubes_are_removed_one_by_one() {
     let mut parts = Vec::new();
     for (x, y, z) in (0..1_000).map(|k| (k % 10, k / 10 % 10, k / 100)) {
         let low = [x, y, z].map(f64::from);
@@ -238,7 +238,7 @@ fn a_thousand_cubes_come_out_one_by_one() {
 }
 
 #[test]
-fn rooms_with_the_best_so_far_are_rooms_of_all_pairs() {
+fn bounded_rooms_equal_minimum_over_all_pairs() {
     let mut random = Random::new(4);
     for round in 0..20 {
         let assembly = scattered(&mut random, 12, round % 2 == 0);
@@ -284,7 +284,7 @@ fn rooms_with_the_best_so_far_are_rooms_of_all_pairs() {
 }
 
 #[test]
-fn a_plan_is_the_same_whether_all_pairs_are_asked_at_once_or_as_they_are_needed() {
+fn plan_on_demand_equals_plan_of_complete_matrix() {
     let mut random = Random::new(71);
     let axes: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&d| [d, -d]).collect();
     let more = [DVec3::new(0.6, 0.0, -0.8), DVec3::new(1.0, 2.0, 2.0) / 3.0];
@@ -318,7 +318,7 @@ fn a_plan_is_the_same_whether_all_pairs_are_asked_at_once_or_as_they_are_needed(
 }
 
 #[test]
-fn the_answer_does_not_depend_on_threads() {
+fn plan_is_equal_for_any_number_of_threads() {
     let assembly = boxed();
     let ask = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -330,7 +330,7 @@ fn the_answer_does_not_depend_on_threads() {
 }
 
 #[test]
-fn a_cancelled_run_says_so() {
+fn set_flag_returns_cancelled_error() {
     let assembly = boxed();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let flag = AtomicBool::new(true);
@@ -342,7 +342,7 @@ fn a_cancelled_run_says_so() {
 type Stage<'a> = &'a dyn Fn(Watch) -> Result<(), AssemblyError>;
 
 #[test]
-fn any_stage_ends_soon_after_it_is_cancelled() {
+fn every_stage_stops_soon_after_cancellation() {
     let assembly = boxed();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     // The observer cancels after a number of calls, within each stage.
@@ -382,7 +382,7 @@ fn any_stage_ends_soon_after_it_is_cancelled() {
 }
 
 #[test]
-fn rooms_maps_and_plans_are_the_same_on_any_number_of_threads() {
+fn rooms_maps_and_plans_are_equal_for_any_number_of_threads() {
     let mut random = Random::new(14);
     let assembly = scattered(&mut random, 14, false);
     let directions: Vec<DVec3> = (0..150).map(|_| random.direction()).collect();
@@ -410,7 +410,7 @@ fn rooms_maps_and_plans_are_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn parts_thinner_than_the_tolerance_are_told_of() {
+fn parts_thinner_than_the_tolerance_get_a_remark() {
     let plate = part("plate", &[cuboid([0.0, 0.0, 0.0], [9.0, 9.0, 0.1])]);
     let cube = part("cube", &[cuboid([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])]);
     let assembly = Assembly::new(vec![plate, cube]).unwrap();
@@ -446,7 +446,7 @@ fn parts_thinner_than_the_tolerance_are_told_of() {
 }
 
 #[test]
-fn a_margin_is_kept_or_not() {
+fn minimum_gap_decides_overlap_and_travel() {
     // A gap of 0.5 on every side.
     let peg = part("peg", &[cuboid([-0.5, -0.5, 0.5], [0.5, 0.5, 6.0])]);
     let block = part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0));
@@ -480,7 +480,7 @@ fn a_margin_is_kept_or_not() {
 
 /// Parts that were offset outwards by half of the length as boxes would meet at their corners.
 #[test]
-fn corners_pass_each_other_diagonally_at_the_length_to_keep() {
+fn corners_pass_diagonally_at_the_minimum_gap() {
     let a = part("a", &[cuboid([0.0; 3], [1.0; 3])]);
     let b = part("b", &[cuboid([1.4, 1.4, 4.0], [2.4, 2.4, 5.0])]);
     let assembly = Assembly::new(vec![a, b]).unwrap();
@@ -492,7 +492,7 @@ fn corners_pass_each_other_diagonally_at_the_length_to_keep() {
 }
 
 #[test]
-fn overlaps_at_the_start_are_measured_and_can_be_ignored() {
+fn start_overlap_is_measured_and_can_be_ignored() {
     // A press fit of 0.05 on every side: half of a tolerance of 0.05 from the pin, half from the block.
     let parts = vec![
         part("pin", &[cuboid([-1.05, -1.05, 1.0], [1.05, 1.05, 6.0])]),
@@ -522,7 +522,7 @@ fn room_with(assembly: &Assembly, d: DVec3) -> PartRoom {
 }
 
 #[test]
-fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
+fn ignored_start_overlap_still_blocks_later_contacts() {
     // The pin is pressed into the walls of the well, whose floor is 1 below it.
     let parts = vec![
         part("pin", &[cuboid([-1.05, -1.05, 1.0], [1.05, 1.05, 6.0])]),
@@ -551,7 +551,7 @@ fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
 }
 
 #[test]
-fn an_overlap_that_is_ignored_does_not_become_deeper() {
+fn ignored_overlap_must_not_become_deeper() {
     let parts = vec![
         part("cube", &[cuboid([0.0; 3], [1.0; 3])]),
         part("long", &[cuboid([0.75, -1.0, -1.0], [9.0, 2.0, 2.0])]),
@@ -572,7 +572,7 @@ fn an_overlap_that_is_ignored_does_not_become_deeper() {
 }
 
 #[test]
-fn what_is_stuck_is_said_of_the_directions_asked() {
+fn stuck_report_counts_distinct_directions() {
     let assembly = Assembly::new(links().to_vec()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let (axes, all) = ([DVec3::X, DVec3::Y, DVec3::Z], [true; 2]);
@@ -593,7 +593,7 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
 }
 
 #[test]
-fn maps_find_half_spheres_and_isolated_directions() {
+fn maps_contain_half_sphere_and_isolated_direction() {
     let map = |parts: Vec<_>, directions: &[DVec3]| {
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
@@ -629,7 +629,7 @@ fn maps_find_half_spheres_and_isolated_directions() {
 }
 
 #[test]
-fn directions_and_names_that_are_wrong_are_refused() {
+fn invalid_directions_and_names_are_rejected() {
     let assembly = boxed();
     assert!(matches!(assembly.index("lod"), Err(AssemblyError::UnknownPart { near: Some(_), .. })));
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
@@ -656,7 +656,7 @@ fn along(assembly: &Assembly, part: usize, d: DVec3) -> PartRoom {
 }
 
 #[test]
-fn a_sheet_on_edge_does_not_pass_through_a_block() {
+fn sheet_on_edge_is_blocked_by_a_block() {
     // In the plane y = 1, next to a block; one wall of a flat box.
     let sheet = part("sheet", &[sheets([-9.0, 1.0, -1.0], [-3.0, 1.0, 1.0], &[2])]);
     let block = part("block", &[cuboid([0.0, -4.0, -4.0], [4.0; 3])]);
@@ -672,7 +672,7 @@ fn a_sheet_on_edge_does_not_pass_through_a_block() {
 }
 
 #[test]
-fn a_cube_leaves_a_tray_of_sheets_upwards() {
+fn cube_leaves_a_tray_of_sheets_upwards() {
     let tray = part("tray", &[sheets([-4.0, -4.0, 0.0], [4.0, 4.0, 5.0], &[0, 2, 3, 4, 5])]);
     let cube = part("cube", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0])]);
     let assembly = Assembly::new(vec![cube, tray]).unwrap();
@@ -688,7 +688,7 @@ fn a_cube_leaves_a_tray_of_sheets_upwards() {
 }
 
 #[test]
-fn files_of_sheets_say_the_same() {
+fn sheet_files_give_the_same_plans() {
     let folder =
         std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/assemblies");
     for (name, first, d) in
@@ -708,7 +708,7 @@ fn files_of_sheets_say_the_same() {
 
 /// Fins, doubled squares and reversed facets of CAD exports: 5 of 6 bodies are closed after the repair.
 #[test]
-fn surfaces_that_enclose_nothing_are_mended_or_refused() {
+fn defective_surfaces_are_repaired_or_rejected() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../../shared/data/assemblies/pairs");
     for (name, mended, fins) in

@@ -87,7 +87,7 @@ fn room_of_boxes(a: [DVec3; 2], b: [DVec3; 2], d: DVec3) -> Option<f64> {
 }
 
 #[test]
-fn rooms_of_boxes_are_intervals() {
+fn rooms_of_boxes_equal_interval_arithmetic() {
     let mut random = Random::new(77);
     let (mut free, mut blocked, mut overlapping, mut near) = (0, 0, 0, 0);
     for round in 0..40 {
@@ -152,7 +152,7 @@ fn rooms_of_boxes_are_intervals() {
 }
 
 #[test]
-fn plans_of_boxes_can_be_walked() {
+fn steps_of_box_plans_have_no_overlaps() {
     let mut random = Random::new(31);
     let mut steps = 0;
     for round in 0..12 {
@@ -168,7 +168,7 @@ fn plans_of_boxes_can_be_walked() {
 }
 
 #[test]
-fn a_drawer_comes_out_with_what_is_in_it() {
+fn drawer_is_removed_with_its_contents() {
     // The cabinet is open towards x, the drawer towards z.
     let cabinet = [
         cuboid([-1.0, -3.0, -1.0], [0.0, 3.0, 4.0]),
@@ -192,7 +192,7 @@ fn a_drawer_comes_out_with_what_is_in_it() {
 }
 
 #[test]
-fn a_bolt_stops_where_its_head_sits() {
+fn bolt_stops_where_its_head_touches() {
     // A square bolt, 1 above its seat, in a blind hole with 2 below its end.
     let bolt =
         [cuboid([-2.0, -2.0, 1.0], [2.0, 2.0, 2.0]), cuboid([-1.0, -1.0, -4.0], [1.0, 1.0, 1.5])];
@@ -219,7 +219,7 @@ fn a_bolt_stops_where_its_head_sits() {
 }
 
 #[test]
-fn three_links_of_a_chain_leave_their_box_as_one() {
+fn chain_of_three_links_leaves_its_box_as_one_group() {
     let ring = |x: f64| {
         [
             cuboid([x - 2.0, -2.0, -0.5], [x - 1.0, 2.0, 0.5]),
@@ -250,7 +250,7 @@ fn three_links_of_a_chain_leave_their_box_as_one() {
 }
 
 #[test]
-fn a_pair_that_holds_each_other_is_stuck() {
+fn closed_dovetail_is_interlocked() {
     // A dovetail across, closed at both ends: it moves neither up nor along.
     let rail = [
         cuboid([-5.0, -2.0, 0.0], [5.0, 2.0, 1.0]),
@@ -273,7 +273,7 @@ fn a_pair_that_holds_each_other_is_stuck() {
 }
 
 #[test]
-fn a_way_between_the_samples_is_found_for_what_is_loose() {
+fn removal_direction_between_samples_is_found() {
     // A room with a window and a cube inside, which can leave along 0.4 % of the sphere.
     let room = ROOM_WITH_WINDOW.map(|[low, high]| cuboid(low, high));
     let cube = [cuboid([-0.2, -0.2, -0.2], [0.2, 0.2, 0.2])];

@@ -117,7 +117,7 @@ fn boxes(random: &mut Random, count: usize) -> Assembly {
 }
 
 #[test]
-fn steps_are_short_and_may_be_exchanged_as_they_say() {
+fn steps_are_short_and_commute_up_to_precedence() {
     let mut random = Random::new(77);
     let (mut steps, mut kept_up) = (0, 0);
     for round in 0..40 {
@@ -177,7 +177,7 @@ fn joint(place: DAffine3) -> Assembly {
 }
 
 #[test]
-fn likes_go_together_and_the_lower_plate_stays() {
+fn identical_parts_leave_in_one_stage_and_lower_plate_stays() {
     let mut random = Random::new(8);
     for round in 0..5 {
         let turn =
@@ -197,7 +197,7 @@ fn likes_go_together_and_the_lower_plate_stays() {
 }
 
 #[test]
-fn the_other_way_up_parts_are_lifted_the_other_way() {
+fn removal_direction_follows_the_up_option() {
     // Three stacked plates: the lower ones carry the upper ones.
     let part = |name: &str, piece: Piece| Part::new(name, &[piece]).unwrap();
     let assembly = Assembly::new(vec![
@@ -234,7 +234,7 @@ fn shaft(at: f64, gap: f64) -> (Vec<Piece>, Piece) {
 }
 
 #[test]
-fn a_gap_that_leads_out_much_sooner_is_found_for_the_one_of_two_likes_that_has_it() {
+fn shortcut_is_used_only_by_the_part_that_has_one() {
     let [(mut walls, a), (others, b)] = [shaft(0.0, 0.5), shaft(4.0, 1.5)];
     walls.extend(others);
     let part = |name: &str, pieces: &[Piece]| Part::new(name, pieces).unwrap();

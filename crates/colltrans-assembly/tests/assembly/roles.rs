@@ -25,7 +25,7 @@ fn planned(bodies: &Bodies) -> Plan {
 }
 
 #[test]
-fn a_pair_is_asked_as_if_all_had_its_tolerance_and_others_as_if_none_had() {
+fn pair_tolerance_affects_only_its_pair() {
     let mut random = Random::new(12);
     let (mut asked, mut changed) = (0, 0);
     for round in 0..20 {
@@ -80,7 +80,7 @@ fn a_pair_is_asked_as_if_all_had_its_tolerance_and_others_as_if_none_had() {
 /// With tolerances from chord errors, a pair with its own tolerance gives the results of that tolerance for all
 /// parts. All other pairs are unaffected.
 #[test]
-fn tolerances_of_pairs_stand_beside_those_of_chord_errors() {
+fn pair_tolerance_overrides_chord_errors_of_its_pair_only() {
     let mut random = Random::new(31);
     let (mut asked, mut changed) = (0, 0);
     for _ in 0..12 {
@@ -125,7 +125,7 @@ fn pressed() -> Assembly {
 }
 
 #[test]
-fn a_press_fit_comes_out_and_its_later_contacts_count() {
+fn press_fit_is_removable_and_later_contacts_block() {
     let plain = pressed();
     let bodies = Bodies::new(&plain, Fit::Tolerance(0.002)).unwrap();
     assert!(bodies.overlaps(0, 1), "too tight");
@@ -155,7 +155,7 @@ fn a_press_fit_comes_out_and_its_later_contacts_count() {
 }
 
 #[test]
-fn what_snaps_passes_what_it_meets_at_once_and_nothing_later() {
+fn snap_fit_tolerates_only_early_contacts() {
     let mut random = Random::new(3);
     let mut seen = [0; 3];
     for _ in 0..300 {
@@ -202,7 +202,7 @@ fn what_snaps_passes_what_it_meets_at_once_and_nothing_later() {
 }
 
 #[test]
-fn what_is_glued_leaves_as_one_and_an_overlap_without_end_lets_what_crosses_pass() {
+fn glued_parts_leave_as_one_and_endless_overlap_is_tolerated() {
     let glued = PairFit { role: Some(Role::Glued), tolerance: None };
     let parts = vec![
         part("floor", &[cuboid([0.0, 0.0, -1.0], [9.0, 9.0, 0.0])]),
@@ -234,7 +234,7 @@ fn what_is_glued_leaves_as_one_and_an_overlap_without_end_lets_what_crosses_pass
 
 #[test]
 #[ignore = "long: threads of many facets"]
-fn a_thread_is_suggested_where_a_nut_is_all_around_its_screw() {
+fn thread_is_suggested_only_if_the_nut_surrounds_the_screw() {
     let wave = |phase: f64| 5.0 + 0.6 * (1.0 - (2.0 * phase - 1.0).abs());
     let screw = helical(None, wave, 1.25, 8);
     let nut = helical(Some(9.0), |phase| wave(phase) - 0.1, 1.25, 4);
@@ -281,7 +281,7 @@ fn ring(name: &str, sides: usize, [inner, outer]: [f64; 2], height: f64) -> Part
 }
 
 #[test]
-fn overlaps_are_told_apart_and_what_is_suggested_takes_the_machine_apart() {
+fn suggestions_classify_overlaps_and_make_them_removable() {
     let cases: [(&str, f64, Option<Role>, &str); 3] = [
         ("pin", 5.01, Some(Role::Press), "too large"),
         ("pin", 4.995, None, "chord errors"),

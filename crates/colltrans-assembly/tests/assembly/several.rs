@@ -101,7 +101,7 @@ fn slot() -> Assembly {
 }
 
 #[test]
-fn a_key_leaves_in_two_moves_without_being_asked_for() {
+fn default_options_find_a_path_of_two_moves() {
     let assembly = slot();
     let plan = planned(&assembly, PlanOptions::default());
     assert!(plan.stuck.is_empty() && plan.left.is_empty());
@@ -119,7 +119,7 @@ fn a_key_leaves_in_two_moves_without_being_asked_for() {
 }
 
 #[test]
-fn one_move_is_asked_for_and_two_are_not_looked_for() {
+fn one_leg_disables_the_path_search() {
     let plan = planned(&slot(), PlanOptions::default().with_legs(1));
     assert_eq!(plan.stuck[0].moves, Moves::NotAsked("no more than one was asked for"));
     assert_eq!(plan.left, [0, 1]);
@@ -134,7 +134,7 @@ fn sliding_lid() -> Assembly {
 }
 
 #[test]
-fn a_lid_makes_room_and_goes_back() {
+fn lid_that_makes_room_returns_after_the_removal() {
     let assembly = sliding_lid();
     let plan = planned(&assembly, PlanOptions::default());
     let step = &plan.steps[0];
@@ -192,7 +192,7 @@ fn base_rests(assembly: &Assembly, plan: &Plan) {
 /// The search for paths keeps the largest body fixed. The plan instead keeps the plate, because the larger key is to
 /// be removed.
 #[test]
-fn a_wanted_key_that_is_larger_than_its_plate_moves_and_the_plate_rests() {
+fn selected_part_moves_even_if_it_is_the_largest() {
     let key = blocks(
         "key",
         &[
@@ -214,7 +214,7 @@ fn a_wanted_key_that_is_larger_than_its_plate_moves_and_the_plate_rests() {
 
 #[test]
 #[ignore = "long: 150 puzzles, and all moves of their cubes"]
-fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
+fn random_puzzles_agree_with_exhaustive_cube_moves() {
     let mut random = Random::new(29);
     // Numbers of stuck and solved puzzles, and of those whose first step has more than one, two and three moves.
     let mut counts = [0; 5];
@@ -242,7 +242,7 @@ fn collected(name: &str) -> Option<Assembly> {
 }
 
 #[test]
-fn a_burr_of_level_six_comes_apart_whole() {
+fn burr_of_level_six_is_disassembled_by_six_moves() {
     let Some(assembly) = collected("burr_p3_19") else { return };
     let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
     assert!(plan.left.is_empty() && plan.stuck.is_empty());

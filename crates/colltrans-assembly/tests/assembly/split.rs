@@ -51,7 +51,7 @@ fn obj(parts: &[(&str, Mesh)]) -> String {
 }
 
 #[test]
-fn a_single_file_is_what_it_names() {
+fn named_objects_of_a_single_file_are_parts() {
     let hollow = cube(0.0, 3.0).joined(&cube(1.0, 2.0).reversed());
     let text = obj(&[("box", hollow), ("lid", cube(4.0, 5.0).joined(&cube(6.0, 7.0)))]);
     let files = files(&[("a.obj", &text)]);
@@ -69,7 +69,7 @@ fn a_single_file_is_what_it_names() {
 }
 
 #[test]
-fn a_single_file_that_names_nothing_is_its_bodies() {
+fn unnamed_bodies_of_a_single_file_are_parts() {
     let text = obj(&[("", cube(0.0, 1.0).joined(&cube(0.5, 2.0)).joined(&cube(3.0, 4.0)))]);
     let files = files(&[("a.obj", &text), ("c.off", CUBE)]);
     let bodies = open("a.obj", &files, Split::Auto).unwrap();
@@ -82,7 +82,7 @@ fn a_single_file_that_names_nothing_is_its_bodies() {
 }
 
 #[test]
-fn files_of_a_folder_stay_parts_and_it_is_said() {
+fn files_of_a_folder_stay_parts_with_a_note() {
     let folder = TemporaryFolder::new();
     let two = obj(&[("x", cube(2.0, 3.0)), ("", cube(4.0, 5.0))]);
     std::fs::write(folder.path().join("screws.obj"), &two).unwrap();
@@ -103,7 +103,7 @@ fn files_of_a_folder_stay_parts_and_it_is_said() {
 }
 
 #[test]
-fn a_manifest_says_it_of_each_part() {
+fn manifest_splits_each_part_on_its_own() {
     let two = obj(&[("x", cube(2.0, 3.0)), ("y", cube(4.0, 5.0))]);
     let text = "[[part]]\nfile = 'a.obj'\n[[part]]\nfile = 'a.obj'\nname = 'b'\nsplit = 'names'\nfixed = true\n\
         translation = [0, 0, 9]\n";
@@ -126,7 +126,7 @@ fn a_manifest_says_it_of_each_part() {
 }
 
 #[test]
-fn surfaces_that_are_mended_are_taken_apart_after_that() {
+fn repaired_surfaces_are_split_after_the_repair() {
     let mut mesh = cube(0.0, 1.0).joined(&cube(3.0, 4.0));
     mesh.faces[2].reverse();
     mesh.faces.push(mesh.faces[7].clone());
@@ -143,7 +143,7 @@ fn surfaces_that_are_mended_are_taken_apart_after_that() {
 }
 
 #[test]
-fn an_item_of_a_3mf_build_is_one_part_if_asked_for() {
+fn split_never_keeps_3mf_items_whole() {
     let object =
         |id: u32, name: &str, mesh: &str| format!("<object id=\"{id}\"{name}>{mesh}</object>");
     let small = mesh_of_3mf([1.0; 3]);
@@ -206,7 +206,7 @@ fn glb(nodes: &serde_json::Value, asset: &serde_json::Value) -> Vec<u8> {
 }
 
 #[test]
-fn what_a_converter_says_of_nodes_is_read() {
+fn converter_extras_of_glb_nodes_are_read() {
     use serde_json::json;
     let part = |error: f64| json!({"colltrans": {"part": true, "chord_error": error}});
     let nodes = json!([
@@ -250,7 +250,7 @@ fn what_a_converter_says_of_nodes_is_read() {
 
 /// An assembly that was read from glTF is written with the same axes and lengths.
 #[test]
-fn glb_out_lies_over_glb_in() {
+fn written_glb_has_the_axes_and_lengths_of_its_source() {
     let nodes =
         serde_json::json!([{"name": "a", "mesh": 0, "scale": [1, 2, 3], "translation": [4, 5, 6]}]);
     let first = colltrans_assembly_io::read::glb(
@@ -286,7 +286,7 @@ fn dae(metres: f64, nodes: &str) -> String {
 }
 
 #[test]
-fn nodes_of_collada_are_parts_in_their_unit() {
+fn collada_nodes_become_parts_in_the_file_unit() {
     let shown = "<instance_geometry url='#g'/>";
     let nodes = format!(
         "<node name='arm'>{shown}<node name='tip'><translate>0 0 4</translate>{shown}</node></node>"

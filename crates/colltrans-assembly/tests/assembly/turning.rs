@@ -75,7 +75,7 @@ fn is_free(assembly: &Assembly, plan: &Plan) {
 
 #[test]
 #[ignore = "long: many facets that turn"]
-fn a_screw_with_play_is_unscrewed_as_it_is() {
+fn screw_with_play_is_unscrewed_without_extra_tolerance() {
     for (pitch, fixed) in [(1.0, "screw"), (-1.25, "nut")] {
         // The nut is in the middle, equally far from both ends.
         let nut = vec![piece(nut(pitch, 0.2), through(pitch))];
@@ -96,7 +96,7 @@ fn a_screw_with_play_is_unscrewed_as_it_is() {
 
 #[test]
 #[ignore = "long: many facets that turn"]
-fn a_thread_without_play_takes_the_tolerance_of_its_facets() {
+fn thread_without_play_needs_the_chord_tolerance() {
     let nut = vec![piece(nut(1.0, 0.0), through(1.0))];
     let assembly = bolted(&[piece(screw(1.0), DAffine3::IDENTITY)], &nut);
     let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
@@ -115,7 +115,7 @@ fn a_thread_without_play_takes_the_tolerance_of_its_facets() {
 
 #[test]
 #[ignore = "long: many facets that turn"]
-fn a_screw_that_is_turned_or_beside_its_hole_begins_where_it_fits() {
+fn misaligned_screw_starts_from_its_best_pose() {
     for (by, aside) in [(0.3, DVec3::ZERO), (-0.2, DVec3::new(0.1, -0.15, 0.0))] {
         let nut = vec![piece(nut(1.0, 0.2), through(1.0))];
         let assembly = bolted(&[piece(screw(1.0), turned(by, aside))], &nut);
@@ -136,7 +136,7 @@ fn a_screw_that_is_turned_or_beside_its_hole_begins_where_it_fits() {
 
 #[test]
 #[ignore = "long: many facets that turn"]
-fn what_cannot_be_certified_is_said_with_why() {
+fn unproven_turn_reports_the_reason() {
     let own = || vec![piece(screw(1.0), DAffine3::IDENTITY)];
     let plain = piece(helical(Some(9.0), |_| 5.2, 1.0, 2), through(1.0));
     let plan = planned(&Bodies::new(&bolted(&own(), &[plain]), FIT).unwrap());
@@ -159,7 +159,7 @@ fn what_cannot_be_certified_is_said_with_why() {
 
 #[test]
 #[ignore = "long: many facets that turn"]
-fn equal_screws_are_told_as_one() {
+fn identical_screws_form_one_stage() {
     let plate = [10.0, 30.0].map(|x| {
         let place = DAffine3::from_translation(DVec3::X * x);
         [piece(nut(1.0, 0.2), place * through(1.0)), piece(screw(1.0), place)]
@@ -178,7 +178,7 @@ fn equal_screws_are_told_as_one() {
 
 #[test]
 #[ignore = "long: many facets that turn"]
-fn a_turn_moves_points_as_its_numbers_say() {
+fn moved_point_follows_the_screw_motion() {
     let nut = vec![piece(nut(1.0, 0.2), through(1.0))];
     let plan = planned(
         &Bodies::new(&bolted(&[piece(screw(1.0), turned(0.3, DVec3::ZERO))], &nut), FIT).unwrap(),
@@ -219,7 +219,7 @@ fn plug() -> Vec<Piece> {
 }
 
 #[test]
-fn a_bayonet_is_turned_and_then_pulled() {
+fn bayonet_is_turned_and_then_pulled() {
     let parts = vec![part("socket", &socket(0.7)), part("plug", &plug())];
     let assembly = Assembly::new(parts).unwrap().with_fixed(&["socket"]).unwrap();
     let bodies = Bodies::new(&assembly, FIT).unwrap();
@@ -251,7 +251,7 @@ fn a_bayonet_is_turned_and_then_pulled() {
 
 /// A pair that looks like a thread and a snap fit: the name decides, and it gets one role.
 #[test]
-fn a_ring_that_snaps_into_a_groove_is_no_thread() {
+fn name_of_a_ring_decides_snap_over_thread() {
     let roles = |name: &str| {
         let nut = part("nut", &[piece(nut(2.0, 0.05), DAffine3::IDENTITY)]);
         let ring = part(name, &[piece(screw(2.0), through(2.0))]);

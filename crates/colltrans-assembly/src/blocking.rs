@@ -3,8 +3,7 @@
 //!
 //! Notation: an arc from `A` to `B` states that `A`, moving to infinity along `d`, collides with `B`. The *closure*
 //! of `A` is the set of all parts that are reachable from it; they must move with `A`. The strongly connected
-//! components are the smallest groups that move as one body. A component that no arc leaves can be removed along `d`
-//! as it is.
+//! components are the smallest groups that move as one body. A component that no arc leaves can be removed along `d`.
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -90,7 +89,7 @@ impl Blocking {
         groups
     }
 
-    /// Returns the components that no arc leaves, which can be removed as they are.
+    /// Returns the components that no arc leaves. Each can be removed.
     pub fn removable(&self) -> Vec<Vec<usize>> {
         let mut group_of = vec![usize::MAX; self.node.len()];
         let groups = self.groups();

@@ -141,7 +141,7 @@ fn each_facing_pair(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Fa
     }
 }
 
-/// Pieces of at most this fraction of twice a facet's area are no contact.
+/// Fraction of twice a facet's area up to which a piece is ignored.
 const MIN_AREA: f64 = 1e-9;
 /// Number of pairs of facets from which on two faces are compared as wholes.
 const MANY_PAIRS: usize = 64;
@@ -285,11 +285,8 @@ impl<'t> Plane<'t> {
         Some(Piece { origin: self.facet[0], axes: self.axes, shadow, area, error, middle })
     }
 
-    /// Returns a bound on the rounding error of the plane coordinates of some points.
-    ///
-    /// Let `D` be the largest distance of a point from the facet's first corner, and `s` the inverse sine of the
-    /// facet's angle there. The normal has an error of `8 u s`, and the other two axes one of `8 u s + 4 u`.
-    /// Coordinates thus have an error of at most `32 u D (1 + s)`.
+    /// Returns a bound on the rounding error of the plane coordinates of some points (derived in
+    /// `docs/theory/disassembly.md`).
     fn coordinate_error(&self, points: impl Iterator<Item = DVec3>) -> f64 {
         const U: f64 = f64::EPSILON / 2.0;
         let farthest = points.map(|p| p.distance(self.facet[0])).fold(0.0, f64::max);
@@ -332,10 +329,7 @@ impl Patch {
 
 /// Returns a bound on the error of the area of the intersection of two polygons whose corners have an error of `off`.
 ///
-/// The boundaries of both have this error. So does each cut, by the rounding of `side` divided by the length of the
-/// line. The ends of a strip lie on its boundary up to `4 u D`. If the boundary of a convex polygon lies within `h`
-/// of another one, the areas differ by at most `h` times the perimeter, to first order. The bound takes five such
-/// errors, and doubles them for the rounding of the sum over the corners.
+/// `docs/theory/disassembly.md` derives it.
 fn area_error_bound(off: f64, perimeters: [f64; 2]) -> f64 {
     10.0 * off * (perimeters[0] + perimeters[1])
 }

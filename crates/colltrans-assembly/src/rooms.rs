@@ -1,6 +1,6 @@
 //! Free travel of a part, or of a group that moves as one body, along a direction against all others.
 //!
-//! The other parts come from a tree in the order in which their boxes are met. The best distance so far limits each
+//! A tree returns the other parts in the order in which their boxes are reached. The best distance so far limits each
 //! query and ends the traversal once the next box lies beyond it.
 //!
 //! If overlaps are ignored, overlapping parts are the expensive ones, because all crossings at the start must be

@@ -1,19 +1,11 @@
-//! Suggested [roles](crate::roles) of pairs that overlap on purpose. Suggestions are reported and never applied
-//! silently.
+//! Suggested [roles](crate::roles) of pairs. Suggestions are reported, not proven, and never applied silently.
 //!
-//! Two overlapping parts are classified in this order:
-//!
-//! 1. *soft*, if the name of one says so;
-//! 2. a *thread*, if a helix is found. Rings that snap into a groove are excluded, because their gap may look like a
-//!    helix;
-//! 3. round, if one part lies in the other about an axis along their common length. This is a *press* fit if the
-//!    inner vertices lie farther out than the outer ones, otherwise chord errors of two tessellations;
-//! 4. a shallow overlap, for which a tolerance is suggested.
-//!
-//! A ring with a name such as circlip *snaps* into the groove of a part that stops it in both directions. Threads
-//! with play are searched among interlocked parts. A pair gets at most one role. None of this is proven. Deeper
-//! overlaps, such as balls in rings that are drawn too tight, get no suggestion: with a tolerance they would slip
-//! through their blockers.
+//! A ring with a name such as circlip *snaps* into the groove of a part that stops it in both directions. Other
+//! overlapping pairs are, in this order, *soft* (by the name of a part), a *thread* (by a helix), round, or a shallow
+//! overlap. A round pair is a *press* fit if the inner vertices lie farther out than the outer ones, otherwise it has
+//! chord errors. A shallow overlap gets a tolerance. Deeper overlaps get no suggestion: with a tolerance such parts
+//! would slip through their blockers. Threads with play are searched among interlocked parts. A pair gets at most one
+//! role, and a snap ring is never a thread, because its gap may look like a helix.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,16 +1,9 @@
 //! The smallest set of parts whose removal takes selected parts out.
 //!
-//! Notation: `N` is a set of parts that contains the selected ones. `N` is *sufficient* if the selected parts leave
-//! when all removable subsets of `N` are removed repeatedly. A removable subset stays removable, so one trial decides
-//! this.
-//!
-//! Branching rule: let `N` be insufficient, and `S` a sufficient superset. In a removal of `S`, some part `n` of `N`
-//! that the trial could not remove leaves along a direction `k` in which parts outside of `N` block it. (If each left
-//! along a direction in which only parts of `N` block it, the first could have left with `N` alone.) All parts that
-//! block `n` along `k` then belong to `S`. Adding these to `N`, for all `n` and `k`, misses no sufficient set. An
-//! addition that contains another one is skipped. For a subassembly that must stay whole until all other parts are
-//! gone, all other parts are one more addition. Sets are tried in order of size, so the first sufficient set is a
-//! smallest one.
+//! A set that contains the selected parts is *sufficient* if they leave when all its removable subsets are removed
+//! repeatedly. An insufficient set is extended by all parts that block one of its remaining parts along one
+//! direction. Sets are tried in order of size, so the first sufficient set is a smallest one.
+//! `docs/theory/disassembly.md` shows that no sufficient set is missed.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
@@ -185,7 +178,7 @@ impl<'a> SubsetSearch<'a> {
         }
     }
 
-    /// Returns the supersets of the branching rule, smallest first. Omits sets that contain another one.
+    /// Returns the extensions of a set, smallest first. Omits sets that contain another one.
     fn larger_sets(&self, set: &PartSet, there: &[bool]) -> Vec<PartSet> {
         let mut found: Vec<PartSet> = Vec::new();
         let mut add = |parts: &mut dyn Iterator<Item = usize>| {

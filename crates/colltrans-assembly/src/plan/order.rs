@@ -1,10 +1,5 @@
 //! Choice of the next step: which removable group leaves, and along which direction.
 //!
-//! A removable group stays removable, because removed parts do not return. Every choice therefore leads equally far,
-//! and the choice only affects the effort. As a mechanic would, the cost prefers groups that carry nothing, short
-//! travel, identical parts one after another, an unchanged direction, and lifting.
-//!
-//! Notation:
 //! - `up` is opposite to gravity. A part *rests on* the parts that block it at once along `-up`.
 //! - A part *falls* if nothing that remains carries it. The lowest parts, the *base* and fixed parts never fall.
 //! - The *travel* of a group along `d` is the distance after which it is beyond all remaining parts whose boxes
@@ -12,7 +7,7 @@
 //!
 //! A direction is considered if its travel is at most [`TRAVEL_SLACK`] times the shortest one. The choice of least
 //! [cost](Order::step_cost) wins; ties go to the first part. Before a choice is accepted, samples of the sphere are
-//! searched for a much shorter direction, because each of several identical parts may have an exit of its own.
+//! searched for a much shorter direction. `docs/theory/disassembly.md` lists the costs.
 
 use std::collections::BTreeMap;
 
@@ -262,8 +257,8 @@ impl<'a> Order<'a> {
         single.ranking.insert(part, self.likes[part], ways);
     }
 
-    /// Returns the best of some groups, each given with the indices of its free directions. Returns `None` if there
-    /// are none.
+    /// Returns the best of some groups, each given with the indices of its free directions. Returns `None` without
+    /// groups.
     pub(super) fn best_group<'g>(
         &mut self,
         groups: &(impl Iterator<Item = (&'g [usize], &'g [usize])> + Clone),

@@ -106,13 +106,10 @@ impl Ranking {
     /// Returns the best part and the index of its direction. Returns `None` if no part is ranked.
     ///
     /// The result equals that of a scan over all parts in order in which a removal must be [better](is_better) than
-    /// the best before it. `last` is the shape of the step before. `cost` must increase with the own cost, and must
-    /// be larger by far more than [`EQUAL`] for another shape.
-    ///
-    /// Sort the removals by cost, and take the chain from the cheapest one on in steps of at most twice [`EQUAL`].
-    /// The first removal of the chain that the scan meets is better than all removals outside. The scan therefore
-    /// ends in the chain, and only the chain is examined; it ends at a step of more than three times [`EQUAL`]. Of
-    /// several removals with one own cost the first counts.
+    /// the best before it. Only the removals whose costs follow the least one in small steps are examined, because
+    /// the scan ends with one of them (`docs/theory/disassembly.md`). Of several removals with one own cost the first
+    /// counts. `last` is the shape of the step before. `cost` must increase with the own cost, and must be larger by
+    /// far more than [`EQUAL`] for another shape.
     pub(super) fn best_removal(
         &self,
         last: Option<usize>,

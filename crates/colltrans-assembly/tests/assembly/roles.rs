@@ -63,7 +63,7 @@ fn pair_tolerance_affects_only_its_pair() {
                 }
             }
         }
-        // One direction is asked, the other is its mirror image.
+        // Only one direction is computed, the other is its mirror image.
         let all = vec![true; 8];
         let watch = Watch::default();
         let both = [DVec3::X, DVec3::NEG_X];

@@ -218,8 +218,8 @@ fn without_signed_zeros(d: DVec3) -> DVec3 {
 }
 
 struct Axis {
-    /// Priority class, lowest first: axes of cylinders, and vectors orthogonal to the two largest contacts, have the
-    /// lowest.
+    /// Priority class, lowest first: 0 for axes of cylinders, 1 for the normal of the largest contact and the vector
+    /// orthogonal to the two largest ones. Higher classes only give finer candidates.
     rank: usize,
     weight: f64,
     along: DVec3,

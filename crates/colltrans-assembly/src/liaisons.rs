@@ -110,7 +110,7 @@ fn contact_patches(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
 }
 
 /// Returns the corners of the areas in which a part touches another one with facets whose normals are along `down`,
-/// within [`OPPOSITE`].
+/// within [`MIN_OPPOSITE_COSINE`].
 pub(crate) fn footprint_corners(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DVec3> {
     let mut corners = Vec::new();
     each_facing_pair(a, b, reach, &mut |[p, q]| {

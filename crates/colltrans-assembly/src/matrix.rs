@@ -197,7 +197,7 @@ impl<'a> Matrix<'a> {
             let met = part_meetings(bodies, part, directions[k], among, *start, workspace);
             let stored = if opposite(k).is_some() { 2 * met.len() } else { met.len() };
             if count.fetch_add(stored, Relaxed) + stored > most {
-                let what = "pairs of parts meet along the directions asked";
+                let what = "contacts of pairs of parts along the tested directions";
                 return Err(AssemblyError::TooMany { what, most });
             }
             tally.step().map(|()| (k, met))

@@ -782,7 +782,11 @@ mod tests {
         assert_eq!(plan.steps.len(), 39);
         assert_eq!(plan.last.len(), 1);
         assert!(plan.steps.iter().all(|step| step.parts.len() == 1));
-        assert_eq!(GRAPH_COUNT.with(std::cell::Cell::get), 0, "of 40 steps along 2 directions");
+        assert_eq!(
+            GRAPH_COUNT.with(std::cell::Cell::get),
+            0,
+            "number of graphs for 40 steps along 2 directions"
+        );
     }
 
     #[test]

@@ -85,8 +85,8 @@ impl Tolerated {
             (Self::Core(radius), _) => {
                 format!("thread, the screw taken as its core of radius {}", short(*radius))
             }
-            (Self::Bent(length), _) => format!("snap, contacts within {length} let pass"),
-            (Self::Crossing, _) => format!("{name}, what crosses at the start let pass"),
+            (Self::Bent(length), _) => format!("snap, contacts within {length} tolerated"),
+            (Self::Crossing, _) => format!("{name}, crossings at the start tolerated"),
             (Self::AsOne, _) => "glued".into(),
         }
     }

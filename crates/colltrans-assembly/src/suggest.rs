@@ -100,7 +100,7 @@ fn find_snaps(bodies: &Bodies) -> Vec<(usize, Suggestion)> {
                 let fit =
                     PairFit { role: Some(Role::Snap), tolerance: Some(two_digits_up(length)) };
                 let why = format!(
-                    "{} is called so, {} thick, and {} stops it either way",
+                    "the name of {} says so, it is {} thick, and {} stops it in both directions",
                     parts[ring].name(),
                     short(length),
                     parts[other].name()
@@ -127,7 +127,7 @@ fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> O
         |role, tolerance, why| Some(Suggestion { parts, fit: PairFit { role, tolerance }, why });
     let soft = of.iter().find(|part| is_called(part, &SOFT_NAMES));
     if let Some(soft) = soft {
-        return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
+        return said(Some(Role::Soft), tolerance, format!("the name of {} says so", soft.name()));
     }
     let screwed = !parts.iter().any(|part| rings.contains(part));
     let thread = screwed.then(|| find_helix(solids)).flatten();

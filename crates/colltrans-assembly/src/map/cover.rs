@@ -43,7 +43,7 @@ impl Cover {
     ) -> Result<Result<Self, String>, AssemblyError> {
         watch.check()?;
         if group.len() == bodies.len() {
-            return Ok(Err("there is no other part".to_owned()));
+            return Ok(Err("there are no other parts".to_owned()));
         }
         let removal = match Removal::new(bodies, group) {
             Ok(removal) => removal,

@@ -413,7 +413,10 @@ fn draw_legend(text: &mut String, map: &RemovalMap) {
     let cross = map.cover.is_ok() && !map.regions.is_empty();
     let marks = [
         (cross, "A cross is the direction farthest from the border"),
-        (!map.isolated.is_empty(), "A dot is free alone, or a region too small to be seen"),
+        (
+            !map.isolated.is_empty(),
+            "A dot is an isolated free direction, or a region too small to be drawn",
+        ),
     ];
     let marks: Vec<&str> = marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1).collect();
     let _ = writeln!(

@@ -82,7 +82,10 @@ pub(crate) fn way_out(
 
 /// Returns the free direction farthest from the borders of its region. The inner `None` means that there is none, the
 /// outer one that the exact computation does not decide it.
-#[expect(clippy::option_option, reason = "none at all, or not known")]
+#[expect(
+    clippy::option_option,
+    reason = "the outer option is whether it is decided, the inner one the direction"
+)]
 fn exact_way_out(
     bodies: &Bodies,
     group: &[usize],

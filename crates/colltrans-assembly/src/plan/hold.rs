@@ -132,7 +132,7 @@ impl Stuck {
             ),
         };
         let asked =
-            if self.constrained { ", as the order and directions are asked for" } else { "" };
+            if self.constrained { ", under the constraints on order and directions" } else { "" };
         let sentence = format!("{nothing}{asked}");
         let (heading, evidence) = match self.proven {
             Some(cells) => (
@@ -202,7 +202,7 @@ impl Stuck {
                 .push("Motions of several parts at once, each its own way, were not tried.".into());
         }
         if self.constrained {
-            sentences.push("What is asked of their order and directions counts.".into());
+            sentences.push("Constraints on their order and directions apply.".into());
         }
         // If they are few, the reason already names them all.
         let held = self.least_held_part().filter(|(_, by)| overlaps || by.len() > MAX_NAMES + 1);
@@ -223,7 +223,7 @@ impl Stuck {
         let open = match open {
             0 => String::new(),
             open => format!(
-                "; {open} of these {} are open surfaces, of which it is not known what is inside",
+                "; {open} of these {} are open surfaces, whose interior is unknown",
                 self.parts.len()
             ),
         };
@@ -264,7 +264,7 @@ impl Moves {
                 format!("Several moves, one after another, were not looked for: {why}.")
             }
             Self::NotKept => {
-                "Several moves that were found do not keep what is asked of order and directions."
+                "The paths of several moves that were found violate constraints on order and directions."
                     .into()
             }
             Self::Proven { cells } => format!(

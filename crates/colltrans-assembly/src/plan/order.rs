@@ -299,7 +299,8 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the considered directions of a group, each with its own cost: the travel, and the parts that fall or
-    /// lose balance. This cost does not depend on the steps before. Shorter directions that were found are included.
+    /// lose balance. This cost does not depend on the shape and direction of the step before. Shorter directions that
+    /// were found are included.
     fn own_costs(&mut self, parts: &[usize], ways: &[usize]) -> Vec<OwnCost> {
         self.bodies.count_look();
         let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);

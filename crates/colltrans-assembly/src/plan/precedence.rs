@@ -91,8 +91,9 @@ impl Plan {
 /// Returns the precedence of all parts as an AND/OR graph, along the directions of a matrix.
 ///
 /// A part can leave if for one of its alternatives (OR) all parts that it lists (AND) have left or leave with it.
-/// Alternatives that contain another one are omitted, as are fixed parts. Interlocked parts, and the parts of a
-/// subassembly, list each other and leave as a group.
+/// Alternatives that contain another one or a fixed part are omitted, and fixed parts have no entry. At most 16
+/// alternatives are listed for a part. Interlocked parts, and the parts of a subassembly, list each other and leave
+/// as a group.
 pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
     let parts = assembly.parts();
     let constraints = assembly.constraints();

@@ -85,7 +85,8 @@ pub(super) fn search_path(
     }
     let legs = options.legs;
     if !can_any_group_move(bodies, left, matrix) {
-        let why = "nothing can go by 2 % of the largest part along the directions asked";
+        let why =
+            "no group can travel 2 % of the size of the largest part along the tested directions";
         return Ok(Err(Moves::NotAsked(why)));
     }
     let parts = bodies.assembly().parts();
@@ -112,7 +113,7 @@ pub(super) fn search_path(
                 return Ok(Err(Moves::NotFound { legs, searched }));
             }
             Err(FreeError::Overlapping { .. }) => {
-                let why = "they overlap with 0.8 of the tolerance, with which moves are planned";
+                let why = "they overlap with 0.8 of the tolerance, which the search uses";
                 return Ok(Err(Moves::NotAsked(why)));
             }
             Err(error) => return Err(to_assembly_error(error)),
@@ -181,17 +182,17 @@ fn unsupported_reason(
     let ignored = |[a, b]: [usize; 2]| assembly.ignored(a, b).is_some();
     let lets_pass = options.start == StartOverlap::Ignore;
     if options.legs < 2 {
-        Some("no more than one was asked for")
+        Some("the maximum number of moves is 1")
     } else if bodies.fit().tolerance() < 0.0 {
-        Some("the parts are to be kept apart")
+        Some("the fit has a minimum gap")
     } else if left.len() > MAX_PARTS {
         Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
-        Some("there are open surfaces among them")
+        Some("some parts are open surfaces")
     } else if pairs().any(|p| bodies.tolerated(p).is_some()) {
-        Some("some of them have a fit of their own")
+        Some("some pairs have a fit of their own")
     } else if pairs().any(|p| ignored(p) || lets_pass && bodies.overlaps(p[0], p[1])) {
-        Some("overlaps among them are ignored")
+        Some("some overlaps are ignored")
     } else {
         None
     }
@@ -243,7 +244,7 @@ fn removal_path(
     way: &WayOut,
 ) -> RemovalPath {
     let turned = |v: DVec3, sign: f64| if sign < 0.0 { DVec3::ZERO - v } else { v };
-    let (last, before) = way.legs.split_last().expect("a way has a leg");
+    let (last, before) = way.legs.split_last().expect("a path has at least one leg");
     let (mut at, mut legs, mut return_legs) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
     let mut motions = Vec::new();
     for leg in before {

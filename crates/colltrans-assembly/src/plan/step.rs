@@ -97,20 +97,20 @@ impl Turn {
     /// Returns a description of the turns and of their proof.
     pub fn words(&self) -> String {
         let turns = format!("{:.3} turns", self.turns.abs());
-        let hand = if self.turns < 0.0 { ", clockwise as seen from where it goes" } else { "" };
+        let hand = if self.turns < 0.0 { ", clockwise if seen against the direction" } else { "" };
         let mut begin = String::new();
         if self.phase != 0.0 {
-            begin = format!(", begun turned by {:.3} turns", self.phase);
+            begin = format!(", from an initial rotation of {:.3} turns", self.phase);
         }
         if self.aside != DVec3::ZERO {
             let aside = self.aside.length();
-            begin = format!("{begin}, {aside:.2e} aside, where the axes are one");
+            begin = format!("{begin}, displaced by {aside:.2e} to align the axes");
         }
         match &self.proof {
             Ok(TurnProof { tolerance, .. }) => {
                 format!("{turns}{hand}{begin}: proven, tolerance {tolerance}")
             }
-            Err(why) => format!("{turns}{hand}{begin}: turning is not proven, as {why}"),
+            Err(why) => format!("{turns}{hand}{begin}: the turn is not proven: {why}"),
         }
     }
 }

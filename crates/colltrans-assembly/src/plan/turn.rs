@@ -49,7 +49,7 @@ pub(super) fn unscrewing_legs(
     let proof = if one {
         screw.prove_turn(bodies, &turning, others, &threads, start)
     } else {
-        Err("several threads would have to turn at once".into())
+        Err("several threads with different helices would have to turn simultaneously".into())
     };
     if let Some(turn) = &mut turning.turn {
         turn.proof = proof;
@@ -156,7 +156,7 @@ impl ScrewMotion {
         let [screw, nut] = if self.is_inner { [moving, staying] } else { [staying, moving] };
         if !self.seat.threaded {
             return Err(format!(
-                "the hole of {} has no thread, it is plain and narrower than the thread of {}",
+                "the hole of {} has no thread and is narrower than the thread of {}",
                 name(nut),
                 name(screw)
             ));
@@ -180,7 +180,7 @@ impl ScrewMotion {
             match bodies.turned(pair, along, None).map_err(|error| error.to_string())? {
                 Turned::Free(more) => pairs += more,
                 Turned::Overlapping(_) => {
-                    return Err(format!("{part} and {other} overlap where it begins"));
+                    return Err(format!("{part} and {other} overlap at the start of the motion"));
                 }
                 Turned::Blocked(share) => return Err(self.contact_message(share, part, other)),
             }
@@ -191,9 +191,9 @@ impl ScrewMotion {
     fn contact_message(&self, share: f64, part: &str, other: &str) -> String {
         let turns = share * self.turns.abs();
         if share >= 1.0 {
-            format!("once it is unscrewed, {part} meets {other} on its way")
+            format!("after the thread has left the hole, {part} collides with {other}")
         } else {
-            format!("after {turns:.2} turns facets of {part} meet those of {other}")
+            format!("after {turns:.2} turns facets of {part} and {other} collide")
         }
     }
 
@@ -218,7 +218,7 @@ impl ScrewMotion {
                 Turned::Overlapping(least) => {
                     let deep = least.map_or("deeply".into(), |deep| format!("by {deep:.2e}"));
                     let why = format!(
-                        "the threads of {} and {} overlap {deep} wherever they are turned to",
+                        "the threads of {} and {} overlap {deep} in any rotation",
                         names[0], names[1]
                     );
                     (least.unwrap_or(f64::INFINITY) * TOLERANCE_FACTOR, why)
@@ -227,7 +227,7 @@ impl ScrewMotion {
             };
             let next = two_digits_up(least.max(2.0 * tolerance).max(FIRST_TOLERANCE * depth));
             if next > most || tolerance >= most {
-                return Err(format!("{why}, and no more than {most:.2e} is let pass"));
+                return Err(format!("{why}; the maximum tolerance is {most:.2e}"));
             }
             tolerance = next;
         }

@@ -116,7 +116,7 @@ impl Wanted {
         let wanted = names(&self.parts);
         if !self.out {
             return format!(
-                "{wanted}: no way out was found, though all that comes off is taken away"
+                "{wanted}: no removal path was found, although all removable parts were removed"
             );
         }
         let others = match self.others.len() {
@@ -127,7 +127,7 @@ impl Wanted {
         let least = if self.least {
             "no fewer are enough, in single moves along the directions asked"
         } else {
-            "whether fewer are enough is not known"
+            "fewer may be enough"
         };
         format!("{wanted}: {others} ({}); {least}", names(&self.others))
     }

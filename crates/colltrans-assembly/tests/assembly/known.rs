@@ -3,7 +3,7 @@
 #![expect(
     clippy::default_trait_access,
     clippy::needless_range_loop,
-    reason = "what is the default, and what is numbered, is said by the calls around"
+    reason = "the surrounding calls show the types of defaults and the meaning of indices"
 )]
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -119,7 +119,7 @@ fn report_of_simultaneous_separation_claims_only_group_motions() {
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let found = Question::default().ask(&bodies, Watch::default()).unwrap();
     let [stuck] = &found.plan.stuck[..] else { panic!("one group: {:?}", found.plan) };
-    let cells = stuck.proven.expect("no group leaves as one, which is provable");
+    let cells = stuck.proven.expect("a proof that no group leaves as one");
     let reason = stuck.reason(&bodies);
     let claim =
         "No group of these 3 parts leaves the others as one in a straight motion in any direction";
@@ -164,7 +164,7 @@ fn linked_rings_leave_a_well_as_one_group() {
     // The lowest point is at -2.5, the rim at 5.
     assert!((plan.steps[0].travel.value - 7.5).abs() < 1e-9);
     assert_eq!(plan.left, [2]);
-    assert_eq!(plan.stuck.len(), 1, "the rings themselves");
+    assert_eq!(plan.stuck.len(), 1, "the rings must be interlocked");
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn bounded_rooms_equal_minimum_over_all_pairs() {
                     let met = matrix.of_part(k, a).iter().find(|m| m.fixed == b);
                     match room {
                         Room::Free => assert!(met.is_none()),
-                        Room::Overlapping => panic!("overlaps are ignored"),
+                        Room::Overlapping => panic!("ignored overlaps must not be reported"),
                         Room::Blocked(stop) => {
                             let distance = met.expect("it meets").displaced_distance();
                             assert!((distance - stop.displaced.value).abs() < 1e-9);
@@ -533,7 +533,7 @@ fn ignored_start_overlap_still_blocks_later_contacts() {
     let ignored = assembly.clone().with_ignored(&pair, Ignored::Overlap).unwrap();
     assert!(room_with(&ignored, DVec3::Z).is_free());
     let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::NEG_Z) else {
-        panic!("the floor is below")
+        panic!("the floor must block it")
     };
     // The query uses a tolerance of the depth of the overlap, 0.05, plus a twentieth. The result refers to the
     // nominal bodies.
@@ -668,7 +668,7 @@ fn sheet_on_edge_is_blocked_by_a_block() {
     assert!((along(&assembly, 1, DVec3::NEG_X).distance() - 3.0).abs() < 1e-5);
     let plan = planned(&assembly);
     assert_eq!(steps(&assembly, &plan)[0], ["sheet"]);
-    assert_eq!(plan.steps[0].surfaces, [0], "it rests on itself");
+    assert_eq!(plan.steps[0].surfaces, [0], "the step must depend on the sheet itself");
 }
 
 #[test]
@@ -684,7 +684,7 @@ fn cube_leaves_a_tray_of_sheets_upwards() {
     let plan = planned(&assembly);
     assert_eq!(steps(&assembly, &plan), [["cube"], ["tray"]]);
     assert_eq!(plan.steps[0].direction, DVec3::Z);
-    assert_eq!(plan.steps[0].surfaces, [1], "the tray, which it leaves");
+    assert_eq!(plan.steps[0].surfaces, [1], "the step must depend on the tray");
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn rooms_of_boxes_equal_interval_arithmetic() {
                             "{t}, {stop:?}"
                         );
                         let own = room_of_boxes(boxes[a], boxes[by], d).unwrap();
-                        assert!((own - t).abs() < 1e-9, "{by} is at {own}, not {t}");
+                        assert!((own - t).abs() < 1e-9, "blocker {by} is at {own}, expected {t}");
                         // The position at which the faces, each moved by half of the tolerance, meet; or, if the edge
                         // on one side is already past it at the start, where another point of its face does.
                         let place = t - tolerance / stop.normal.dot(d);
@@ -205,7 +205,9 @@ fn bolt_stops_where_its_head_touches() {
         room_of(&bodies, &[0], &[true; 2], d, start, &mut Workspace::default())
     };
     assert!(room(DVec3::Z).is_free());
-    let PartRoom::Blocked { stop, .. } = room(DVec3::NEG_Z) else { panic!("it is stopped") };
+    let PartRoom::Blocked { stop, .. } = room(DVec3::NEG_Z) else {
+        panic!("the head must block it")
+    };
     assert!(
         (stop.displaced.value - 1.02).abs() < 1e-9 && (stop.distance() - 1.0).abs() < 1e-9,
         "{stop:?}"

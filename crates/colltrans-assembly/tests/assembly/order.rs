@@ -59,7 +59,7 @@ fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usiz
     let mut kept_up = 0;
     for (k, step) in main_steps(plan) {
         let single = left.len() - 1;
-        assert!(step.parts.len() <= single, "step {k} leaves something");
+        assert!(step.parts.len() <= single, "step {k} must leave some part");
         let held: Vec<usize> = left
             .iter()
             .copied()
@@ -74,7 +74,7 @@ fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usiz
         assert!((own - step.travel.value).abs() < 1e-9);
         let free = directions.iter().filter(|d| is_free(bodies, &step.parts, &left, **d));
         let least = free.map(|d| travel(bodies, &step.parts, &left, *d)).fold(own, f64::min);
-        assert!(own <= 1.1 * least + 1e-3, "step {k}: {own} where {least} is enough");
+        assert!(own <= 1.1 * least + 1e-3, "step {k}: travel {own} exceeds the shortest {least}");
         let ground = |p: &usize| bodies.assembly().parts()[*p].solid().bounds().low.dot(up) < 1e-3;
         let mut kept =
             left.iter().filter(|p| held.contains(p) && !plan.last.contains(p) && !ground(p));
@@ -131,7 +131,7 @@ fn steps_are_short_and_commute_up_to_precedence() {
         exchanged(&bodies, &plan, &mut random);
     }
     // Some box of a grid can always be removed from above.
-    assert_eq!(kept_up, steps, "nothing falls");
+    assert_eq!(kept_up, steps, "no part may fall");
 }
 
 /// Returns a lower plate, an upper plate, and screws of two kinds through both, each with a washer under its head.
@@ -192,7 +192,7 @@ fn identical_parts_leave_in_one_stage_and_lower_plate_stays() {
         assert_eq!(assembly.names(&plan.last), ["lower"]);
         assert!(plan.steps.iter().all(|step| step.direction.dot(up) > 0.999_999));
         let upper = plan.steps.last().unwrap();
-        assert_eq!(upper.after.len(), 8, "all screws and washers are in its way");
+        assert_eq!(upper.after.len(), 8, "all screws and washers must precede it");
     }
 }
 
@@ -243,7 +243,7 @@ fn shortcut_is_used_only_by_the_part_that_has_one() {
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
     let (plan, directions) = planned(&bodies, PlanOptions::default().with_samples(0));
     let ways: Vec<DVec3> = plan.steps.iter().map(|step| step.direction).collect();
-    assert_eq!(ways, [DVec3::Z; 2], "of the directions of contacts");
+    assert_eq!(ways, [DVec3::Z; 2], "only contact normals are tested");
     for k in [1, 2] {
         let free = directions.iter().filter(|d| is_free(&bodies, &[k], &[0], **d));
         assert_eq!(free.count(), 1);
@@ -258,7 +258,7 @@ fn shortcut_is_used_only_by_the_part_that_has_one() {
         let ways = ways.map(|d| travel(&bodies, &step.parts, &[0], *d));
         let least = ways.fold(f64::INFINITY, f64::min);
         let own = step.travel.value;
-        assert!(own <= 1.5 * least, "{own} where {least} is enough");
+        assert!(own <= 1.5 * least, "travel {own} exceeds the shortest {least}");
         if own < 11.0 {
             shorter.push(assembly.names(&step.parts).concat());
         }

@@ -227,9 +227,7 @@ fn glued_parts_leave_as_one_and_endless_overlap_is_tolerated() {
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
     assert_eq!(bodies.tolerated([0, 1]), Some(Tolerated::Crossing));
     let plan = planned(&bodies);
-    assert!(
-        plan.steps[0].passed[0].words(&assembly).contains("what crosses at the start let pass")
-    );
+    assert!(plan.steps[0].passed[0].words(&assembly).contains("crossings at the start tolerated"));
 }
 
 #[test]
@@ -285,7 +283,7 @@ fn suggestions_classify_overlaps_and_make_them_removable() {
     let cases: [(&str, f64, Option<Role>, &str); 3] = [
         ("pin", 5.01, Some(Role::Press), "too large"),
         ("pin", 4.995, None, "chord errors"),
-        ("o-ring", 5.3, Some(Role::Soft), "is called so"),
+        ("o-ring", 5.3, Some(Role::Soft), "says so"),
     ];
     for (name, radius, role, why) in cases {
         let parts = vec![ring("ring", 32, [5.0, 8.0], 4.0), round(name, 48, radius, 1.0, 7.0)];

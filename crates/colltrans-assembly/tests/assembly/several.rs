@@ -61,12 +61,12 @@ fn judged(bodies: &Bodies, plan: &Plan) {
             go(leg, &step.parts);
         }
         for &part in all.iter().filter(|p| !step.parts.contains(p)) {
-            assert!(at[part].length() < 1e-9, "{part} is not back");
+            assert!(at[part].length() < 1e-9, "part {part} must return");
         }
         let first = at[step.parts[0]];
         assert!(
             step.parts.iter().all(|&p| (at[p] - first).length() < 1e-9),
-            "the group is as it was"
+            "the group must have no relative displacement"
         );
         if step.within.is_none() {
             step.parts.iter().for_each(|&p| there[p] = false);
@@ -121,7 +121,7 @@ fn default_options_find_a_path_of_two_moves() {
 #[test]
 fn one_leg_disables_the_path_search() {
     let plan = planned(&slot(), PlanOptions::default().with_legs(1));
-    assert_eq!(plan.stuck[0].moves, Moves::NotAsked("no more than one was asked for"));
+    assert_eq!(plan.stuck[0].moves, Moves::NotAsked("the maximum number of moves is 1"));
     assert_eq!(plan.left, [0, 1]);
 }
 
@@ -249,7 +249,7 @@ fn burr_of_level_six_is_disassembled_by_six_moves() {
     base_rests(&assembly, &plan);
     assert_eq!(plan.steps[0].path.len(), 6);
     let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
-    assert!(taken + plan.last.len() >= 5, "every piece gets out: {:?}", plan.steps);
+    assert!(taken + plan.last.len() >= 5, "every piece must be removed: {:?}", plan.steps);
     // Two moves do not suffice, and the plan reports this.
     let plan = planned(&assembly, PlanOptions::default().with_samples(0));
     let Moves::NotFound { legs: 2, searched } = plan.stuck[0].moves else { panic!("{plan:?}") };

@@ -57,7 +57,10 @@ fn named_objects_of_a_single_file_are_parts() {
     let files = files(&[("a.obj", &text)]);
     let named = open("a.obj", &files, Split::Auto).unwrap();
     assert_eq!(parts(&named), [("box", 12), ("lid", 12)]);
-    assert!((named.parts()[0].solid().volume() - 26.0).abs() < 1e-9, "its cavity is in it");
+    assert!(
+        (named.parts()[0].solid().volume() - 26.0).abs() < 1e-9,
+        "the cavity must reduce the volume"
+    );
     assert_eq!(named.notes().len(), 1);
     assert!(named.notes()[0].contains("split never"), "{:?}", named.notes());
     let asked = open("a.obj", &files, Split::Names).unwrap();
@@ -234,7 +237,7 @@ fn converter_extras_of_glb_nodes_are_read() {
     let start = colltrans::solid::StartOverlap::Refuse;
     let Room::Blocked(stop) = bodies.room([1, 0], glam::DVec3::NEG_Z, None, start, &mut workspace)
     else {
-        panic!("it stops");
+        panic!("the screw must block the plate");
     };
     assert!((stop.displaced.value - 2000.03 - base).abs() < 1e-6, "{:?}", stop.displaced);
     assert!((stop.translation.value - 2000.0).abs() < 1e-6);

@@ -12,10 +12,10 @@
 mod cover;
 #[cfg(feature = "report")]
 mod draw;
-mod regions;
 #[cfg(feature = "report")]
-mod trace;
-mod way;
+mod outline;
+mod regions;
+mod removal_direction;
 
 use std::collections::BTreeSet;
 
@@ -34,7 +34,7 @@ pub use cover::Cover;
 #[cfg(feature = "report")]
 pub use draw::{png, svg};
 pub use regions::Region;
-pub(crate) use way::way_out;
+pub(crate) use removal_direction::way_out;
 
 /// Options of a removal map.
 #[derive(Debug, Clone, Copy, PartialEq)]

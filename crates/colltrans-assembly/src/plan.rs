@@ -11,25 +11,25 @@
 //! Every step is replayed against the remaining parts before it is reported (module `replay`).
 
 mod bayonet;
-mod certify;
-mod hold;
-mod least;
-mod loose;
+mod interlock;
+mod lazy_search;
+mod multi_move;
 mod options;
 mod order;
-mod passed;
 mod precedence;
 mod ranking;
 mod replay;
-mod several;
+mod selection;
 mod shadow;
 mod single;
+mod smallest_set;
+mod sphere_proof;
+mod stability;
 mod stage;
-mod stand;
 mod step;
 mod times;
-mod turn;
-mod wanted;
+mod tolerated;
+mod unscrewing;
 
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
@@ -54,18 +54,18 @@ use crate::watch::{Stage, Tally, Watch};
 use crate::witness::Memory;
 
 use bayonet::Bayonet;
-use certify::{SphereProof, prove_interlocked};
-pub use hold::Hold;
+pub use interlock::Hold;
+pub use multi_move::Moves;
+use multi_move::RemovalPath;
 pub use options::PlanOptions;
 use order::{GroupChoice, Order};
-pub use passed::Passed;
 pub use precedence::and_or;
-pub use several::Moves;
-use several::RemovalPath;
+pub use selection::{Wanted, remove};
 use single::SingleParts;
+use sphere_proof::{SphereProof, prove_interlocked};
 pub use step::{Leg, Step, Turn, TurnProof};
 pub use times::Times;
-pub use wanted::{Wanted, remove};
+pub use tolerated::Passed;
 
 /// Interlocked parts: no translation of a group as one body separates it from the other parts.
 ///
@@ -152,7 +152,7 @@ struct Planner<'a> {
     watch: Watch<'a>,
     tally: Tally<'a>,
     plan: Plan,
-    contact_cache: loose::ContactCache,
+    contact_cache: lazy_search::ContactCache,
     /// The complete matrix of the remaining parts, once a state without a removable single part needed it.
     complete_matrix: Option<Matrix<'a>>,
     /// Whether any part is an open surface.
@@ -241,7 +241,7 @@ impl<'a> Planner<'a> {
     ) -> Result<Self, AssemblyError> {
         let tally = watch.stage(Stage::Plan, bodies.len());
         let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
-        let (plan, contact_cache) = (Plan::default(), loose::ContactCache::default());
+        let (plan, contact_cache) = (Plan::default(), lazy_search::ContactCache::default());
         let (wanted, movable) = (&[][..], None);
         let has_surfaces = bodies.assembly().parts().iter().any(Part::is_surface);
         Ok(Self {
@@ -405,7 +405,8 @@ impl<'a> Planner<'a> {
             moves.map_or_else(Default::default, |moves| (moves.legs, moves.return_legs));
         path.extend(bayonet.map(|(turn, _)| turn));
         let along = (&parts[..], direction);
-        let unscrewed = || turn::unscrewing_legs(self.bodies, along, (left, there), travel, start);
+        let unscrewed =
+            || unscrewing::unscrewing_legs(self.bodies, along, (left, there), travel, start);
         match path.is_empty().then(unscrewed).flatten() {
             Some((legs, rest)) => {
                 path.extend(legs);
@@ -537,7 +538,7 @@ impl<'a> Planner<'a> {
         for directions in [own, sphere] {
             asked.extend(directions.iter().copied().map(direction_bits));
             let (start, known) = (self.options.start, &mut self.contact_cache);
-            let removal = loose::smallest_group(
+            let removal = lazy_search::smallest_group(
                 self.bodies,
                 &directions,
                 alive,
@@ -637,8 +638,15 @@ impl<'a> Planner<'a> {
         let (bodies, alive) = (self.bodies, order.present());
         let allowed = |group: &[usize], d| order.moving_count(group, left, d);
         let known = &mut self.contact_cache;
-        let removal =
-            loose::smallest_group(bodies, &directions, alive, start, allowed, known, self.watch)?;
+        let removal = lazy_search::smallest_group(
+            bodies,
+            &directions,
+            alive,
+            start,
+            allowed,
+            known,
+            self.watch,
+        )?;
         Ok((removal, None))
     }
 
@@ -707,8 +715,13 @@ impl<'a> Planner<'a> {
         let is_stationary = |part: usize| order.is_stationary(part);
         let among = (left, matrix);
         Ok(
-            match several::search_path(self.bodies, among, is_stationary, self.options, self.watch)?
-            {
+            match multi_move::search_path(
+                self.bodies,
+                among,
+                is_stationary,
+                self.options,
+                self.watch,
+            )? {
                 Ok(path) => {
                     let (parts, direction) = (path.parts.clone(), path.direction);
                     (
@@ -737,7 +750,7 @@ impl<'a> Planner<'a> {
         let fixed = left.iter().any(|&k| self.is_fixed(k));
         let moves = moves.unwrap_or(Moves::NotAsked("all parts are fixed"));
         let known = (asked, proven, moves);
-        self.plan.stuck.push(hold::explain_stuck(self.bodies, left, matrix, fixed, known));
+        self.plan.stuck.push(interlock::explain_stuck(self.bodies, left, matrix, fixed, known));
     }
 
     fn is_fixed(&self, part: usize) -> bool {

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use colltrans_picture::escaped;
 use glam::{DVec2, DVec3};
 
-use super::trace::{arc_lines, is_inside, polygon_outlines};
+use super::outline::{arc_lines, is_inside, polygon_outlines};
 use super::{Cover, RemovalMap};
 use crate::rooms::PartRoom;
 

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::ranking::{OwnCost, ShapeState, is_better};
 use super::shadow::Shadow;
 use super::single::SingleParts;
-use super::stand::{Stability, Support};
+use super::stability::{Stability, Support};
 use crate::bodies::Bodies;
 use crate::boxes::Living;
 use crate::constraints::Constraints;

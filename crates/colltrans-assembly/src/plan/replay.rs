@@ -5,8 +5,8 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
 use super::GroupRemoval;
+use super::multi_move::RemovalPath;
 use super::order::Order;
-use super::several::RemovalPath;
 use super::shadow::{ZERO_TRAVEL, max_bounded};
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;

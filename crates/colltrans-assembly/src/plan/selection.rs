@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::least::{SufficientSet, smallest_sufficient_set};
+use super::smallest_set::{SufficientSet, smallest_sufficient_set};
 use super::{Plan, PlanOptions, Planner};
 use crate::bodies::Bodies;
 use crate::candidates::Finer;

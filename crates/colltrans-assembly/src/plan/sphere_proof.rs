@@ -6,7 +6,7 @@
 //! the parts, blocks all directions of the cell; this is decided exactly. If these arcs make all parts one strongly
 //! connected component, no group leaves along any direction of the cell. With fixed parts it suffices that every
 //! component without leaving arcs contains a fixed part. Arcs of order constraints hold in all cells. Arcs of a cell
-//! also hold in its quarters. Arcs are computed on demand, as in [`loose`](super::loose): from components without
+//! also hold in its quarters. Arcs are computed on demand, as in [`lazy_search`](super::lazy_search): from components without
 //! leaving arcs to parts ahead of them along the cell's centre.
 
 use std::collections::HashMap;

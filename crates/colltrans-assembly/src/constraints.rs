@@ -185,28 +185,28 @@ impl Constraints {
 
     /// Checks whether constraints concern these parts.
     pub(crate) fn is_concerned(&self, parts: &[usize]) -> bool {
-        let mut there = vec![false; parts.iter().max().map_or(0, |most| most + 1)];
+        let mut present = vec![false; parts.iter().max().map_or(0, |most| most + 1)];
         for &part in parts {
-            there[part] = true;
+            present[part] = true;
         }
-        let kept = self.never.iter().any(|never| is_there(&there, never.part));
-        kept || !self.order_arcs(&there).is_empty()
+        let kept = self.never.iter().any(|never| is_there(&present, never.part));
+        kept || !self.order_arcs(&present).is_empty()
     }
 
     /// Returns the arcs of the constraints among the present parts. They hold along every direction.
-    pub(crate) fn order_arcs(&self, there: &[bool]) -> Vec<(usize, usize)> {
+    pub(crate) fn order_arcs(&self, present: &[bool]) -> Vec<(usize, usize)> {
         let ordered =
-            self.before.iter().filter(|pair| pair.iter().all(|&part| is_there(there, part)));
+            self.before.iter().filter(|pair| pair.iter().all(|&part| is_there(present, part)));
         let mut arcs: Vec<(usize, usize)> = ordered.map(|&[a, b]| (b, a)).collect();
-        arcs.extend(self.rigid_pairs(there).into_iter().flat_map(|[a, b]| [(a, b), (b, a)]));
+        arcs.extend(self.rigid_pairs(present).into_iter().flat_map(|[a, b]| [(a, b), (b, a)]));
         arcs
     }
 
     /// Returns all pairs of present parts that leave as one.
-    pub(crate) fn rigid_pairs(&self, there: &[bool]) -> Vec<[usize; 2]> {
+    pub(crate) fn rigid_pairs(&self, present: &[bool]) -> Vec<[usize; 2]> {
         let mut pairs = Vec::new();
-        for unit in self.units.iter().filter(|unit| !unit.is_released(there)) {
-            let parts = unit.parts.iter().copied().filter(|&part| is_there(there, part));
+        for unit in self.units.iter().filter(|unit| !unit.is_released(present)) {
+            let parts = unit.parts.iter().copied().filter(|&part| is_there(present, part));
             let parts: Vec<usize> = parts.collect();
             let with = parts
                 .iter()
@@ -218,8 +218,8 @@ impl Constraints {
     }
 
     /// Returns the number of units that may be taken apart because nothing else is present.
-    pub(crate) fn released_count(&self, there: &[bool]) -> usize {
-        self.units.iter().filter(|unit| unit.is_released(there)).count()
+    pub(crate) fn released_count(&self, present: &[bool]) -> usize {
+        self.units.iter().filter(|unit| unit.is_released(present)).count()
     }
 
     /// Checks whether the constraints require that a part is removed before a group: the part comes before one of the
@@ -235,13 +235,13 @@ impl Constraints {
 
     /// Checks whether present parts have order constraints. Their arcs have one direction, so results along `d` do
     /// not transfer to `-d` by reversal of all arcs.
-    pub(crate) fn is_ordered(&self, there: &[bool]) -> bool {
-        self.before.iter().any(|pair| pair.iter().all(|&part| there[part]))
+    pub(crate) fn is_ordered(&self, present: &[bool]) -> bool {
+        self.before.iter().any(|pair| pair.iter().all(|&part| present[part]))
     }
 
     /// Checks whether the constraints allow a group to leave all other present parts.
-    pub(crate) fn allows_leaving(&self, group: &[usize], there: &[bool]) -> bool {
-        !self.order_arcs(there).iter().any(|(a, b)| group.contains(a) && !group.contains(b))
+    pub(crate) fn allows_leaving(&self, group: &[usize], present: &[bool]) -> bool {
+        !self.order_arcs(present).iter().any(|(a, b)| group.contains(a) && !group.contains(b))
     }
 
     /// Checks whether no part of a group is forbidden to move along a direction.
@@ -273,16 +273,16 @@ impl Constraints {
 
 impl Unit {
     /// Checks whether the unit may be taken apart because nothing else is present.
-    pub(crate) fn is_released(&self, there: &[bool]) -> bool {
-        let all = there.iter().filter(|there| **there).count();
-        let own = self.parts.iter().filter(|&&part| is_there(there, part)).count();
+    pub(crate) fn is_released(&self, present: &[bool]) -> bool {
+        let all = present.iter().filter(|present| **present).count();
+        let own = self.parts.iter().filter(|&&part| is_there(present, part)).count();
         self.apart && all == own
     }
 }
 
 /// Checks whether a part is present. Masks may be shorter than the number of parts.
-fn is_there(there: &[bool], part: usize) -> bool {
-    there.get(part).copied().unwrap_or(false)
+fn is_there(present: &[bool], part: usize) -> bool {
+    present.get(part).copied().unwrap_or(false)
 }
 
 #[cfg(test)]
@@ -326,7 +326,7 @@ mod tests {
         let refused = order.clone().add_unit(unit_of(&[3, 4], true), name).unwrap_err();
         assert!(matches!(refused, AssemblyError::Subassemblies { .. }));
         // If a subassembly is alone, it may be taken apart, except for parts that stay together.
-        let arcs = |there: [bool; 5]| order.order_arcs(&there).len();
+        let arcs = |present: [bool; 5]| order.order_arcs(&present).len();
         assert_eq!(arcs([true; 5]), 6 + 12);
         assert_eq!(arcs([true, true, true, true, false]), 6);
         assert!(order.keeps_together(&[0, 2]) && !order.keeps_together(&[0, 3]));

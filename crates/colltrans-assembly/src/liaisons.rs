@@ -87,12 +87,13 @@ pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyE
     let pairs = bodies.neighbours(reach)?;
     let tally = watch.stage(Stage::Liaisons, pairs.len());
     let parts = bodies.assembly().parts();
-    let look = |&[a, b]: &[usize; 2]| {
+    let examine = |&[a, b]: &[usize; 2]| {
         let patches = contact_patches(parts[a].solid(), parts[b].solid(), reach);
         let found = (!patches.is_empty()).then_some(Liaison { parts: [a, b], patches });
         tally.step().map(|()| found)
     };
-    let found: Result<Vec<Option<Liaison>>, AssemblyError> = pairs.par_iter().map(look).collect();
+    let found: Result<Vec<Option<Liaison>>, AssemblyError> =
+        pairs.par_iter().map(examine).collect();
     Ok(found?.into_iter().flatten().collect())
 }
 
@@ -167,7 +168,7 @@ fn each_common_piece(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piec
     let tree = many.then(|| BoxTree::new(q.facets.iter().map(|t| Aabb::of_points(*t))));
     for first in &p.facets {
         let Some(plane) = Plane::from_facet(first) else { continue };
-        let mut look = |second: &Triangle| {
+        let mut examine = |second: &Triangle| {
             if let Some(piece) = plane.contact_piece(second, reach, &mut clipping) {
                 call(&piece);
             }
@@ -176,10 +177,10 @@ fn each_common_piece(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piec
             Some(tree) => {
                 let near = tree.meeting(&Aabb::of_points(*first).grown(reach));
                 for k in near {
-                    look(&q.facets[k]);
+                    examine(&q.facets[k]);
                 }
             }
-            None => q.facets.iter().for_each(look),
+            None => q.facets.iter().for_each(examine),
         }
     }
     0.0

@@ -57,8 +57,9 @@ pub(crate) fn pairs_alike<K: Ord, T>(
 ) -> Vec<(T, [Vec<usize>; 2])> {
     let like = |part: usize| likes.get(part).copied().unwrap_or(part);
     let mut groups = BTreeMap::<([usize; 2], K), (T, [Vec<usize>; 2])>::new();
-    for (parts, key, said) in all {
-        let (_, sides) = groups.entry((parts.map(like), key)).or_insert((said, Default::default()));
+    for (parts, key, value) in all {
+        let (_, sides) =
+            groups.entry((parts.map(like), key)).or_insert((value, Default::default()));
         for (side, part) in sides.iter_mut().zip(parts) {
             if let Err(at) = side.binary_search(&part) {
                 side.insert(at, part);

@@ -192,12 +192,12 @@ impl<'a> Mapper<'a> {
 
     fn sample_rooms(&self, directions: &[DVec3]) -> Result<Vec<PartRoom>, AssemblyError> {
         let tally = self.watch.stage(Stage::Map, directions.len());
-        let look = |workspace: &mut Workspace, d: &DVec3| {
+        let examine = |workspace: &mut Workspace, d: &DVec3| {
             let start = self.options.start;
             let room = room_of(self.bodies, self.group, &self.others, *d, start, workspace);
             tally.step().map(|()| room)
         };
-        directions.par_iter().map_init(Workspace::default, look).collect()
+        directions.par_iter().map_init(Workspace::default, examine).collect()
     }
 
     fn test_candidates(&self, candidates: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {

@@ -186,12 +186,12 @@ impl<'a> Matrix<'a> {
         let index: HashMap<[u64; 3], usize> =
             directions.iter().enumerate().map(|(k, d)| (direction_bits(*d), k)).collect();
         let opposite = |k: usize| index.get(&direction_bits(-directions[k])).copied();
-        let asked: Vec<usize> =
+        let computed: Vec<usize> =
             (0..directions.len()).filter(|&k| opposite(k).is_none_or(|o| o > k)).collect();
         let moving: Vec<usize> = (0..bodies.len()).filter(|&k| among[k]).collect();
-        let tally = watch.stage(Stage::Rooms, asked.len() * moving.len());
+        let tally = watch.stage(Stage::Rooms, computed.len() * moving.len());
         let jobs: Vec<(usize, usize)> =
-            asked.iter().flat_map(|&k| moving.iter().map(move |&part| (k, part))).collect();
+            computed.iter().flat_map(|&k| moving.iter().map(move |&part| (k, part))).collect();
         let count = AtomicUsize::new(0);
         let row = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
             let met = part_meetings(bodies, part, directions[k], among, *start, workspace);

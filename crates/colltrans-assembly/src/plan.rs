@@ -301,12 +301,12 @@ impl<'a> Planner<'a> {
         let constraints = self.bodies.assembly().constraints();
         let watch = self.watch;
         let single_parts = |order: &Order| {
-            let (arcs, there) = (order.order_arcs(), order.present());
+            let (arcs, present) = (order.order_arcs(), order.present());
             let movable = |k: usize, part: usize| {
                 !order.is_stationary(part)
                     && constraints.allows_direction(&[part], matrix.directions()[k])
             };
-            SingleParts::new(bodies, matrix, &arcs, there, movable, watch)
+            SingleParts::new(bodies, matrix, &arcs, present, movable, watch)
         };
         let mut single = single_parts(&order)?;
         let mut removed = RemovedParts { within, step_of_part: BTreeMap::new() };
@@ -320,7 +320,7 @@ impl<'a> Planner<'a> {
             if one {
                 return Ok(left);
             }
-            let mut asked: HashSet<[u64; 3]> =
+            let mut tested: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(direction_bits).collect();
             let (mut choice, mut whole) = (order.best_single_part(&mut single), None);
             if choice.is_none() {
@@ -331,9 +331,9 @@ impl<'a> Planner<'a> {
             let mut removal = choice.map(GroupRemoval::from);
             let mut proven = None;
             if removal.is_none() {
-                let mut found = self.search_finer(&order, &left, among, &mut asked)?;
+                let mut found = self.search_finer(&order, &left, among, &mut tested)?;
                 if found.is_none() {
-                    (found, proven) = self.prove_stuck(&order, &left, &mut asked)?;
+                    (found, proven) = self.prove_stuck(&order, &left, &mut tested)?;
                 }
                 removal = found
                     .map(|removal| self.best_direction(&mut order, &left, removal))
@@ -352,7 +352,7 @@ impl<'a> Planner<'a> {
                 });
             }
             let Some(removal) = removal else {
-                self.explain_stuck(&left, among, (asked.len(), proven, moves));
+                self.explain_stuck(&left, among, (tested.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.is_fixed(k)) {
                     // All other parts are removed, so this group remains as the last one.
@@ -391,12 +391,12 @@ impl<'a> Planner<'a> {
         };
         let at = self.plan.steps.len();
         let GroupRemoval { parts, direction, path: moves, bayonet } = removal;
-        let there = order.present();
-        let ignored = self.bodies.partners(&parts, there).filter(|&[a, b]| {
+        let present = order.present();
+        let ignored = self.bodies.partners(&parts, present).filter(|&[a, b]| {
             self.bodies.tolerated([a, b]).is_none() && self.bodies.lets_pass(a, b, start)
         });
         let ignored = ignored.collect();
-        let passed = Passed::between(self.bodies, &parts, there);
+        let passed = Passed::between(self.bodies, &parts, present);
         let surfaces = self.surfaces_ahead(&parts, left, direction);
         let several = moves.is_some() || bayonet.is_some();
         let after = self.preceding_steps(&parts, direction, several, matrix, removed);
@@ -406,7 +406,7 @@ impl<'a> Planner<'a> {
         path.extend(bayonet.map(|(turn, _)| turn));
         let along = (&parts[..], direction);
         let unscrewed =
-            || unscrewing::unscrewing_legs(self.bodies, along, (left, there), travel, start);
+            || unscrewing::unscrewing_legs(self.bodies, along, (left, present), travel, start);
         match path.is_empty().then(unscrewed).flatten() {
             Some((legs, rest)) => {
                 path.extend(legs);
@@ -513,13 +513,13 @@ impl<'a> Planner<'a> {
     }
 
     /// Searches for a removable group along directions that the matrix lacks: finer candidates first, then samples of
-    /// the sphere, then refined samples. Adds the tested directions to `asked`.
+    /// the sphere, then refined samples. Adds the tested directions to `tested`.
     fn search_finer(
         &mut self,
         order: &Order,
         left: &[usize],
         matrix: &Matrix,
-        asked: &mut HashSet<[u64; 3]>,
+        tested: &mut HashSet<[u64; 3]>,
     ) -> Result<Option<GroupRemoval>, AssemblyError> {
         let alive = order.present();
         if left.iter().filter(|&&k| !self.is_fixed(k)).count() == 0 {
@@ -536,7 +536,7 @@ impl<'a> Planner<'a> {
         };
         let allowed = |group: &[usize], d| order.moving_count(group, left, d);
         for directions in [own, sphere] {
-            asked.extend(directions.iter().copied().map(direction_bits));
+            tested.extend(directions.iter().copied().map(direction_bits));
             let (start, known) = (self.options.start, &mut self.contact_cache);
             let removal = lazy_search::smallest_group(
                 self.bodies,
@@ -624,7 +624,7 @@ impl<'a> Planner<'a> {
         &mut self,
         order: &Order,
         left: &[usize],
-        asked: &mut HashSet<[u64; 3]>,
+        tested: &mut HashSet<[u64; 3]>,
     ) -> Result<(Option<GroupRemoval>, Option<usize>), AssemblyError> {
         if !self.options.prove {
             return Ok((None, None));
@@ -634,7 +634,7 @@ impl<'a> Planner<'a> {
             SphereProof::Proven(cells) => return Ok((None, Some(cells))),
             SphereProof::Open(directions) => directions,
         };
-        asked.extend(directions.iter().copied().map(direction_bits));
+        tested.extend(directions.iter().copied().map(direction_bits));
         let (bodies, alive) = (self.bodies, order.present());
         let allowed = |group: &[usize], d| order.moving_count(group, left, d);
         let known = &mut self.contact_cache;
@@ -670,10 +670,10 @@ impl<'a> Planner<'a> {
         let mut directions = vec![found, DVec3::ZERO - found];
         directions.extend(self.region_center_near(&parts, &others, found)?);
         let constraints = self.bodies.assembly().constraints();
-        let (mut memory, there) = (Memory::default(), self.bodies.mask(&others));
+        let (mut memory, present) = (Memory::default(), self.bodies.mask(&others));
         directions.retain(|&d| {
             constraints.allows_direction(&parts, d)
-                && memory.is_free(self.bodies, &parts, &there, d, self.options.start)
+                && memory.is_free(self.bodies, &parts, &present, d, self.options.start)
         });
         let ways: Vec<usize> = directions.into_iter().map(|d| order.direction_index(d)).collect();
         let group = (&parts[..], &ways[..]);
@@ -741,7 +741,7 @@ impl<'a> Planner<'a> {
         &mut self,
         left: &[usize],
         matrix: &Matrix,
-        (asked, proven, moves): (usize, Option<usize>, Option<Moves>),
+        (tested, proven, moves): (usize, Option<usize>, Option<Moves>),
     ) {
         let movable = left.iter().any(|&k| !self.is_fixed(k));
         if !movable {
@@ -749,7 +749,7 @@ impl<'a> Planner<'a> {
         }
         let fixed = left.iter().any(|&k| self.is_fixed(k));
         let moves = moves.unwrap_or(Moves::NotAsked("all parts are fixed"));
-        let known = (asked, proven, moves);
+        let known = (tested, proven, moves);
         self.plan.stuck.push(interlock::explain_stuck(self.bodies, left, matrix, fixed, known));
     }
 
@@ -873,8 +873,8 @@ mod tests {
                 };
                 assert_eq!(free, expected);
             }
-            let (asked, n) = (bodies.asked.load(Relaxed) as f64, count as f64);
-            assert!(asked <= 2.0 * n * (2.0 + n.ln()), "{asked} of {n} parts");
+            let (tested, n) = (bodies.asked.load(Relaxed) as f64, count as f64);
+            assert!(tested <= 2.0 * n * (2.0 + n.ln()), "{tested} of {n} parts");
         }
     }
 }

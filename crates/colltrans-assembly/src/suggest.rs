@@ -53,17 +53,20 @@ pub struct Suggestion {
 /// Returns suggestions for pairs without a specified fit: pairs that overlap with the fit of the bodies, and rings
 /// that snap into a groove.
 pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
-    let is_unsaid = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
+    let lacks_fit = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
     let snaps = find_snaps(bodies);
     let rings: BTreeSet<usize> = snaps.iter().map(|(ring, _)| *ring).collect();
     let snaps = snaps.into_iter().map(|(_, snap)| snap);
-    let snaps: Vec<Suggestion> = snaps.filter(|snap| is_unsaid(snap.parts)).collect();
-    let unsaid = start
+    let snaps: Vec<Suggestion> = snaps.filter(|snap| lacks_fit(snap.parts)).collect();
+    let candidates = start
         .remaining()
-        .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
+        .filter(|o| lacks_fit(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
         // Pairs that only violate the minimum gap do not overlap.
         .filter(|o| !matches!(bodies.fit(), Fit::Apart(_)) || o.depth != Some(0.0));
-    unsaid.filter_map(|overlap| suggest_fit(bodies, &rings, overlap)).chain(snaps.clone()).collect()
+    candidates
+        .filter_map(|overlap| suggest_fit(bodies, &rings, overlap))
+        .chain(snaps.clone())
+        .collect()
 }
 
 /// Finds rings by their names, each with the part in whose groove it lies. This part stops the ring in both
@@ -123,31 +126,35 @@ fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> O
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let solids = of.map(Part::solid);
     let tolerance = overlap.depth.map(|depth| two_digits_up(depth * TOLERANCE_FACTOR));
-    let said =
+    let with_fit =
         |role, tolerance, why| Some(Suggestion { parts, fit: PairFit { role, tolerance }, why });
     let soft = of.iter().find(|part| is_called(part, &SOFT_NAMES));
     if let Some(soft) = soft {
-        return said(Some(Role::Soft), tolerance, format!("the name of {} says so", soft.name()));
+        return with_fit(
+            Some(Role::Soft),
+            tolerance,
+            format!("the name of {} says so", soft.name()),
+        );
     }
     let screwed = !parts.iter().any(|part| rings.contains(part));
     let thread = screwed.then(|| find_helix(solids)).flatten();
     if let Some((thread, pitch)) =
         thread.filter(|(thread, _)| thread.is_surrounded(solids[1 - thread.screw]))
     {
-        return said(Some(Role::Thread), None, describe_helix(&thread, pitch));
+        return with_fit(Some(Role::Thread), None, describe_helix(&thread, pitch));
     }
     let tolerance = Some(tolerance?);
     if let Some(round) = Round::of(solids) {
         let by = round.interference();
         let why = format!("one lies around the other, at a radius of {}", short(round.radius()));
         return if by > bodies.noise() {
-            said(Some(Role::Press), tolerance, format!("{why}, by {} too large", short(by)))
+            with_fit(Some(Role::Press), tolerance, format!("{why}, by {} too large", short(by)))
         } else {
-            said(None, tolerance, format!("{why}: chord errors"))
+            with_fit(None, tolerance, format!("{why}: chord errors"))
         };
     }
     overlap.is_within(bodies, MAX_SHALLOW_DEPTH).then_some(())?;
-    said(None, tolerance, "a shallow overlap".into())
+    with_fit(None, tolerance, "a shallow overlap".into())
 }
 
 /// Returns the thread of two parts and its pitch, or `None` if there is no helix.
@@ -175,8 +182,8 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
     let rings: BTreeSet<usize> = find_snaps(bodies).into_iter().map(|(ring, _)| ring).collect();
     pairs.retain(|&[a, b]| {
         let stuck = among[a] && among[b] && !bodies.overlaps(a, b);
-        let said = bodies.assembly().pair(a, b).is_some();
-        stuck && !said && !rings.contains(&a) && !rings.contains(&b)
+        let has_fit = bodies.assembly().pair(a, b).is_some();
+        stuck && !has_fit && !rings.contains(&a) && !rings.contains(&b)
     });
     let found = pairs.into_par_iter().filter_map(|parts| {
         let solids = parts.map(|k| bodies.assembly().parts()[k].solid());
@@ -210,8 +217,8 @@ pub fn applied(
     mut assembly: Assembly,
     suggestions: &[Suggestion],
 ) -> Result<Assembly, AssemblyError> {
-    for said in told(&assembly, suggestions) {
-        assembly = assembly.with_note(format!("taken as suggested: {said}"));
+    for suggestion in told(&assembly, suggestions) {
+        assembly = assembly.with_note(format!("taken as suggested: {suggestion}"));
     }
     for Suggestion { parts, fit, .. } in suggestions {
         let [a, b] = parts.map(|k| assembly.parts()[k].name().to_owned());

@@ -85,11 +85,11 @@ impl Memory {
         &mut self,
         bodies: &Bodies,
         group: &[usize],
-        there: &[bool],
+        present: &[bool],
         d: DVec3,
         start: StartOverlap,
     ) -> bool {
-        let ahead = bodies.pairs_ahead(group, d, there);
+        let ahead = bodies.pairs_ahead(group, d, present);
         !ahead.into_iter().any(|pair| self.pair_meets(bodies, pair, d, start))
     }
 }

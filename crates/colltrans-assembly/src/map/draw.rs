@@ -399,7 +399,7 @@ fn draw_legend(text: &mut String, map: &RemovalMap) {
         entry(k as usize, &name, 58.0);
     }
     entry(9, "overlapping", 60.0);
-    let told = match &map.cover {
+    let summary = match &map.cover {
         Ok(cover) => format!(
             "free: {} % of all directions, exactly. {}",
             format_percent(cover.free_share()),
@@ -422,7 +422,7 @@ fn draw_legend(text: &mut String, map: &RemovalMap) {
     let _ = writeln!(
         text,
         "<g font-size=\"11\" fill=\"#555\"><text x=\"40\" y=\"434\">blocked after, from</text>\n\
-         <g text-anchor=\"end\"><text x=\"680\" y=\"434\">{told}</text>\n\
+         <g text-anchor=\"end\"><text x=\"680\" y=\"434\">{summary}</text>\n\
          <text x=\"680\" y=\"449\">{}</text></g></g>",
         marks.join(". ")
     );

@@ -97,8 +97,8 @@ fn exact_way_out(
         (0..bodies.len()).filter(|k| others[*k] && !group.contains(k)).collect();
     let Ok(removal) = Removal::between(bodies, group, &others) else { return Ok(None) };
     let never = AtomicBool::new(false);
-    let asked = FreeOptions::DEFAULT.with_looks(MAX_LOOKS).with_start_overlap(options.start);
-    let free = match removal.directions(asked, watch.flag().unwrap_or(&never)) {
+    let free_options = FreeOptions::DEFAULT.with_looks(MAX_LOOKS).with_start_overlap(options.start);
+    let free = match removal.directions(free_options, watch.flag().unwrap_or(&never)) {
         Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
         Err(_) => return Ok(None),
         Ok(free) => free,
@@ -113,10 +113,10 @@ fn exact_way_out(
 impl Mapper<'_> {
     /// Checks whether the group travels at least `far` along any of the samples.
     fn reaches_any(&self, far: f64) -> Result<bool, AssemblyError> {
-        let look = |(workspace, witnesses): &mut (Workspace, Witnesses), d: &DVec3| {
+        let examine = |(workspace, witnesses): &mut (Workspace, Witnesses), d: &DVec3| {
             self.watch.check().map(|()| !self.is_stopped_within(*d, far, workspace, witnesses))
         };
-        let reached = self.sphere.directions.par_iter().map_init(Default::default, look);
+        let reached = self.sphere.directions.par_iter().map_init(Default::default, examine);
         // The search ends with a direction that reaches `far` or with a cancelled run.
         reached.find_any(|r| !matches!(r, Ok(false))).unwrap_or(Ok(false))
     }

@@ -1,9 +1,9 @@
 //! Bayonet motions: a turn about an axis of a part, followed by a straight move along the axis.
 //!
-//! They are searched if no straight moves remove anything. A part turns in either sense until a proven stop. At
-//! evenly spaced angles before the stop, and at further ones close to it, the part is tested for being free along the
-//! axis. The middle of the longest free run is chosen. The turn to this angle and the move are then proven against
-//! all remaining parts.
+//! They are searched if no straight moves remove anything. A part turns in either sense up to a proven bound before
+//! its first contact. At evenly spaced angles below this bound, and at further ones close to it, the part is tested
+//! for being free along the axis. The middle of the longest free run is chosen. The turn to this angle and the move
+//! are then proven against all remaining parts.
 
 use std::cell::Cell;
 
@@ -28,7 +28,7 @@ const MAX_AXES: usize = 3;
 const MAX_WORK: u64 = 1_000_000;
 const CAST_WORK: u64 = 500;
 /// Number of evenly spaced angles for a full turn, their minimum number, and the number of angles that halve the
-/// distance to the stop.
+/// distance to the first contact.
 const ANGLES_PER_TURN: f64 = 360.0;
 const MIN_ANGLES: f64 = 48.0;
 const HALVES: i32 = 12;
@@ -171,8 +171,8 @@ impl TurningPart<'_> {
             .find_map(|turns| self.prove_removal(about, sense * turns))
     }
 
-    /// Returns the number of turns, at most one, before the part is stopped. Returns `None` if the motion is invalid
-    /// or a query fails.
+    /// Returns a lower bound, at most 1, of the number of turns before the part collides. Returns `None` if a query
+    /// fails or the part overlaps another one at the start.
     fn turns_to_stop(&self, about: [DVec3; 2], sense: f64) -> Option<f64> {
         let mut stop = 1.0_f64;
         let motion = self.turn_leg(about, sense).motion().ok()?;

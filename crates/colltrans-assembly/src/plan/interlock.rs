@@ -131,9 +131,9 @@ impl Stuck {
                 self.parts.len()
             ),
         };
-        let asked =
+        let condition =
             if self.constrained { ", under the constraints on order and directions" } else { "" };
-        let sentence = format!("{nothing}{asked}");
+        let sentence = format!("{nothing}{condition}");
         let (heading, evidence) = match self.proven {
             Some(cells) => (
                 if self.overlapping.is_empty() {

@@ -69,8 +69,8 @@ pub(super) fn smallest_group(
             let search = |g: &[usize]| allowed(g, d).is_some();
             // Each direction is processed by one thread.
             let mut known = answers[k].lock().unwrap_or_else(PoisonError::into_inner);
-            let asked = ContactQueries { bodies, d, start, known: &mut known, memory };
-            match removable_group(asked, &order, alive, search) {
+            let queries = ContactQueries { bodies, d, start, known: &mut known, memory };
+            match removable_group(queries, &order, alive, search) {
                 SearchOutcome::OneComponent if !is_ordered => break,
                 SearchOutcome::OneComponent | SearchOutcome::NoneAllowed => (),
                 SearchOutcome::Found(group) => {
@@ -124,14 +124,14 @@ enum SearchOutcome {
 
 /// Searches for an allowed removable group along one direction. Smaller groups are tried first.
 fn removable_group(
-    mut asked: ContactQueries,
+    mut queries: ContactQueries,
     order: &[(usize, usize)],
     alive: &[bool],
     allowed: impl Fn(&[usize]) -> bool,
 ) -> SearchOutcome {
     let count = alive.iter().filter(|a| **a).count();
     let ahead = |part: usize| -> Vec<usize> {
-        let all = asked.bodies.ahead(part, asked.d).into_iter().map(|x| x.1);
+        let all = queries.bodies.ahead(part, queries.d).into_iter().map(|x| x.1);
         all.filter(|&k| alive[k]).collect()
     };
     let mut untested: Vec<Vec<usize>> =
@@ -147,7 +147,7 @@ fn removable_group(
         groups.sort_by_key(Vec::len);
         let before = arcs.len();
         for group in groups {
-            match blocking_arc(&mut asked, &group, &mut untested) {
+            match blocking_arc(&mut queries, &group, &mut untested) {
                 Some(arc) => arcs.push(arc),
                 None if allowed(&group) => return SearchOutcome::Found(group),
                 None => (),
@@ -162,7 +162,7 @@ fn removable_group(
 /// Returns an arc from the group to a part outside, from pairs that were not tested before. Returns `None` if no pair
 /// blocks.
 fn blocking_arc(
-    asked: &mut ContactQueries,
+    queries: &mut ContactQueries,
     group: &[usize],
     untested: &mut [Vec<usize>],
 ) -> Option<(usize, usize)> {
@@ -175,7 +175,7 @@ fn blocking_arc(
                 continue;
             }
             untested[a].remove(k);
-            if asked.pair_meets([a, b]) {
+            if queries.pair_meets([a, b]) {
                 return Some((a, b));
             }
         }

@@ -62,7 +62,7 @@ pub(super) struct RemovalPath {
     pub(super) legs: Vec<Leg>,
     /// The displacement of each of these legs.
     pub(super) motions: Vec<DVec3>,
-    /// The legs that return other parts to their initial poses.
+    /// The legs that return the moved parts to their initial poses after the removal.
     pub(super) return_legs: Vec<Leg>,
     /// The group that leaves, and its direction.
     pub(super) parts: Vec<usize>,
@@ -139,9 +139,9 @@ impl RemovalPath {
     ///
     /// These are parts that leave too early, parts of a unit that moves incompletely, and parts that move along a
     /// forbidden direction. Return legs are checked as well.
-    fn violating_parts(&self, constraints: &Constraints, there: &[bool]) -> Vec<usize> {
+    fn violating_parts(&self, constraints: &Constraints, present: &[bool]) -> Vec<usize> {
         let mut found = Vec::new();
-        for (a, b) in constraints.order_arcs(there) {
+        for (a, b) in constraints.order_arcs(present) {
             if self.parts.contains(&a) && !self.parts.contains(&b) {
                 found.push(a);
             }
@@ -150,7 +150,7 @@ impl RemovalPath {
         for leg in self.legs.iter().chain([&last]).chain(&self.return_legs) {
             let torn =
                 |pair: &[usize; 2]| leg.parts.contains(&pair[0]) != leg.parts.contains(&pair[1]);
-            found.extend(constraints.rigid_pairs(there).into_iter().filter(torn).flatten());
+            found.extend(constraints.rigid_pairs(present).into_iter().filter(torn).flatten());
             found.extend(
                 leg.parts
                     .iter()
@@ -235,8 +235,7 @@ fn moved_parts(
     if holds(&group) && !holds(&others) { (others, -1.0) } else { (group, 1.0) }
 }
 
-/// Converts a path of the search to part indices of the assembly, and adds the legs that return the parts moved
-/// aside.
+/// Converts a path of the search to part indices of the assembly, and adds the return legs.
 fn removal_path(
     count: usize,
     left: &[usize],

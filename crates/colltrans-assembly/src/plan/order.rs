@@ -30,7 +30,7 @@ use crate::witness::Memory;
 
 /// Maximum ratio of a considered travel to the shortest one.
 const TRAVEL_SLACK: f64 = 1.1;
-/// Ratio of travels above which a shorter sampled direction replaces the chosen one, ...
+/// Ratio of travels above which a free direction with the shorter travel replaces the chosen one, ...
 const SHORTCUT_RATIO: f64 = 1.5;
 /// ... unless the chosen travel is at most this fraction of the assembly's size.
 const SHORT_TRAVEL: f64 = 1e-3;
@@ -107,25 +107,25 @@ impl<'a> Order<'a> {
         bodies: &'a Bodies,
         matrix: &Matrix,
         likes: &'a [usize],
-        there: &[bool],
+        present: &[bool],
         up: DVec3,
         movable: Option<&[usize]>,
         wanted: &[usize],
     ) -> Self {
         let moves = |part: usize| movable.unwrap_or(wanted).contains(&part);
-        let base = base_parts(bodies, there, up, moves);
-        let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, there, *d));
+        let base = base_parts(bodies, present, up, moves);
+        let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, present, *d));
         let shadows = shadows.collect();
         let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
-        let (carried, supports) = find_supports(bodies, matrix, there, &base, up);
-        let living = bodies.living(there);
+        let (carried, supports) = find_supports(bodies, matrix, present, &base, up);
+        let living = bodies.living(present);
         let stationary = if movable.is_some() {
-            (0..likes.len()).map(|part| there[part] && !moves(part)).collect()
+            (0..likes.len()).map(|part| present[part] && !moves(part)).collect()
         } else {
             base
         };
         let mut counts = vec![0; likes.len()];
-        for part in (0..likes.len()).filter(|&part| there[part]) {
+        for part in (0..likes.len()).filter(|&part| present[part]) {
             counts[likes[part]] += usize::from(!stationary[part]);
         }
         let (last, shortcuts, changed) = (None, Shortcuts::default(), Vec::new());
@@ -181,7 +181,8 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the parts that move and their direction if a group is separated along `d`: the group along `d`, or the
-    /// others along `-d`. Returns `None` if constraints forbid both.
+    /// others along `-d` if the group contains stationary parts. Returns `None` if both contain such parts or
+    /// constraints forbid the motion.
     pub(super) fn choice_for(
         &self,
         group: &[usize],
@@ -216,11 +217,11 @@ impl<'a> Order<'a> {
             for shadow in &mut self.shortcuts.shadows {
                 shadow.remove(part);
             }
-            // The removal of these parts now unsettles others: the parts below it, and those that carry the same
-            // parts.
+            // The own costs of the parts below, and of those that carry the same parts, change: their removal may
+            // unsettle more parts now.
             let below = |part: usize| self.supports[part].iter().flat_map(Support::parts_below);
-            let beside = self.carried[part].iter().flat_map(|&above| below(above));
-            self.changed.extend(below(part).chain(beside));
+            let same_load = self.carried[part].iter().flat_map(|&above| below(above));
+            self.changed.extend(below(part).chain(same_load));
         }
         self.last = parts.first().map(|&part| (direction, self.likes[part]));
     }
@@ -327,14 +328,14 @@ impl<'a> Order<'a> {
     /// [`SHORTCUT_RATIO`] times as long.
     fn shortest_alternative(&mut self, parts: &[usize], k: usize) -> Option<usize> {
         let Self { bodies, living, shadows, shortcuts, .. } = self;
-        let there = living.there();
+        let present = living.there();
         let way = shadows[k].travel_of(bodies, parts, living);
         if way <= SHORT_TRAVEL * self.size {
             return None;
         }
         if shortcuts.shadows.is_empty() && shortcuts.samples > 0 {
             let samples = Sphere::with_directions(shortcuts.samples).directions;
-            let shadow = |d: &DVec3| Shadow::new(bodies, there, *d);
+            let shadow = |d: &DVec3| Shadow::new(bodies, present, *d);
             shortcuts.shadows = samples.par_iter().map(shadow).collect();
         }
         let mut shorter: Vec<(f64, DVec3)> = Vec::new();
@@ -348,7 +349,8 @@ impl<'a> Order<'a> {
         let constraints = bodies.assembly().constraints();
         let (memory, start) = (&mut shortcuts.memory, shortcuts.start);
         let mut free = shorter.into_iter().map(|(_, d)| d).filter(|&d| {
-            constraints.allows_direction(parts, d) && memory.is_free(bodies, parts, there, d, start)
+            constraints.allows_direction(parts, d)
+                && memory.is_free(bodies, parts, present, d, start)
         });
         let direction = free.next()?;
         Some(self.direction_index(direction))
@@ -430,12 +432,12 @@ impl<'a> Order<'a> {
 /// base only if all are such parts.
 fn base_parts(
     bodies: &Bodies,
-    there: &[bool],
+    present: &[bool],
     up: DVec3,
     moves: impl Fn(usize) -> bool,
 ) -> Vec<bool> {
     let parts = bodies.assembly().parts();
-    let mut base: Vec<bool> = parts.iter().zip(there).map(|(p, t)| *t && p.fixed()).collect();
+    let mut base: Vec<bool> = parts.iter().zip(present).map(|(p, t)| *t && p.fixed()).collect();
     if base.contains(&true) {
         return base;
     }
@@ -450,7 +452,7 @@ fn base_parts(
         [size.element_product(), area, parts[k].solid().volume(), -height].map(digits)
     };
     let first = |k: usize| bodies.assembly().constraints().is_first(k);
-    let all: Vec<usize> = (0..parts.len()).filter(|&k| there[k] && !moves(k)).collect();
+    let all: Vec<usize> = (0..parts.len()).filter(|&k| present[k] && !moves(k)).collect();
     let any = all.iter().all(|&k| first(k));
     let all = all.into_iter().filter(|&k| any || !first(k));
     let larger = |a: &usize, b: &usize| {
@@ -467,7 +469,7 @@ fn base_parts(
 fn find_supports(
     bodies: &Bodies,
     matrix: &Matrix,
-    there: &[bool],
+    present: &[bool],
     base: &[bool],
     up: DVec3,
 ) -> (Vec<Vec<usize>>, Vec<Option<Support>>) {
@@ -478,13 +480,13 @@ fn find_supports(
         heights.fold(f64::INFINITY, f64::min)
     };
     let lows: Vec<f64> = (0..count).map(lowest).collect();
-    let ground = (0..count).filter(|&k| there[k]).map(|k| lows[k]).fold(f64::INFINITY, f64::min);
-    let held = |k: usize| !there[k] || base[k] || lows[k] <= ground + near;
+    let ground = (0..count).filter(|&k| present[k]).map(|k| lows[k]).fold(f64::INFINITY, f64::min);
+    let held = |k: usize| !present[k] || base[k] || lows[k] <= ground + near;
     let mut below: Vec<Option<Vec<usize>>> =
         (0..count).map(|k| (!held(k)).then(Vec::new)).collect();
     let mut carried = vec![Vec::new(); count];
     let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME_DIRECTION);
-    let living = bodies.living(there);
+    let living = bodies.living(present);
     let found: Vec<Vec<usize>> = below
         .par_iter()
         .enumerate()

@@ -70,7 +70,7 @@ fn path_travel(
         let outside: Vec<usize> = outside.copied().collect();
         moving.iter().flat_map(|&a| outside.iter().map(move |&b| [a, b])).collect::<Vec<_>>()
     };
-    let look = |[a, b]: [usize; 2], by: DVec3, motion: DVec3| {
+    let examine = |[a, b]: [usize; 2], by: DVec3, motion: DVec3| {
         // Parts that overlap at the start move as one, or the step was rejected.
         let met = |share: &&f64| bodies.overlaps_displaced(a, by + motion * **share, b);
         let found = POSITIONS.iter().find(met);
@@ -80,7 +80,7 @@ fn path_travel(
     };
     for (leg, motion) in path.legs.iter().zip(&path.motions) {
         for [a, b] in pairs(&leg.parts) {
-            look([a, b], at[a] - at[b], *motion)?;
+            examine([a, b], at[a] - at[b], *motion)?;
         }
         for &part in &leg.parts {
             at[part] += *motion;
@@ -92,7 +92,7 @@ fn path_travel(
     };
     let travel = leaving.iter().fold(ZERO_TRAVEL, past);
     for [a, b] in leaving {
-        look([a, b], at[a] - at[b], d * travel.value)?;
+        examine([a, b], at[a] - at[b], d * travel.value)?;
     }
     Ok(travel)
 }

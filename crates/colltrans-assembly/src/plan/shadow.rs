@@ -30,14 +30,14 @@ pub(super) struct Shadow {
 }
 
 impl Shadow {
-    pub(super) fn new(bodies: &Bodies, there: &[bool], direction: DVec3) -> Self {
+    pub(super) fn new(bodies: &Bodies, present: &[bool], direction: DVec3) -> Self {
         let (u, v) = direction.any_orthonormal_pair();
         let seen = |p: &DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(direction));
-        let around = |(part, there): (&Part, &bool)| {
-            let vertices = there.then(|| part.solid().vertices().iter().map(seen));
+        let around = |(part, present): (&Part, &bool)| {
+            let vertices = present.then(|| part.solid().vertices().iter().map(seen));
             Aabb::of_points(vertices.into_iter().flatten())
         };
-        let boxes: Vec<Aabb> = bodies.assembly().parts().iter().zip(there).map(around).collect();
+        let boxes: Vec<Aabb> = bodies.assembly().parts().iter().zip(present).map(around).collect();
         let bounds = bodies.bounds_of(&boxes);
         let (travels, behind) = (HashMap::new(), HashMap::new());
         Self { direction, boxes, bounds, travels, behind }
@@ -107,8 +107,8 @@ impl Shadow {
         let own = self.boxes[part];
         let found = Cell::new((0.0, None));
         let is_further = |seen: &Aabb| {
-            let beside = |k: usize| seen.low[k] > own.high[k] || own.low[k] > seen.high[k];
-            seen.high.z - own.low.z > found.get().0 && !(0..2).any(beside)
+            let lateral_gap = |k: usize| seen.low[k] > own.high[k] || own.low[k] > seen.high[k];
+            seen.high.z - own.low.z > found.get().0 && !(0..2).any(lateral_gap)
         };
         bodies.visit_high(living, &self.bounds, is_further, |other| {
             if !group.contains(&other) && is_further(&self.boxes[other]) {

@@ -143,19 +143,19 @@ impl<'a> SubsetSearch<'a> {
 
     /// Removes the removable subsets of a set repeatedly, and checks whether the selected parts leave.
     fn try_removal(&self, set: &PartSet) -> TrialOutcome {
-        let mut there = vec![true; self.fixed.len()];
+        let mut present = vec![true; self.fixed.len()];
         let parts = set.to_parts();
         loop {
-            let before = there.iter().filter(|t| **t).count();
+            let before = present.iter().filter(|t| **t).count();
             for met in &self.blockers {
-                let mut leaving = vec![false; there.len()];
+                let mut leaving = vec![false; present.len()];
                 for &part in &parts {
-                    leaving[part] = there[part] && !self.fixed[part] && met[part].is_some();
+                    leaving[part] = present[part] && !self.fixed[part] && met[part].is_some();
                 }
                 let units: Vec<&Unit> =
-                    self.units.iter().filter(|unit| !unit.is_released(&there)).collect();
+                    self.units.iter().filter(|unit| !unit.is_released(&present)).collect();
                 let held = |part: usize, leaving: &[bool]| {
-                    let stays = |&by: &usize| there[by] && !leaving[by];
+                    let stays = |&by: &usize| present[by] && !leaving[by];
                     let with = units.iter().filter(|unit| unit.parts.contains(&part));
                     let mut met = met[part].iter().flatten();
                     met.any(stays) || with.flat_map(|unit| &unit.parts).any(stays)
@@ -165,42 +165,42 @@ impl<'a> SubsetSearch<'a> {
                 {
                     leaving[part] = false;
                 }
-                for part in 0..there.len() {
-                    there[part] &= !leaving[part];
+                for part in 0..present.len() {
+                    present[part] &= !leaving[part];
                 }
             }
-            if !self.wanted.iter().any(|&part| there[part]) {
+            if !self.wanted.iter().any(|&part| present[part]) {
                 return TrialOutcome::Enough;
             }
-            if there.iter().filter(|t| **t).count() == before {
-                return TrialOutcome::Left(there);
+            if present.iter().filter(|t| **t).count() == before {
+                return TrialOutcome::Left(present);
             }
         }
     }
 
     /// Returns the extensions of a set, smallest first. Omits sets that contain another one.
-    fn larger_sets(&self, set: &PartSet, there: &[bool]) -> Vec<PartSet> {
+    fn larger_sets(&self, set: &PartSet, present: &[bool]) -> Vec<PartSet> {
         let mut found: Vec<PartSet> = Vec::new();
         let mut add = |parts: &mut dyn Iterator<Item = usize>| {
             let (mut larger, mut free) = (set.clone(), true);
-            for part in parts.filter(|&part| there[part]) {
+            for part in parts.filter(|&part| present[part]) {
                 larger.add(part);
                 free &= !self.fixed[part];
             }
             // At least one part must stay.
-            if free && larger != *set && larger.len() < there.len() && !found.contains(&larger) {
+            if free && larger != *set && larger.len() < present.len() && !found.contains(&larger) {
                 found.push(larger);
             }
         };
-        for part in set.to_parts().into_iter().filter(|&part| there[part]) {
+        for part in set.to_parts().into_iter().filter(|&part| present[part]) {
             let with = || self.units.iter().filter(|unit| unit.parts.contains(&part));
             for met in self.blockers.iter().filter_map(|met| met[part].as_ref()) {
-                let as_one = with().filter(|unit| !unit.is_released(there));
+                let as_one = with().filter(|unit| !unit.is_released(present));
                 let as_one = as_one.flat_map(|unit| unit.parts.iter().copied());
                 add(&mut met.iter().copied().chain(as_one));
             }
             for unit in with().filter(|unit| unit.apart) {
-                add(&mut (0..there.len()).filter(|part| !unit.parts.contains(part)));
+                add(&mut (0..present.len()).filter(|part| !unit.parts.contains(part)));
             }
         }
         found.sort_by_key(|set| (set.len(), set.clone()));

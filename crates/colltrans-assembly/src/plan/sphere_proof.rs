@@ -114,7 +114,7 @@ impl<'a> Certifier<'a> {
     /// Checks whether no group leaves along any direction of a cell. Adds the arcs that it computes to the task.
     fn prove_cell(&mut self, task: &mut CellTask) -> bool {
         let middle = task.cell.center().normalize();
-        let mut asked = Vec::new();
+        let mut tested = Vec::new();
         loop {
             let graph = Blocking::from_arcs(task.arcs.iter().copied(), &self.among);
             let mut groups = graph.removable();
@@ -123,7 +123,7 @@ impl<'a> Certifier<'a> {
                 return true;
             }
             for group in groups {
-                match self.blocking_arc(&group, &task.cell, middle, &mut asked) {
+                match self.blocking_arc(&group, &task.cell, middle, &mut tested) {
                     Some(arc) => task.arcs.push(arc),
                     None => return false,
                 }
@@ -138,14 +138,14 @@ impl<'a> Certifier<'a> {
         group: &[usize],
         cell: &DirectionCell,
         middle: DVec3,
-        asked: &mut Vec<[usize; 2]>,
+        tested: &mut Vec<[usize; 2]>,
     ) -> Option<(usize, usize)> {
         for &a in group {
             for (_, b) in self.bodies.ahead(a, middle) {
-                if !self.among[b] || group.contains(&b) || asked.contains(&[a, b]) {
+                if !self.among[b] || group.contains(&b) || tested.contains(&[a, b]) {
                     continue;
                 }
-                asked.push([a, b]);
+                tested.push([a, b]);
                 if self.cell_blocker([a, b]).is_some_and(|of| of.covers(cell)) {
                     return Some((a, b));
                 }

@@ -137,9 +137,9 @@ impl Plan {
     /// thread, ...".
     pub fn passed_words(&self, assembly: &Assembly, stage: &Range<usize>) -> Vec<String> {
         let all = self.passed(stage);
-        let said = |passed: &Passed| passed.tolerated.words(passed.role);
-        let all = all.iter().map(|passed| (passed.parts, said(passed), said(passed)));
-        let told = |(said, sides): (String, [Vec<usize>; 2])| {
+        let description = |passed: &Passed| passed.tolerated.words(passed.role);
+        let all = all.iter().map(|passed| (passed.parts, description(passed), description(passed)));
+        let describe_group = |(description, sides): (String, [Vec<usize>; 2])| {
             let [a, b] = sides.map(|side| {
                 let names = assembly.names(&side);
                 match common_name(&names) {
@@ -147,9 +147,9 @@ impl Plan {
                     _ => names.join(", "),
                 }
             });
-            format!("{a} and {b}: {said}")
+            format!("{a} and {b}: {description}")
         };
-        pairs_alike(&self.likes, all).into_iter().map(told).collect()
+        pairs_alike(&self.likes, all).into_iter().map(describe_group).collect()
     }
 
     /// Checks whether a step belongs to the stage before it. `one_way` states whether all of them share one

@@ -168,12 +168,12 @@ impl Step {
 
     /// Returns descriptions of the parts that fall or are off balance after the step.
     pub fn unsettled(&self, assembly: &Assembly) -> Vec<String> {
-        let said = |parts: &[usize], what: &str| {
+        let list_parts = |parts: &[usize], what: &str| {
             let names = assembly.names(parts).join(", ");
             (!parts.is_empty()).then(|| format!("{what}: {names}"))
         };
-        let falls = said(&self.falls, "then rests on nothing");
-        let tips = said(&self.off_balance, "then off balance");
+        let falls = list_parts(&self.falls, "then rests on nothing");
+        let tips = list_parts(&self.off_balance, "then off balance");
         falls.into_iter().chain(tips).collect()
     }
 

@@ -23,12 +23,12 @@ impl Passed {
     }
 
     /// Returns the tolerated contacts between a moving group and present parts.
-    pub(crate) fn between(bodies: &Bodies, group: &[usize], there: &[bool]) -> Vec<Self> {
+    pub(crate) fn between(bodies: &Bodies, group: &[usize], present: &[bool]) -> Vec<Self> {
         let passed = |parts: [usize; 2]| {
             let tolerated = bodies.tolerated(parts)?;
             let role = bodies.assembly().pair(parts[0], parts[1]).and_then(|fit| fit.role);
             Some(Self { parts, role, tolerated })
         };
-        bodies.partners(group, there).filter_map(passed).collect()
+        bodies.partners(group, present).filter_map(passed).collect()
     }
 }

@@ -38,11 +38,11 @@ const TOLERANCE_FACTOR: f64 = 1.05;
 pub(super) fn unscrewing_legs(
     bodies: &Bodies,
     (parts, direction): (&[usize], DVec3),
-    (others, there): (&[usize], &[bool]),
+    (others, present): (&[usize], &[bool]),
     travel: Bounded,
     start: StartOverlap,
 ) -> Option<([Leg; 2], Bounded)> {
-    let threads = threads_along(bodies, parts, there, direction);
+    let threads = threads_along(bodies, parts, present, direction);
     let screw = ScrewMotion::new(bodies, *threads.first()?, direction)?;
     let one = threads.iter().all(|(_, thread)| screw.has_same_helix(thread));
     let mut turning = screw.unproven_leg(parts);
@@ -69,10 +69,10 @@ pub(super) fn unscrewing_legs(
 fn threads_along(
     bodies: &Bodies,
     parts: &[usize],
-    there: &[bool],
+    present: &[bool],
     d: DVec3,
 ) -> Vec<([usize; 2], Thread)> {
-    let pairs = bodies.partners(parts, there);
+    let pairs = bodies.partners(parts, present);
     let along = |thread: &Thread| {
         thread.pitch.is_some() && thread.axis[1].cross(d).length() < MAX_STEP_ANGLE
     };
@@ -206,9 +206,9 @@ impl ScrewMotion {
         motion: &Motion,
     ) -> Result<(f64, u64), String> {
         let depth = self.thread.radii[1] - self.thread.radii[0];
-        let asked = bodies.assembly().pair(pair[0], pair[1]).and_then(|fit| fit.tolerance);
-        let mut tolerance = asked.unwrap_or_else(|| bodies.fit().tolerance().max(0.0));
-        let most = asked.unwrap_or(MAX_TOLERANCE * depth).max(tolerance);
+        let given = bodies.assembly().pair(pair[0], pair[1]).and_then(|fit| fit.tolerance);
+        let mut tolerance = given.unwrap_or_else(|| bodies.fit().tolerance().max(0.0));
+        let most = given.unwrap_or(MAX_TOLERANCE * depth).max(tolerance);
         let names = pair.map(|part| bodies.assembly().parts()[part].name());
         let refused = |error: QueryError| error.to_string();
         loop {

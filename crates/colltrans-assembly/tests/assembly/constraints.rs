@@ -23,7 +23,7 @@ fn matrix<'a>(bodies: &'a Bodies<'a>) -> Matrix<'a> {
 
 /// The constraints as bit sets, independent of the assembly.
 #[derive(Debug, Default)]
-struct Asked {
+struct Demands {
     before: Vec<[usize; 2]>,
     together: Vec<u32>,
     subassemblies: Vec<u32>,
@@ -36,7 +36,7 @@ struct Judge {
     count: usize,
     /// For each direction and part, the parts that block it.
     met: Vec<Vec<u32>>,
-    asked: Asked,
+    demands: Demands,
 }
 
 fn bits(parts: &[usize]) -> u32 {
@@ -44,7 +44,7 @@ fn bits(parts: &[usize]) -> u32 {
 }
 
 impl Judge {
-    fn new(bodies: &Bodies, asked: Asked) -> Self {
+    fn new(bodies: &Bodies, demands: Demands) -> Self {
         let mut workspace = Workspace::default();
         let mut meets = |a: usize, b: usize, d: DVec3| {
             let start = StartOverlap::Refuse;
@@ -56,13 +56,13 @@ impl Judge {
                 (0..count).map(|a| (0..count).filter(|&b| meets(a, b, d)).map(|b| 1 << b).sum());
             row.collect()
         });
-        Self { count, met: met.to_vec(), asked }
+        Self { count, met: met.to_vec(), demands }
     }
 
     /// Checks whether a set can leave the remaining parts along a direction.
     fn leaves(&self, set: u32, left: u32, k: usize) -> bool {
         let (rest, has) = (left & !set, |part: usize| set >> part & 1 == 1);
-        let Asked { before, together, subassemblies, never, fixed } = &self.asked;
+        let Demands { before, together, subassemblies, never, fixed } = &self.demands;
         let as_one = |unit: &u32| set & unit == 0 || unit & rest == 0;
         set & fixed == 0
             && (0..self.count).all(|part| !has(part) || self.met[k][part] & rest == 0)
@@ -100,7 +100,7 @@ impl Judge {
     }
 
     /// Checks that each step can leave, also in random orders that respect `after`. Returns the remaining parts.
-    fn walked(&self, plan: &Plan, within: Option<usize>, all: u32, random: &mut Random) -> u32 {
+    fn check_walk(&self, plan: &Plan, within: Option<usize>, all: u32, random: &mut Random) -> u32 {
         let own = plan.steps.iter().enumerate().filter(|(_, step)| step.within == within);
         let steps: Vec<(usize, &Step)> = own.collect();
         let mut left = all;
@@ -128,7 +128,7 @@ impl Judge {
     }
 
     /// Checks the rounds in reverse order, the assembly sequence, and each alternative of the AND/OR graph.
-    fn backwards(&self, plan: &Plan, ways: &serde_json::Value) {
+    fn check_assembly(&self, plan: &Plan, ways: &serde_json::Value) {
         let all = (1_u32 << self.count) - 1;
         let main = |k: &usize| plan.steps[*k].within.is_none();
         let mut left = all;
@@ -149,7 +149,7 @@ impl Judge {
         assert_eq!(left, all);
         for (name, node) in ways.as_object().unwrap() {
             let part: usize = name.parse().unwrap();
-            if self.asked.fixed >> part & 1 == 1 {
+            if self.demands.fixed >> part & 1 == 1 {
                 // The base of the reference is not fixed in the graph.
                 continue;
             }
@@ -160,7 +160,7 @@ impl Judge {
                 let (set, k) = (1 << part, Self::position(DVec3::from_slice(&d)));
                 assert!(self.leaves(set, all & !bits(&gone), k), "{name}: {way}");
                 // No listed part is redundant, except for those for which a subassembly is taken apart last.
-                let apart = self.asked.subassemblies.iter().any(|unit| unit >> part & 1 == 1);
+                let apart = self.demands.subassemblies.iter().any(|unit| unit >> part & 1 == 1);
                 for &one in gone.iter().filter(|_| !apart) {
                     assert!(!self.leaves(set, all & !bits(&gone) | 1 << one, k), "{name}: {way}");
                 }
@@ -194,12 +194,12 @@ fn boxes(random: &mut Random) -> Assembly {
 }
 
 /// Adds random constraints that do not contradict each other, to the assembly and to the reference.
-fn asked(mut assembly: Assembly, random: &mut Random) -> (Assembly, Asked) {
+fn with_demands(mut assembly: Assembly, random: &mut Random) -> (Assembly, Demands) {
     let count = assembly.parts().len();
-    let mut asked = Asked::default();
+    let mut demands = Demands::default();
     if random.unit() < 0.5 {
         assembly = assembly.with_fixed(&["0"]).unwrap();
-        asked.fixed = 1;
+        demands.fixed = 1;
     }
     let name = |k: usize| k.to_string();
     for _ in 0..random.index(4) {
@@ -208,7 +208,7 @@ fn asked(mut assembly: Assembly, random: &mut Random) -> (Assembly, Asked) {
             if a == b { continue } else { assembly.clone().with_before(&[name(a)], &[name(b)]) };
         if let Ok(next) = next {
             assembly = next;
-            asked.before.push([a, b]);
+            demands.before.push([a, b]);
         }
     }
     for apart in [false, true] {
@@ -225,15 +225,15 @@ fn asked(mut assembly: Assembly, random: &mut Random) -> (Assembly, Asked) {
         }
     }
     for unit in assembly.constraints().units() {
-        let which = if unit.apart { &mut asked.subassemblies } else { &mut asked.together };
+        let which = if unit.apart { &mut demands.subassemblies } else { &mut demands.together };
         which.push(bits(&unit.parts));
     }
     for _ in 0..random.index(4) {
         let (k, d) = (random.index(count), random.index(AXES.len()));
         assembly = assembly.with_never(&[name(k)], AXES[d] * 3.0, 20.0).unwrap();
-        asked.never.push((k, d));
+        demands.never.push((k, d));
     }
-    (assembly, asked)
+    (assembly, demands)
 }
 
 #[test]
@@ -241,23 +241,23 @@ fn constrained_plans_remove_as_much_as_exhaustive_search() {
     let mut random = Random::new(2);
     let (mut whole, mut held, mut moved) = (0, 0, 0);
     for round in 0..400 {
-        let (assembly, asked) = asked(boxes(&mut random), &mut random);
+        let (assembly, demands) = with_demands(boxes(&mut random), &mut random);
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
-        let mut judge = Judge::new(&bodies, asked);
+        let mut judge = Judge::new(&bodies, demands);
         let plan =
             disassemble(&bodies, &matrix(&bodies), &[], options(), Watch::default()).unwrap();
         let all = (1_u32 << bodies.len()) - 1;
-        let left = judge.walked(&plan, None, all, &mut random);
+        let left = judge.check_walk(&plan, None, all, &mut random);
         assert_eq!(left, bits(&plan.left) | bits(&plan.last), "round {round}");
         // The plate is the base, unless it must leave before others.
-        if judge.asked.fixed == 1 || judge.asked.before.iter().all(|pair| pair[0] != 0) {
-            judge.asked.fixed = 1;
+        if judge.demands.fixed == 1 || judge.demands.before.iter().all(|pair| pair[0] != 0) {
+            judge.demands.fixed = 1;
             assert_eq!(left, judge.left(all, all), "round {round}");
         }
         for (k, step) in plan.steps.iter().enumerate().filter(|(_, step)| step.parts.len() > 1) {
-            judge.walked(&plan, Some(k), bits(&step.parts), &mut random);
+            judge.check_walk(&plan, Some(k), bits(&step.parts), &mut random);
         }
-        judge.backwards(&plan, &and_or(&assembly, &matrix(&bodies)));
+        judge.check_assembly(&plan, &and_or(&assembly, &matrix(&bodies)));
         whole += usize::from(plan.stuck.is_empty());
         held += usize::from(!plan.stuck.is_empty());
         moved += plan.steps.len();
@@ -277,13 +277,13 @@ fn smallest_removal_set_equals_exhaustive_search() {
     let (mut out, mut alone, mut held) = (0, 0, 0);
     for round in 0..400 {
         let assembly = boxes(&mut random);
-        let (assembly, asked) = if round % 2 == 0 {
-            (assembly, Asked::default())
+        let (assembly, demands) = if round % 2 == 0 {
+            (assembly, Demands::default())
         } else {
-            asked(assembly, &mut random)
+            with_demands(assembly, &mut random)
         };
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
-        let judge = Judge::new(&bodies, asked);
+        let judge = Judge::new(&bodies, demands);
         let wanted: Vec<usize> = match random.index(3) {
             0 => vec![1, bodies.len() - 1],
             _ => vec![random.index(bodies.len())],
@@ -302,7 +302,7 @@ fn smallest_removal_set_equals_exhaustive_search() {
             let count = found.parts.len() + found.others.len();
             assert_eq!((count as u32, found.least), (least, true), "round {round}: {found:?}");
             let all = (1_u32 << bodies.len()) - 1;
-            let left = judge.walked(&plan, None, all, &mut random);
+            let left = judge.check_walk(&plan, None, all, &mut random);
             assert_eq!(left & bits(&wanted), 0);
             assert_eq!(left, bits(&plan.last), "what remains");
             out += 1;
@@ -326,7 +326,7 @@ fn closed() -> Assembly {
     Assembly::new(parts).unwrap()
 }
 
-fn taken(assembly: &Assembly, wanted: &[&str]) -> (Vec<Vec<String>>, Plan) {
+fn plan_names(assembly: &Assembly, wanted: &[&str]) -> (Vec<Vec<String>>, Plan) {
     let bodies = Bodies::new(assembly, Fit::Tolerance(1e-9)).unwrap();
     let (matrix, watch) = (matrix(&bodies), Watch::default());
     let plan = match wanted {
@@ -343,12 +343,12 @@ fn taken(assembly: &Assembly, wanted: &[&str]) -> (Vec<Vec<String>>, Plan) {
 #[test]
 fn removal_of_a_core_takes_only_blocking_parts() {
     let assembly = closed().with_fixed(&["box"]).unwrap();
-    let (steps, plan) = taken(&assembly, &["core"]);
+    let (steps, plan) = plan_names(&assembly, &["core"]);
     assert_eq!(steps, [["cup"], ["lid"], ["core"]]);
     assert_eq!(assembly.names(&plan.last), ["box", "post"]);
     let words = plan.wanted.unwrap().words(&assembly);
     assert!(words.starts_with("core: 2 other parts go (lid, cup); no fewer"), "{words}");
-    let (steps, plan) = taken(&assembly, &["post"]);
+    let (steps, plan) = plan_names(&assembly, &["post"]);
     assert_eq!(steps, [["post"]]);
     assert!(plan.wanted.unwrap().words(&assembly).contains("nothing else has to go"));
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
@@ -361,7 +361,7 @@ fn removal_of_a_core_takes_only_blocking_parts() {
     let held = closed().with_fixed(&["c*", "box"]).unwrap();
     assert_eq!(held.parts().iter().filter(|part| part.fixed()).count(), 3);
     let core = closed().with_fixed(&["box"]).unwrap().with_never(&["core"], DVec3::Z, 179.0);
-    let words = taken(&core.unwrap(), &["core"]).1.wanted.unwrap().words(&assembly);
+    let words = plan_names(&core.unwrap(), &["core"]).1.wanted.unwrap().words(&assembly);
     assert!(
         words.ends_with("no removal path was found, although all removable parts were removed")
     );
@@ -371,21 +371,21 @@ fn removal_of_a_core_takes_only_blocking_parts() {
 fn subassembly_leaves_as_one_and_only_units_stay_together() {
     let plain = closed().with_fixed(&["box"]).unwrap();
     let sub = plain.clone().with_subassembly("top", &["lid", "cup"]).unwrap();
-    let (steps, plan) = taken(&sub, &[]);
+    let (steps, plan) = plan_names(&sub, &[]);
     let at = steps.iter().position(|step| *step == ["lid", "cup"]).unwrap();
     assert_eq!((steps[at + 1].clone(), plan.steps[at + 1].within), (vec!["cup".into()], Some(at)));
     assert_eq!(sub.constraints().name(&plan.steps[at].parts), Some("top"));
     let one = plain.clone().with_together(&["lid", "cup"]).unwrap();
-    let (steps, plan) = taken(&one, &[]);
+    let (steps, plan) = plan_names(&one, &[]);
     assert!(steps.contains(&vec!["lid".into(), "cup".into()]) && steps.len() == 3);
     assert!(plan.stuck.is_empty() && assembly_left(&one, &plan) == ["box"]);
     // If up is forbidden, the core cannot leave, and the plan reports the constraint.
     let never = plain.with_never(&["co*"], DVec3::Z, 30.0).unwrap();
-    let (_, plan) = taken(&never, &[]);
+    let (_, plan) = plan_names(&never, &[]);
     assert_eq!(assembly_left(&never, &plan), ["box", "core"]);
     assert!(plan.stuck[0].constrained);
     let order = closed().with_before(&["box"], &["post", "cup"]).unwrap();
-    let (steps, _) = taken(&order, &[]);
+    let (steps, _) = plan_names(&order, &[]);
     let first = |name: &str| steps.iter().position(|step| step[0] == name).unwrap();
     assert!(first("box") < first("cup") && first("box") < first("post"), "{steps:?}");
 }

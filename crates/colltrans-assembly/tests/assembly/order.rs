@@ -54,7 +54,7 @@ fn main_steps(plan: &Plan) -> Vec<(usize, &Step)> {
 
 /// Checks each main step: it leaves some part, is free, and is about as short as the shortest direction. Returns the
 /// number of steps after which no other part falls.
-fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usize {
+fn check_steps(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usize {
     let mut left: Vec<usize> = (0..bodies.len()).collect();
     let mut kept_up = 0;
     for (k, step) in main_steps(plan) {
@@ -88,7 +88,7 @@ fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usiz
 }
 
 /// Checks that the steps can be performed in random orders that respect `after`.
-fn exchanged(bodies: &Bodies, plan: &Plan, random: &mut Random) {
+fn check_exchanges(bodies: &Bodies, plan: &Plan, random: &mut Random) {
     let steps = main_steps(plan);
     for _ in 0..4 {
         let (mut done, mut left) =
@@ -126,9 +126,9 @@ fn steps_are_short_and_commute_up_to_precedence() {
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
         let (plan, directions) = planned(&bodies, PlanOptions::default().with_samples(0));
         assert!(plan.left.is_empty() && plan.last.len() == 1, "round {round}");
-        kept_up += judged(&bodies, &plan, &directions, DVec3::Z);
+        kept_up += check_steps(&bodies, &plan, &directions, DVec3::Z);
         steps += main_steps(&plan).len();
-        exchanged(&bodies, &plan, &mut random);
+        check_exchanges(&bodies, &plan, &mut random);
     }
     // Some box of a grid can always be removed from above.
     assert_eq!(kept_up, steps, "no part may fall");

@@ -15,13 +15,13 @@ use glam::DVec3;
 fn planned(assembly: &Assembly, options: PlanOptions) -> Plan {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
     let plan = crate::common::planned(&bodies, options);
-    judged(&bodies, &plan);
+    check_moves(&bodies, &plan);
     plan
 }
 
 /// Checks every move of every step for overlaps at 201 positions, with the shrunk parts, and that parts moved aside
 /// return.
-fn judged(bodies: &Bodies, plan: &Plan) {
+fn check_moves(bodies: &Bodies, plan: &Plan) {
     let mut there = vec![true; bodies.len()];
     for (k, step) in plan.steps.iter().enumerate() {
         // A step within a group has only the remaining parts of the group around it.
@@ -179,7 +179,7 @@ fn base_of(assembly: &Assembly, parts: &[usize]) -> usize {
 }
 
 /// Checks that no move of any step moves the base of the parts from which the step removes.
-fn base_rests(assembly: &Assembly, plan: &Plan) {
+fn check_base_is_stationary(assembly: &Assembly, plan: &Plan) {
     let all: Vec<usize> = (0..assembly.parts().len()).collect();
     for (k, step) in plan.steps.iter().enumerate() {
         let base = base_of(assembly, step.within.map_or(&all, |w| &plan.steps[w].parts));
@@ -224,7 +224,7 @@ fn random_puzzles_agree_with_exhaustive_cube_moves() {
         let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
         let (expected, level) = (cubes.comes_apart(), cubes.level());
         assert_eq!(plan.stuck.is_empty(), expected, "case {case}: {cubes:?} {plan:?}");
-        base_rests(&assembly, &plan);
+        check_base_is_stationary(&assembly, &plan);
         if let Some(level) = level {
             let first = plan.steps[0].path.len();
             assert_eq!(first, level.moves, "case {case}: {cubes:?} {plan:?}");
@@ -246,7 +246,7 @@ fn burr_of_level_six_is_disassembled_by_six_moves() {
     let Some(assembly) = collected("burr_p3_19") else { return };
     let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
     assert!(plan.left.is_empty() && plan.stuck.is_empty());
-    base_rests(&assembly, &plan);
+    check_base_is_stationary(&assembly, &plan);
     assert_eq!(plan.steps[0].path.len(), 6);
     let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
     assert!(taken + plan.last.len() >= 5, "every piece must be removed: {:?}", plan.steps);

@@ -67,7 +67,7 @@ fn turn(plan: &Plan) -> (&Leg, &Turn) {
     (leg, leg.turn.as_ref().unwrap())
 }
 
-fn is_free(assembly: &Assembly, plan: &Plan) {
+fn check_turn_is_free(assembly: &Assembly, plan: &Plan) {
     let others: Vec<usize> =
         (0..assembly.parts().len()).filter(|k| !plan.steps[0].parts.contains(k)).collect();
     crate::common::turns_freely(assembly, &plan.steps[0], &others);
@@ -90,7 +90,7 @@ fn screw_with_play_is_unscrewed_without_extra_tolerance() {
         let way = 3.0 * pitch.abs();
         assert!((way..1.01 * way).contains(&leg.travel), "{leg:?}");
         assert!((turn.turns - leg.travel / pitch).abs() < 0.03, "{turn:?}");
-        is_free(&assembly, &plan);
+        check_turn_is_free(&assembly, &plan);
     }
 }
 
@@ -104,7 +104,7 @@ fn thread_without_play_needs_the_chord_tolerance() {
     let tolerance = turn.proof.as_ref().unwrap().tolerance;
     // The chord error of 24 sides is 0.048; the thread is 0.6 deep.
     assert!((1e-6..0.15).contains(&tolerance), "{tolerance}");
-    is_free(&assembly, &plan);
+    check_turn_is_free(&assembly, &plan);
     // With a smaller tolerance it is not proven.
     let said = PairFit { tolerance: Some(1e-4), ..THREAD };
     let tight = assembly.with_pair([&["screw"], &["nut"]], said).unwrap();
@@ -125,7 +125,7 @@ fn misaligned_screw_starts_from_its_best_pose() {
         let sense = leg.direction.z * if plan.steps[0].parts == [0] { 1.0 } else { -1.0 };
         assert!((turn.phase * sense + by).abs() < 0.1, "{turn:?}");
         assert!((turn.aside.length() - aside.length()).abs() < 0.05, "{turn:?}");
-        is_free(&assembly, &plan);
+        check_turn_is_free(&assembly, &plan);
         let told = record::plan(&bodies, &plan);
         let leg = &told["plan"][0]["path"][0]["turn"];
         assert_eq!(leg["proof"]["tolerance"], 1e-6);
@@ -230,7 +230,7 @@ fn bayonet_is_turned_and_then_pulled() {
         (angle - 0.7).abs() < 0.02 || (angle + std::f64::consts::PI - 0.7).abs() < 0.02,
         "{turn:?}"
     );
-    is_free(&assembly, &plan);
+    check_turn_is_free(&assembly, &plan);
     // Without the slot there is no removal path.
     let closed = [
         socket(0.7),

@@ -1,10 +1,10 @@
-//! Two parts and a direction: everything that is asked of `colltrans`.
+//! Queries about two parts and a direction: the layer between assemblies and `colltrans`.
 //!
-//! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body), or each by its own
-//! chord error;
-//! to keep `M` apart bodies stay as they are, and every question is about where two of them are as near as that
-//! ([`Cast::keeping`]); boxes are those of the bodies with half of it around. A pair that has a [role](crate::roles) or
-//! a tolerance of its own has bodies of its own, which are asked of each other only.
+//! - With a tolerance `L` every body is shrunk by `L / 2`, or by its own chord error ([`Fit`]).
+//! - With a minimum gap bodies keep their shape. Queries then use [`Cast::keeping`], and boxes are grown by
+//!   half of the gap.
+//! - A pair with a [role](crate::roles) or a tolerance of its own has bodies of its own, which serve only
+//!   queries of this pair.
 
 mod turning;
 
@@ -29,31 +29,31 @@ use colltrans::Aabb;
 
 pub(crate) use turning::Turned;
 
-/// Pairs of parts whose boxes meet: more are refused, for memory goes with their number.
+/// Maximum number of pairs of parts whose boxes intersect. The limit bounds the memory.
 pub(crate) const MOST_NEIGHBOURS: usize = 1 << 19;
 
-/// How tight.
+/// Tolerance or minimum gap with which parts are tested.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fit {
-    /// Both bodies of a pair are shrunk by half of this length: up to so much of an overlap, of
-    /// rounding, chord errors or a press fit, does not block.
+    /// Shrinks both bodies of a pair by half of this length. Overlaps up to the length, from rounding, chord
+    /// errors or a press fit, do not block.
     Tolerance(f64),
-    /// Each body is shrunk by its own [chord error](Part::chord_error), and by half of the length `base`: the tolerance of
-    /// a pair is both chord errors together and `base`.
+    /// Shrinks each body by its own [chord error](Part::chord_error) and by half of `base`. The tolerance of
+    /// a pair is the sum of both chord errors and `base`.
     Chords {
-        /// For the last digits of coordinates.
+        /// Tolerance for the last digits of coordinates.
         base: f64,
-        /// The largest that a pair may have: twice the largest chord error, and `base`.
+        /// Maximum tolerance of a pair: twice the largest chord error, and `base`.
         largest: f64,
     },
-    /// That far apart two bodies must stay, in all directions: what is nearer overlaps, and what comes
-    /// as near is stopped. Pairs that touch on purpose have to be listed as ignored.
+    /// Minimum gap of two bodies in all directions. Bodies that are nearer at the start overlap, and motions
+    /// stop at this distance. Pairs that touch on purpose must be listed as ignored.
     Apart(f64),
 }
 
-/// Last digits of single precision, as a share of the assembly's extent.
+/// Rounding of single precision, as a share of the assembly's extent.
 const SINGLE_DIGITS: f64 = 1.0 / (1 << 21) as f64;
-/// Last digits of doubles that are placed in the world, as a share of the assembly's largest coordinate.
+/// Rounding of doubles placed in the world, as a share of the assembly's largest coordinate.
 const DOUBLE_DIGITS: f64 = 1.0 / (1_u64 << 46) as f64;
 
 impl Fit {
@@ -78,20 +78,20 @@ impl Fit {
     /// Returns the tolerance for the last digits of coordinates ([`Self::default_for`]).
     pub(crate) fn digits(assembly: &Assembly) -> f64 {
         let parts = assembly.parts();
-        let of_files = parts.iter().map(Part::last_digits).fold(0.0, f64::max);
+        let file_digits = parts.iter().map(Part::last_digits).fold(0.0, f64::max);
         let is_coarse = parts.iter().any(Part::is_coarse);
-        let of_extent = if is_coarse { SINGLE_DIGITS * assembly.extent() } else { 0.0 };
-        of_files.max(of_extent).max(DOUBLE_DIGITS * assembly.size())
+        let extent_digits = if is_coarse { SINGLE_DIGITS * assembly.extent() } else { 0.0 };
+        file_digits.max(extent_digits).max(DOUBLE_DIGITS * assembly.size())
     }
 
-    /// Returns the length below which distances are equal, and parts touch: [`Self::digits`], but no less than those
-    /// of single precision of the assembly's extent.
+    /// Returns the length below which distances count as equal and parts as touching: [`Self::digits`], but
+    /// at least the rounding of single precision of the assembly's extent.
     pub(crate) fn negligible(assembly: &Assembly) -> f64 {
         Self::digits(assembly).max(SINGLE_DIGITS * assembly.extent())
     }
 
-    /// By how much a part is shrunk.
-    fn amount(self, part: &Part) -> f64 {
+    /// Returns the length by which a part is shrunk.
+    fn shrink_distance(self, part: &Part) -> f64 {
         match self {
             Self::Tolerance(length) => length / 2.0,
             Self::Chords { base, .. } => part.chord_error().unwrap_or(0.0) + base / 2.0,
@@ -99,15 +99,15 @@ impl Fit {
         }
     }
 
-    /// The length to be kept, or 0.
-    const fn keep(self) -> f64 {
+    /// Returns the minimum gap; 0 with a tolerance.
+    const fn min_gap(self) -> f64 {
         match self {
             Self::Tolerance(_) | Self::Chords { .. } => 0.0,
             Self::Apart(length) => length,
         }
     }
 
-    /// The tolerance, the largest of all pairs; a length to keep is a negative one.
+    /// Returns the largest tolerance of all pairs; a minimum gap is returned as a negative tolerance.
     pub const fn tolerance(self) -> f64 {
         match self {
             Self::Tolerance(length) | Self::Chords { largest: length, .. } => length,
@@ -116,148 +116,154 @@ impl Fit {
     }
 }
 
-/// What stops a part.
+/// The contact that stops a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// Where the facets that stop the shrunk bodies meet in their true place, before they were shrunk,
-    /// with bounds: [`SolidContact::translation`]. With a length to keep, the same as `displaced`.
+    /// Translation at which the facets in contact meet without shrinking, with bounds:
+    /// [`SolidContact::translation`]. Equal to `displaced` with a minimum gap.
     pub translation: Bounded,
-    /// How far the bodies, shrunk, can move, or until they are as near as the length to keep; never negative.
+    /// Translation until the shrunk bodies touch, or until the minimum gap is reached; never negative.
     pub displaced: Bounded,
     /// Unit contact normal in the world, from the moving part to the other one.
     pub normal: DVec3,
-    /// The contact point on the other part, in the world.
+    /// Contact point on the other part, in the world.
     pub point: DVec3,
-    /// The triangles of both bodies that meet.
+    /// Triangles in contact: of the moving body and of the other one.
     pub(crate) triangles: [u32; 2],
 }
 
 impl Stop {
-    /// How far it is safe to move: up to here the bodies, shrunk, do not overlap, or are no nearer than the
-    /// length to keep, and what stops them has not met in its true place. Both are proven. Never negative, and less than 7 by rounding
-    /// alone for a head that stops at 7.
+    /// Returns the lower bound of `translation`, but at least 0.
+    ///
+    /// Up to this distance the shrunk bodies are proven not to overlap (or to keep the gap), and the unshrunk
+    /// facets in contact are proven not to meet. Rounding makes it slightly smaller than the exact value:
+    /// less than 7 for a part that stops at 7.
     pub const fn distance(&self) -> f64 {
         self.translation.lower.max(0.0)
     }
 }
 
-/// How far one part can move before another stops it.
+/// Free travel of one part before another one stops it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Room {
-    /// They never meet.
+    /// The parts never meet.
     Free,
-    /// They meet.
+    /// The parts meet.
     Blocked(Stop),
-    /// They overlap where they are.
+    /// The parts overlap at the start.
     Overlapping,
 }
 
-/// A part as it is asked.
-struct Displaced {
-    /// Shrunk; to be kept apart, as it is.
+/// The body of a part in queries.
+struct ShrunkBody {
+    /// The shrunk solid; with a minimum gap, the given one.
     solid: Solid,
-    /// What was shrunk, if it is not the part as given: the core of its thread.
+    /// The core of the part's thread, if that was shrunk instead of the given solid.
     core: Option<Solid>,
-    /// For each triangle of it the one of what was shrunk.
+    /// For each triangle of `solid`, the corresponding triangle before shrinking.
     given: Vec<u32>,
-    /// What shrinking could not do as it should.
+    /// Defects of the shrunk solid.
     report: ShrinkReport,
 }
 
-impl Displaced {
+impl ShrunkBody {
+    /// Shrinks a part, or the core of its thread, for a fit.
     fn new(part: &Part, core: Option<Solid>, fit: Fit) -> Result<Self, SolidError> {
         let from = core.as_ref().unwrap_or(part.solid());
         let (solid, report) = match fit {
-            Fit::Tolerance(_) | Fit::Chords { .. } => from.shrunk(fit.amount(part))?,
+            Fit::Tolerance(_) | Fit::Chords { .. } => from.shrunk(fit.shrink_distance(part))?,
             Fit::Apart(_) => (from.clone(), ShrinkReport::default()),
         };
-        let given = same_triangles(&solid, from);
+        let given = corresponding_triangles(&solid, from);
         Ok(Self { solid, core, given, report })
     }
 
-    /// What is wrong with it, in words.
+    /// Describes the defects of the shrunk solid.
     fn faults(&self, given: &Solid) -> Vec<String> {
         let ShrinkReport { stuck, inverted, .. } = &self.report;
-        let mut said = Vec::new();
-        if self.solid.is_closed() && volume(given) > 0.0 && volume(&self.solid) <= 0.0 {
-            said.push("nothing of it is left: it is thinner than that".to_owned());
+        let mut found = Vec::new();
+        if self.solid.is_closed()
+            && enclosed_volume(given) > 0.0
+            && enclosed_volume(&self.solid) <= 0.0
+        {
+            found
+                .push("nothing of it is left, because it is thinner than the tolerance".to_owned());
         }
         if !inverted.is_empty() {
-            said.push(format!(
-                "facets that this turns inside out or through others: {}",
-                inverted.len()
-            ));
+            found.push(format!("facets turned inside out or through others: {}", inverted.len()));
         }
         if !stuck.is_empty() {
-            said.push(format!("vertices that it cannot move: {}", stuck.len()));
+            found.push(format!("vertices that cannot be shrunk: {}", stuck.len()));
         }
-        said
+        found
     }
 }
 
-/// The parts of an assembly, made ready to be asked with one fit.
+/// The parts of an assembly, prepared for queries with one fit.
 pub struct Bodies<'a> {
     assembly: &'a Assembly,
     fit: Fit,
-    displaced: Vec<Displaced>,
-    /// What pairs have of their own, the smaller index first.
+    shrunk_bodies: Vec<ShrunkBody>,
+    /// Fits of pairs with a role or tolerance of their own, the smaller index first.
     pairs: BTreeMap<[usize; 2], OwnFit>,
-    /// The first part as it is asked of the second, where that is not as it is asked of all.
-    own: BTreeMap<[usize; 2], Arc<Displaced>>,
+    /// The body of the first part in queries against the second one, where it differs from the general body.
+    own: BTreeMap<[usize; 2], Arc<ShrunkBody>>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
-    /// Along the directions that are asked of all, once they are known.
+    /// Extents along the directions of [`Self::measure_along`].
     slabs: OnceLock<Slabs>,
-    /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
+    /// Pairs whose bodies overlap at the start, the smaller index first, sorted.
     overlapping: Vec<[usize; 2]>,
-    /// Pairs whose overlap is ignored, with the further tolerance with which there is none, if there is
-    /// one: beyond, it would be deeper.
+    /// Pairs whose overlap is ignored, with an additional tolerance that removes the overlap. Motions that
+    /// would overlap even with this tolerance deepen the overlap.
     passing: BTreeMap<[usize; 2], f64>,
-    /// By part, the others with which it overlaps, is ignored or has a fit of its own, in increasing order.
+    /// For each part, the others that it overlaps, ignores or has a fit of its own with, in increasing order.
     partners: Vec<Vec<usize>>,
     noise: f64,
-    /// How often two parts were asked about.
+    /// Number of queries of two parts.
     #[cfg(test)]
     pub(crate) asked: std::sync::atomic::AtomicUsize,
-    /// How often a part, a pair, or a node of a tree was looked at for a plan.
+    /// Number of visits of parts, pairs and tree nodes during planning.
     #[cfg(test)]
     pub(crate) looks: std::sync::atomic::AtomicUsize,
 }
 
-/// What a pair has of its own.
+/// Resolved fit of a pair with a role or tolerance of its own.
 #[derive(Clone, Copy)]
 struct OwnFit {
     fit: Fit,
     tolerated: Tolerated,
-    /// Of those whose screw is taken as its core.
+    /// Thread of the pair, if the core of the screw is tested instead of the screw.
     thread: Option<Thread>,
 }
 
-/// How deep an overlap that is ignored may become, in multiples of its depth at the start: so much more
-/// that rounding does not decide.
+/// Factor by which an ignored overlap may deepen, so that rounding does not block.
 const DEEPER: f64 = 1.05;
 
 impl<'a> Bodies<'a> {
-    /// Makes the bodies ready, and looks which pairs overlap where they are.
+    /// Builds the bodies, and finds the pairs that overlap at the start.
     ///
     /// # Errors
-    /// A tolerance, or length to keep, that is negative, not finite or too large for a part.
+    /// - [`AssemblyError::Length`]: the tolerance or minimum gap is negative, not finite or too large.
+    /// - [`AssemblyError::Part`]: a part cannot be shrunk.
+    /// - [`AssemblyError::TooMany`]: too many boxes of parts intersect.
     pub fn new(assembly: &'a Assembly, fit: Fit) -> Result<Self, AssemblyError> {
         let (what, value) = match fit {
             Fit::Tolerance(value) | Fit::Chords { largest: value, .. } => ("tolerance", value),
-            Fit::Apart(value) => ("length to keep", value),
+            Fit::Apart(value) => ("minimum gap", value),
         };
         if !(0.0..=MAX_MAGNITUDE).contains(&value) {
             return Err(AssemblyError::Length { what, value });
         }
-        let displaced = |part: &Part| Displaced::new(part, None, fit).map_err(|e| refused(part, e));
-        let displaced: Result<Vec<Displaced>, AssemblyError> =
+        let displaced =
+            |part: &Part| ShrunkBody::new(part, None, fit).map_err(|e| part_error(part, e));
+        let displaced: Result<Vec<ShrunkBody>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
         let displaced = displaced?;
-        let (pairs, own) = own_fits(assembly, fit)?;
-        let around = fit.keep() / 2.0;
+        let (pairs, own) = resolved_pair_fits(assembly, fit)?;
+        let margin = fit.min_gap() / 2.0;
         let mut boxes: Vec<Aabb> =
-            displaced.iter().map(|part| part.solid.bounds().grown(around)).collect();
+            displaced.iter().map(|part| part.solid.bounds().grown(margin)).collect();
         for ([part, _], own) in &own {
             boxes[*part] = boxes[*part].join(&own.solid.bounds());
         }
@@ -267,7 +273,7 @@ impl<'a> Bodies<'a> {
         let mut bodies = Self {
             assembly,
             fit,
-            displaced,
+            shrunk_bodies: displaced,
             pairs,
             own,
             boxes,
@@ -283,18 +289,19 @@ impl<'a> Bodies<'a> {
             looks: std::sync::atomic::AtomicUsize::default(),
         };
         let pairs = bodies.neighbours(0.0)?;
-        let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
+        let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_in_place(a, b));
         bodies.overlapping = overlapping.collect();
         let ignored = |pair: &&[usize; 2]| assembly.ignored(pair[0], pair[1]).is_some();
         let ignored = bodies.overlapping.par_iter().filter(ignored);
-        bodies.passing =
-            ignored.filter_map(|&pair| Some((pair, bodies.passes_with(pair)?))).collect();
-        bodies.partners = bodies.all_partners();
+        bodies.passing = ignored
+            .filter_map(|&pair| Some((pair, bodies.overlap_free_tolerance(pair)?)))
+            .collect();
+        bodies.partners = bodies.partner_lists();
         Ok(bodies)
     }
 
-    /// Collects for each part the others with which it overlaps, is ignored or has a fit of its own.
-    fn all_partners(&self) -> Vec<Vec<usize>> {
+    /// Collects for each part the others that it overlaps, ignores or has a fit of its own with.
+    fn partner_lists(&self) -> Vec<Vec<usize>> {
         let mut partners = vec![Vec::new(); self.len()];
         let pairs = self.overlapping.iter().chain(self.pairs.keys()).copied();
         for [a, b] in pairs.chain(self.assembly.ignored_pairs()) {
@@ -308,8 +315,8 @@ impl<'a> Bodies<'a> {
         partners
     }
 
-    /// Returns the pairs of a part of a group and one that is there which overlap, are ignored or have a fit of their own,
-    /// in order.
+    /// Iterates over the pairs of a part of `group` and a present part that overlap, are ignored or have a
+    /// fit of their own. `there` marks the present parts by index.
     pub(crate) fn partners<'s>(
         &'s self,
         group: &'s [usize],
@@ -319,108 +326,114 @@ impl<'a> Bodies<'a> {
         group.iter().flat_map(pairs).filter(|&[_, b]| there[b])
     }
 
-    /// A little more than the least further tolerance with which two parts do not overlap; `None` if
-    /// there is none that leaves both parts as they are but smaller.
-    fn passes_with(&self, pair: [usize; 2]) -> Option<f64> {
-        let solids = self.solids(pair);
+    /// Returns an additional tolerance with which two parts do not overlap, 5 % above the least one. Returns
+    /// `None` if no such tolerance leaves both parts whole.
+    fn overlap_free_tolerance(&self, pair: [usize; 2]) -> Option<f64> {
+        let solids = self.pair_solids(pair);
         let [a, b] = solids.map(|solid| solid.at(Pose::IDENTITY));
-        let cast = Cast::new(a, b, DVec3::Z).ok()?.keeping(self.fit_of(pair).keep()).ok()?;
+        let cast = Cast::new(a, b, DVec3::Z).ok()?.keeping(self.pair_fit(pair).min_gap()).ok()?;
         let tolerance = cast.least_tolerance()? * DEEPER;
         solids.into_iter().all(|solid| stays_whole(solid, tolerance)).then_some(tolerance)
     }
 
-    /// A part as it is asked of another one.
-    fn body(&self, [part, other]: [usize; 2]) -> &Displaced {
-        self.own.get(&[part, other]).map_or(&self.displaced[part], |own| own)
+    /// Returns the body of a part in queries against another one.
+    fn pair_body(&self, [part, other]: [usize; 2]) -> &ShrunkBody {
+        self.own.get(&[part, other]).map_or(&self.shrunk_bodies[part], |own| own)
     }
 
-    /// What was shrunk to that.
-    fn given(&self, pair: [usize; 2]) -> &Solid {
+    /// Returns the solid from which [`Self::pair_body`] was shrunk.
+    fn unshrunk_solid(&self, pair: [usize; 2]) -> &Solid {
         let given = self.assembly.parts()[pair[0]].solid();
-        self.body(pair).core.as_ref().unwrap_or(given)
+        self.pair_body(pair).core.as_ref().unwrap_or(given)
     }
 
-    /// Two parts as they are asked of each other.
-    fn solids(&self, [a, b]: [usize; 2]) -> [&Solid; 2] {
-        [&self.body([a, b]).solid, &self.body([b, a]).solid]
+    /// Returns the shrunk solids of two parts in queries of this pair.
+    fn pair_solids(&self, [a, b]: [usize; 2]) -> [&Solid; 2] {
+        [&self.pair_body([a, b]).solid, &self.pair_body([b, a]).solid]
     }
 
+    /// Returns the fit of a pair with a role or tolerance of its own, if any.
     fn own_fit(&self, [a, b]: [usize; 2]) -> Option<&OwnFit> {
         self.count_look();
         self.pairs.get(&[a.min(b), a.max(b)])
     }
 
-    fn fit_of(&self, pair: [usize; 2]) -> Fit {
+    /// Returns the fit of a pair.
+    fn pair_fit(&self, pair: [usize; 2]) -> Fit {
         self.own_fit(pair).map_or(self.fit, |own| own.fit)
     }
 
-    /// What is let pass of two parts that have a fit of their own.
+    /// Returns the contacts that a pair with a fit of its own tolerates; `None` without such a fit.
     pub fn tolerated(&self, pair: [usize; 2]) -> Option<Tolerated> {
         self.own_fit(pair).map(|own| own.tolerated)
     }
 
-    /// The parts.
+    /// Returns the assembly.
     pub const fn assembly(&self) -> &'a Assembly {
         self.assembly
     }
 
-    /// How tight.
+    /// Returns the general fit.
     pub const fn fit(&self) -> Fit {
         self.fit
     }
 
-    /// The least tolerance that a pair of these parts has.
+    /// Returns twice the smallest distance by which the general fit shrinks one of these parts. No pair of
+    /// them has a smaller tolerance by that fit.
     pub(crate) fn least_tolerance(&self, parts: &[usize]) -> f64 {
-        let amount = |&k: &usize| self.fit.amount(&self.assembly.parts()[k]);
-        2.0 * parts.iter().map(amount).reduce(f64::min).unwrap_or(0.0)
+        let distance = |&k: &usize| self.fit.shrink_distance(&self.assembly.parts()[k]);
+        2.0 * parts.iter().map(distance).reduce(f64::min).unwrap_or(0.0)
     }
 
-    /// Number of parts.
+    /// Returns the number of parts.
     pub fn len(&self) -> usize {
         self.boxes.len()
     }
 
-    /// Whether there are no parts.
+    /// Checks whether the assembly has no parts.
     pub fn is_empty(&self) -> bool {
         self.boxes.is_empty()
     }
 
-    /// What could not be shrunk as the fit asks for; in words, `None` if nothing.
+    /// Returns a description of the defects of shrinking a part; `None` if there are none.
     ///
-    /// Facets turn inside out, or pass through others, where a part is thinner than the tolerance: what
-    /// is said about them is not what the part does. Vertices that stay are those of saddles: around
-    /// them no displacement is inwards for all facets.
+    /// Facets are inverted or intersect others where a part is thinner than the tolerance. Results there do
+    /// not describe the part. Vertices that cannot be shrunk are those of saddles, around which no
+    /// displacement is inward for all facets.
     pub fn remark(&self, part: usize) -> Option<String> {
         let given = self.assembly.parts()[part].solid();
-        let faults = |displaced: &Displaced, by: &str| {
-            let said = displaced.faults(displaced.core.as_ref().unwrap_or(given));
-            (!said.is_empty()).then(|| format!("{by}; {}", said.join("; ")))
+        let faults = |displaced: &ShrunkBody, by: &str| {
+            let found = displaced.faults(displaced.core.as_ref().unwrap_or(given));
+            (!found.is_empty()).then(|| format!("{by}; {}", found.join("; ")))
         };
-        let all = faults(&self.displaced[part], "shrunk by half the tolerance");
+        let all = faults(&self.shrunk_bodies[part], "shrunk by half the tolerance");
         let own = self.own.iter().filter(|x| x.0[0] == part).filter_map(|([_, other], own)| {
             let other = self.assembly.parts()[*other].name();
             faults(own, &format!("shrunk by half the tolerance of its pair with {other}"))
         });
-        let said: Vec<String> = all.into_iter().chain(own).collect();
-        (!said.is_empty()).then(|| said.join("; "))
+        let found: Vec<String> = all.into_iter().chain(own).collect();
+        (!found.is_empty()).then(|| found.join("; "))
     }
 
-    /// Lengths below this are a matter of the files' last digits: `2^-19` of the assembly's size.
+    /// Returns the length below which differences may come from the last digits of the files: four times
+    /// [`Fit::negligible`], thus at least `2^-19` of the assembly's extent.
     pub(crate) fn noise(&self) -> f64 {
         self.noise
     }
 
+    /// Returns the box of a part's bodies, with half of the minimum gap around it.
     pub(crate) fn bounds(&self, part: usize) -> Aabb {
         self.boxes[part]
     }
 
-    /// Parts that a part's box meets along a unit direction, with lower bounds, nearest first.
+    /// Returns the parts whose boxes a part's box meets along unit direction `d`, each with a lower bound of
+    /// the distance, nearest first. Pairs that are always ignored are left out.
     pub(crate) fn ahead(&self, part: usize, d: DVec3) -> Vec<(f64, usize)> {
-        let mut found = self.tree.ahead(&self.boxes[part], d);
+        let mut found = self.tree.boxes_ahead(&self.boxes[part], d);
         found.retain(|&(_, other)| other != part && !self.always_ignored(part, other));
         if let Some(slabs) = self.slabs.get() {
             found.retain_mut(|(t, other)| {
-                slabs.entry([part, *other], d).is_some_and(|least| {
+                slabs.entry_translation([part, *other], d).is_some_and(|least| {
                     *t = t.max(least);
                     true
                 })
@@ -430,22 +443,23 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Returns the parts that are `true`, as [`first_ahead`](Self::first_ahead) takes them.
+    /// Returns the set of parts marked in `there`, for [`first_ahead`](Self::first_ahead).
     pub(crate) fn living(&self, there: &[bool]) -> Living {
         self.tree.living(there)
     }
 
-    /// Takes a part away from those that are left.
+    /// Removes a part from the set.
     pub(crate) fn remove(&self, living: &mut Living, part: usize) {
         self.tree.remove(living, part);
     }
 
-    /// Computes the bounds of boxes, one by part, for [`visit_high`](Self::visit_high).
+    /// Computes the bounds of the tree nodes for boxes given by part, for [`visit_high`](Self::visit_high).
     pub(crate) fn bounds_of(&self, boxes: &[Aabb]) -> Vec<Aabb> {
         self.tree.bounds_of(boxes)
     }
 
-    /// Calls with the parts that are left under nodes for whose bounds `wanted` holds, as [`BoxTree::visit_high`].
+    /// Calls `call` with the parts of the set below the nodes whose bounds satisfy `wanted`; see
+    /// [`BoxTree::visit_high`].
     pub(crate) fn visit_high(
         &self,
         living: &Living,
@@ -460,15 +474,19 @@ impl<'a> Bodies<'a> {
         self.tree.visit_high(living, bounds, wanted, call);
     }
 
-    /// Counts one look at a part, a pair, or a node of a tree, for a plan.
-    #[cfg_attr(not(test), expect(clippy::unused_self, reason = "only tests count"))]
+    /// Counts a visit of a part, pair or tree node during planning.
+    #[cfg_attr(
+        not(test),
+        expect(clippy::unused_self, reason = "only builds of tests have the counter")
+    )]
     pub(crate) fn count_look(&self) {
         #[cfg(test)]
         self.looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     }
 
-    /// Calls with the parts that are left and that a part's box meets along a unit direction, and with a lower bound of
-    /// where, nearest first, until a call returns `true`; returns that part.
+    /// Calls `call` with the parts of `living` whose boxes a part's box meets along unit direction `d`, and
+    /// with a lower bound of the distance, nearest first, until a call returns `true`. Returns that part;
+    /// `None` if no call returns `true`.
     pub(crate) fn first_ahead(
         &self,
         part: usize,
@@ -478,36 +496,37 @@ impl<'a> Bodies<'a> {
     ) -> Option<usize> {
         let passes = |other: usize| {
             let slabs = self.slabs.get();
-            slabs.is_some_and(|slabs| slabs.entry([part, other], d).is_none())
+            slabs.is_some_and(|slabs| slabs.entry_translation([part, other], d).is_none())
         };
         self.tree.first_ahead(living, &self.boxes[part], d, |bound, other| {
-            let aside = other == part || self.always_ignored(part, other) || passes(other);
-            !aside && call(bound, other)
+            let is_skipped = other == part || self.always_ignored(part, other) || passes(other);
+            !is_skipped && call(bound, other)
         })
     }
 
-    /// From now on it is known how far parts reach along these unit directions, where such were not told before: what is
-    /// asked of it then, in any direction, takes less time.
+    /// Computes the extents of all parts along these unit directions, which speeds up later queries of any
+    /// direction. Later calls have no effect.
     pub(crate) fn measure_along(&self, directions: &[DVec3]) {
         self.slabs.get_or_init(|| {
             let mut bodies: Vec<Vec<&Solid>> =
-                self.displaced.iter().map(|part| vec![&part.solid]).collect();
+                self.shrunk_bodies.iter().map(|part| vec![&part.solid]).collect();
             for ([part, _], own) in &self.own {
                 bodies[*part].push(&own.solid);
             }
-            Slabs::new(&bodies, self.fit.keep() / 2.0, directions)
+            Slabs::new(&bodies, self.fit.min_gap() / 2.0, directions)
         });
     }
 
-    /// Pairs whose boxes, grown by a length, meet; the smaller index first, in order.
+    /// Returns the pairs whose boxes intersect after the first one is grown by `by`, the smaller index first,
+    /// sorted. Pairs that are always ignored are left out.
     ///
     /// # Errors
-    /// There are more than [`MOST_NEIGHBOURS`].
+    /// [`AssemblyError::TooMany`] for more than [`MOST_NEIGHBOURS`] pairs.
     pub(crate) fn neighbours(&self, by: f64) -> Result<Vec<[usize; 2]>, AssemblyError> {
         let mut pairs = Vec::new();
         for a in 0..self.len() {
-            let met = self.tree.meeting(&self.boxes[a].grown(by)).into_iter().filter(|&b| b > a);
-            pairs.extend(met.filter(|&b| !self.always_ignored(a, b)).map(|b| [a, b]));
+            let near = self.tree.meeting(&self.boxes[a].grown(by)).into_iter().filter(|&b| b > a);
+            pairs.extend(near.filter(|&b| !self.always_ignored(a, b)).map(|b| [a, b]));
             if pairs.len() > MOST_NEIGHBOURS {
                 let (what, most) =
                     ("pairs of parts lie within each other's boxes", MOST_NEIGHBOURS);
@@ -517,13 +536,19 @@ impl<'a> Bodies<'a> {
         Ok(pairs)
     }
 
+    /// Checks whether two parts are never tested: all their contacts are ignored, or they are glued.
     fn always_ignored(&self, a: usize, b: usize) -> bool {
         self.assembly.ignored(a, b) == Some(Ignored::Always)
             || self.tolerated([a, b]) == Some(Tolerated::AsOne)
     }
 
-    /// What an overlap of two parts at the start means, where `start` is asked of all.
-    pub(crate) fn start_of(&self, a: usize, b: usize, start: StartOverlap) -> StartOverlap {
+    /// Returns how an overlap of two parts at the start is treated; `start` is the general rule.
+    pub(crate) fn pair_start_overlap(
+        &self,
+        a: usize,
+        b: usize,
+        start: StartOverlap,
+    ) -> StartOverlap {
         let crossing = self.tolerated([a, b]) == Some(Tolerated::Crossing);
         match self.assembly.ignored(a, b) {
             None if !crossing => start,
@@ -531,18 +556,20 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Whether a plan passes over what two parts do where they are: an overlap that is ignored, or
-    /// everything.
+    /// Checks whether a plan disregards contacts of two parts at the start: all contacts, contacts of a snap
+    /// fit, or an ignored overlap.
     pub(crate) fn lets_pass(&self, a: usize, b: usize, start: StartOverlap) -> bool {
         self.always_ignored(a, b)
             || matches!(self.tolerated([a, b]), Some(Tolerated::Bent(_)))
-            || (self.overlaps(a, b) && self.start_of(a, b, start) == StartOverlap::Ignore)
+            || (self.overlaps(a, b) && self.pair_start_overlap(a, b, start) == StartOverlap::Ignore)
     }
 
-    /// How far part `a` can move along unit direction `d` before `b` stops it; contacts from
-    /// `before` on are of no interest. Parts that overlap where they are do so, or, with
-    /// [`StartOverlap::Ignore`] or where the assembly [ignores](Assembly::with_ignored) their overlap,
-    /// are stopped by contacts that begin later; in the second case also by what would make it deeper.
+    /// Returns how far part `a` moves along unit direction `d` before `b` stops it.
+    ///
+    /// Contacts at `before` or beyond need not be reported. Parts that overlap at the start are
+    /// [`Room::Overlapping`]. If `start` is [`StartOverlap::Ignore`], or the assembly
+    /// [ignores](Assembly::with_ignored) the overlap, only contacts that begin later stop the part. Motions
+    /// that deepen an ignored overlap stop it too, if the assembly ignores the overlap.
     pub fn room(
         &self,
         [a, b]: [usize; 2],
@@ -554,33 +581,34 @@ impl<'a> Bodies<'a> {
         #[cfg(test)]
         self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         if let Some(Tolerated::Bent(length)) = self.tolerated([a, b]) {
-            return self.bent([a, b], d, length, before, workspace);
+            return self.room_beyond_snap([a, b], d, length, before, workspace);
         }
-        let (overlapping, start) = (self.overlaps(a, b), self.start_of(a, b, start));
+        let (overlapping, start) = (self.overlaps(a, b), self.pair_start_overlap(a, b, start));
         if overlapping && start == StartOverlap::Refuse {
             return Room::Overlapping;
         }
-        // A plane between the two, which comes with "free" where there is no limit, is not needed.
+        // With a limit, also an infinite one, no separating plane is computed for free parts.
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
-            .with_keep(self.fit_of([a, b]).keep())
+            .with_keep(self.pair_fit([a, b]).min_gap())
             .with_before(before.unwrap_or(f64::INFINITY))
             .with_overlapping(overlapping);
-        let solids = self.solids([a, b]);
-        let later = met(solids, d, options, workspace);
+        let solids = self.pair_solids([a, b]);
+        let later = first_contact(solids, d, options, workspace);
         let deeper = self.passing.get(&[a.min(b), a.max(b)]).and_then(|&tolerance| {
             let apart = options.with_start_overlap(StartOverlap::Refuse).with_overlapping(false);
-            met(solids, d, apart.with_tolerance(tolerance), workspace)
+            first_contact(solids, d, apart.with_tolerance(tolerance), workspace)
         });
         let stops = later.into_iter().chain(deeper);
-        let stops = stops.map(|c| self.stop([a, b], d, c.triangles, &c));
+        let stops = stops.map(|c| self.stop_from_contact([a, b], d, c.triangles, &c));
         let nearest = stops.min_by(|x, y| x.displaced.value.total_cmp(&y.displaced.value));
         nearest.map_or(Room::Free, Room::Blocked)
     }
 
-    /// The room of a part that snaps over another one: from where it has gone by a length, contacts that begin later.
-    fn bent(
+    /// Returns the free travel of a part that snaps over another one: contacts that begin after it has moved
+    /// by `length`.
+    fn room_beyond_snap(
         &self,
         pair: [usize; 2],
         d: DVec3,
@@ -588,11 +616,11 @@ impl<'a> Bodies<'a> {
         before: Option<f64>,
         workspace: &mut Workspace,
     ) -> Room {
-        let [moving, fixed] = self.solids(pair);
+        let [moving, fixed] = self.pair_solids(pair);
         let options = SolidOptions::default()
             .with_start_overlap(StartOverlap::Ignore)
             .with_tolerance(0.0)
-            .with_keep(self.fit_of(pair).keep())
+            .with_keep(self.pair_fit(pair).min_gap())
             .with_before(before.map_or(f64::INFINITY, |before| (before - length).max(0.0)));
         let answer = Pose::from_translation(d * length)
             .ok()
@@ -601,23 +629,24 @@ impl<'a> Bodies<'a> {
             .and_then(|cast| cast.clearance_in(workspace).ok());
         let Some(Clearance::Blocked { contact, .. }) = answer else { return Room::Free };
         let Bounded { value, lower, upper } = contact.translation;
-        let place = Bounded {
+        let translation = Bounded {
             value: value + length,
             lower: (lower + length).next_down(),
             upper: (upper + length).next_up(),
         };
         let SolidContact { normal, point_on_fixed: point, triangles, .. } = contact;
-        Room::Blocked(Stop { translation: place, displaced: place, normal, point, triangles })
+        Room::Blocked(Stop { translation, displaced: translation, normal, point, triangles })
     }
 
-    /// Pairs of a part of a group and one that is there, and not of the group, whose box it meets along a unit direction.
+    /// Returns the pairs of a part of `group` and a present part outside of it whose box it meets along unit
+    /// direction `d`. `there` marks the present parts by index.
     pub(crate) fn pairs_ahead(&self, group: &[usize], d: DVec3, there: &[bool]) -> Vec<[usize; 2]> {
         let all = |&a: &usize| self.ahead(a, d).into_iter().map(move |(_, b)| [a, b]);
         let wanted = |[_, b]: &[usize; 2]| there[*b] && !group.contains(b);
         group.iter().flat_map(all).filter(wanted).collect()
     }
 
-    /// Whether a part ever meets another one along a unit direction.
+    /// Checks whether a part ever meets another one along unit direction `d`, or overlaps it at the start.
     pub(crate) fn meets(
         &self,
         pair: [usize; 2],
@@ -628,7 +657,7 @@ impl<'a> Bodies<'a> {
         self.room(pair, d, None, start, workspace) != Room::Free
     }
 
-    /// By part, whether it is one of these.
+    /// Returns by index whether a part is one of these.
     pub(crate) fn mask(&self, parts: &[usize]) -> Vec<bool> {
         let mut mask = vec![false; self.len()];
         for &part in parts {
@@ -637,40 +666,48 @@ impl<'a> Bodies<'a> {
         mask
     }
 
-    /// Some parts as one solid, shrunk, and where the facets of each begin among those of all.
+    /// Joins the shrunk solids of some parts into one. Also returns each part with the index of its first
+    /// facet in the joined solid.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Free`] if the solids cannot be joined.
     pub(crate) fn joined(
         &self,
         parts: &[usize],
     ) -> Result<(Solid, Vec<(usize, u32)>), AssemblyError> {
         let mut first = 0;
-        let mut begin = |&part: &usize| {
-            let here = first;
-            first += self.displaced[part].solid.input_counts()[1];
-            (part, here)
+        let mut first_facet = |&part: &usize| {
+            let begin = first;
+            first += self.shrunk_bodies[part].solid.input_counts()[1];
+            (part, begin)
         };
-        let begins = parts.iter().map(&mut begin).collect();
-        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.displaced[part].solid));
+        let first_facets = parts.iter().map(&mut first_facet).collect();
+        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.shrunk_bodies[part].solid));
         let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::from(e)));
-        Ok((solid.map_err(refused)?, begins))
+        Ok((solid.map_err(refused)?, first_facets))
     }
 
-    /// What blocks whole cells of directions of one part against another; `None` where they overlap.
+    /// Returns the test whether a part blocks whole cells of directions of another one; `None` if it cannot
+    /// be built, for example because the parts overlap.
     pub(crate) fn cell_blocker(&self, pair: [usize; 2]) -> Option<CellBlocker<'_>> {
-        let [moving, fixed] = self.solids(pair).map(|solid| solid.at(Pose::IDENTITY));
+        let [moving, fixed] = self.pair_solids(pair).map(|solid| solid.at(Pose::IDENTITY));
         CellBlocker::new(&moving, &fixed, FreeOptions::DEFAULT.with_no_tolerance()).ok()
     }
 
+    /// Checks that two parts block each other without exceptions.
+    ///
     /// # Errors
-    /// Parts that do not stop each other as they are: to be kept apart, ignored, or overlapping.
+    /// [`AssemblyError::NoDirections`] with a minimum gap, and for parts that are ignored, have a fit of
+    /// their own, overlap at the start, or are not both closed.
     pub(crate) fn check_plain(&self, [a, b]: [usize; 2]) -> Result<(), AssemblyError> {
-        let why = if self.fit.keep() > 0.0 {
-            "they are to be kept apart"
+        let why = if self.fit.min_gap() > 0.0 {
+            "a minimum gap is set"
         } else if self.always_ignored(a, b) {
             "they are ignored"
         } else if self.own_fit([a, b]).is_some() {
             "they have a fit of their own"
         } else if self.overlaps(a, b) {
-            "they overlap where they are"
+            "they overlap at the start"
         } else if [a, b].iter().any(|&k| !self.assembly.parts()[k].solid().is_closed()) {
             "they are not both closed"
         } else {
@@ -680,7 +717,8 @@ impl<'a> Bodies<'a> {
         Err(AssemblyError::NoDirections { a, b, why })
     }
 
-    /// What stops a part, if these were all of the facets of two; parts that overlap are not refused.
+    /// Returns the contact of two parts that had no facets but these two. Returns `None` if these facets do
+    /// not stop the part, or if the pair is a snap fit. Parts that overlap are not rejected.
     pub(crate) fn stop_by(
         &self,
         [a, b]: [usize; 2],
@@ -691,19 +729,20 @@ impl<'a> Bodies<'a> {
         if matches!(self.tolerated([a, b]), Some(Tolerated::Bent(_))) {
             return None;
         }
-        let start = self.start_of(a, b, start);
+        let start = self.pair_start_overlap(a, b, start);
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
-            .with_keep(self.fit_of([a, b]).keep())
+            .with_keep(self.pair_fit([a, b]).min_gap())
             .with_before(f64::INFINITY)
             .with_overlapping(start == StartOverlap::Ignore && self.overlaps(a, b));
-        let cast = placed(self.solids([a, b]), d, options)?;
+        let cast = cast_in_world(self.pair_solids([a, b]), d, options)?;
         let contact = cast.stop_by(triangles)?;
-        Some(self.stop([a, b], d, triangles, &contact))
+        Some(self.stop_from_contact([a, b], d, triangles, &contact))
     }
 
-    fn stop(
+    /// Builds the [`Stop`] of a contact of shrunk bodies.
+    fn stop_from_contact(
         &self,
         pair: [usize; 2],
         d: DVec3,
@@ -711,79 +750,83 @@ impl<'a> Bodies<'a> {
         contact: &SolidContact,
     ) -> Stop {
         let SolidContact { normal, point_on_fixed: point, translation: displaced, .. } = *contact;
-        let place = self.true_place(pair, d, triangles, contact);
-        Stop { translation: place.unwrap_or(displaced), displaced, normal, point, triangles }
+        let nominal = self.nominal_translation(pair, d, triangles, contact);
+        Stop { translation: nominal.unwrap_or(displaced), displaced, normal, point, triangles }
     }
 
-    /// Where facets that stop shrunk bodies meet on the parts as they were given.
-    fn true_place(
+    /// Returns the translation at which the facets in contact meet on the unshrunk parts; `None` without a
+    /// tolerance or if they do not meet.
+    fn nominal_translation(
         &self,
         [a, b]: [usize; 2],
         d: DVec3,
         [moving, fixed]: [u32; 2],
         contact: &SolidContact,
     ) -> Option<Bounded> {
-        if self.fit_of([a, b]).tolerance() <= 0.0 {
+        if self.pair_fit([a, b]).tolerance() <= 0.0 {
             return None;
         }
-        let shift = self.displacement([a, b], moving as usize, contact.point_on_moving)
-            - self.displacement([b, a], fixed as usize, contact.point_on_fixed);
-        let [of, by] = [self.body([a, b]), self.body([b, a])];
+        let shift = self.shrink_displacement([a, b], moving as usize, contact.point_on_moving)
+            - self.shrink_displacement([b, a], fixed as usize, contact.point_on_fixed);
+        let [of, by] = [self.pair_body([a, b]), self.pair_body([b, a])];
         let triangles = [of.given[moving as usize], by.given[fixed as usize]];
-        let parts = [self.given([a, b]), self.given([b, a])];
-        let cast = placed(parts, d, SolidOptions::default())?;
+        let parts = [self.unshrunk_solid([a, b]), self.unshrunk_solid([b, a])];
+        let cast = cast_in_world(parts, d, SolidOptions::default())?;
         cast.true_place(triangles, contact.translation, contact.normal, shift)
     }
 
-    /// How far a point of a triangle of the first part was displaced when it was shrunk: its corners
-    /// keep their numbers.
-    fn displacement(&self, pair: [usize; 2], triangle: usize, point: DVec3) -> DVec3 {
-        let (solid, given) = (&self.body(pair).solid, self.given(pair));
+    /// Returns the displacement of a point of a triangle of the first part by shrinking. Vertices keep their
+    /// indices when a solid is shrunk.
+    fn shrink_displacement(&self, pair: [usize; 2], triangle: usize, point: DVec3) -> DVec3 {
+        let (solid, given) = (&self.pair_body(pair).solid, self.unshrunk_solid(pair));
         let corners = solid.triangles()[triangle].map(|v| v as usize);
-        let weights = weights(corners.map(|v| solid.vertices()[v]), point);
+        let weights = barycentric_weights(corners.map(|v| solid.vertices()[v]), point);
         let of = |k: usize| solid.vertices()[corners[k]] - given.vertices()[corners[k]];
         of(0) * weights.x + of(1) * weights.y + of(2) * weights.z
     }
 
-    /// Pairs that overlap where they are, with this fit; the smaller index first, in order.
+    /// Returns the pairs that overlap at the start with this fit, the smaller index first, sorted.
     pub fn overlapping(&self) -> &[[usize; 2]] {
         &self.overlapping
     }
 
-    /// Whether two parts overlap where they are, with this fit.
+    /// Checks whether two parts overlap at the start with this fit.
     pub fn overlaps(&self, a: usize, b: usize) -> bool {
         self.overlapping.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 
-    fn overlap_displaced(&self, a: usize, b: usize) -> bool {
+    /// Tests whether two parts overlap at the start.
+    fn overlap_in_place(&self, a: usize, b: usize) -> bool {
         self.overlaps_displaced(a, DVec3::ZERO, b)
     }
 
-    /// Whether two parts, as the files have them, overlap; and the least tolerance with which they do
-    /// not, if there is one up to their size.
+    /// Checks whether two parts overlap as given in the files: `None` if they do not. Otherwise returns the
+    /// least tolerance with which they do not overlap, or `Some(None)` if no tolerance up to their size
+    /// suffices.
     pub fn overlap_as_given(&self, a: usize, b: usize) -> Option<Option<f64>> {
-        overlap_as_given(self.assembly, [a, b])
+        least_tolerance_of_parts(self.assembly, [a, b])
     }
 
-    /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, as they were
-    /// given, if their shadows' boxes meet or are apart by no more than rounding; 0 if it is there
-    /// already, or they do not.
+    /// Returns the distance, with bounds, that part `a` must move along unit direction `d` until it lies
+    /// wholly beyond `b`, both as given in the files. The distance is 0 if `a` is already beyond `b`, or if
+    /// the boxes of their shadows do not intersect up to rounding.
     ///
-    /// A product `p . d` is off by `3 u` of its terms' absolute sum `s`, so a difference of two by `4 u` of both
-    /// sums; in multiples of a direction whose length is 1 up to `4 u`, it is off by `8 u` of itself more.
+    /// Rounding: a product `p . d` has an error of at most `3 u` of the sum `s` of its terms' absolute
+    /// values, therefore a difference of two at most `4 u` of both sums. Because the length of `d` is 1 up to
+    /// `4 u`, the quotient has a further relative error of `8 u`.
     pub fn past(&self, a: usize, b: usize, d: DVec3) -> Bounded {
         self.seen(a, d).past(&self.seen(b, d))
     }
 
-    /// The same from where the first one is displaced by `by`.
+    /// Computes [`Self::past`] with part `a` displaced by `by`.
     pub(crate) fn past_displaced(&self, a: usize, by: DVec3, b: usize, d: DVec3) -> Bounded {
-        // A displaced vertex is rounded once more.
+        // Adding the displacement rounds each vertex once more.
         let sums = if by == DVec3::ZERO { SUMS } else { SUMS + 1.0 };
         self.past_moved((a, |p| p + by), b, d, sums)
     }
 
-    /// The same from where a map has brought the vertices of the first one, each off by `sums - 9` roundings of its
-    /// coordinates' size.
+    /// Computes [`Self::past`] with the vertices of part `a` mapped by `moved`. Each mapped vertex has an
+    /// error of at most `sums - 9` roundings of the size of its coordinates.
     pub(crate) fn past_moved(
         &self,
         (a, moved): (usize, impl Fn(DVec3) -> DVec3),
@@ -791,98 +834,111 @@ impl<'a> Bodies<'a> {
         d: DVec3,
         sums: f64,
     ) -> Bounded {
-        Seen { sums, ..self.seen_moved(a, moved, d) }.past(&self.seen(b, d))
+        DirectionExtents { sums, ..self.projection_of_moved(a, moved, d) }.past(&self.seen(b, d))
     }
 
-    /// A part as seen along a unit direction.
-    pub(crate) fn seen(&self, part: usize, d: DVec3) -> Seen {
-        self.seen_moved(part, |p| p, d)
+    /// Returns the extents of a part in the frame of unit direction `d`.
+    pub(crate) fn seen(&self, part: usize, d: DVec3) -> DirectionExtents {
+        self.projection_of_moved(part, |p| p, d)
     }
 
-    fn seen_moved(&self, part: usize, moved: impl Fn(DVec3) -> DVec3, d: DVec3) -> Seen {
+    /// Returns the extents of a part with mapped vertices in the frame of unit direction `d`.
+    fn projection_of_moved(
+        &self,
+        part: usize,
+        moved: impl Fn(DVec3) -> DVec3,
+        d: DVec3,
+    ) -> DirectionExtents {
         let (u, v) = d.any_orthonormal_pair();
         let (mut terms, mut reach) = (0.0_f64, 0.0_f64);
         let vertices = self.assembly.parts()[part].solid().vertices().iter();
-        let around = Aabb::of_points(vertices.map(|p| {
+        let bounds = Aabb::of_points(vertices.map(|p| {
             let p = moved(*p);
             terms = terms.max(p.abs().dot(d.abs()));
             reach = reach.max(p.abs().max_element());
             DVec3::new(p.dot(u), p.dot(v), p.dot(d))
         }));
-        Seen { around, terms, reach, sums: SUMS }
+        DirectionExtents { bounds, terms, reach, sums: SUMS }
     }
 
-    /// Whether part `a`, displaced by `by`, and part `b` overlap, or are nearer than the length to keep, by more
-    /// than rounding.
+    /// Checks whether part `a`, displaced by `by`, and part `b` overlap or violate the minimum gap, beyond
+    /// rounding.
     pub fn overlaps_displaced(&self, a: usize, by: DVec3, b: usize) -> bool {
         #[cfg(test)]
         self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let Ok(pose) = Pose::from_translation(by) else { return false };
-        let [moving, fixed] = self.solids([a, b]);
+        let [moving, fixed] = self.pair_solids([a, b]);
         let options =
-            SolidOptions::default().with_tolerance(0.0).with_keep(self.fit_of([a, b]).keep());
+            SolidOptions::default().with_tolerance(0.0).with_keep(self.pair_fit([a, b]).min_gap());
         let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
 }
 
-/// Roundings of the difference of two products with a direction.
+/// Number of roundings of the difference of two products with a direction.
 const SUMS: f64 = 9.0;
 
-/// A part as seen along a direction, which is the third axis, and what rounding takes of that.
+/// Extents of a part in a frame whose third axis is the direction, with their rounding errors.
 #[derive(Clone, Copy)]
-pub(crate) struct Seen {
-    around: Aabb,
-    /// The largest absolute sum of the terms of a product with the direction, and the largest coordinate.
+pub(crate) struct DirectionExtents {
+    bounds: Aabb,
+    /// Largest sum of absolute terms of a product with the direction.
     terms: f64,
+    /// Largest absolute coordinate of a vertex.
     reach: f64,
+    /// Number of roundings of a difference of coordinates along the direction.
     sums: f64,
 }
 
-impl Seen {
-    /// Checks whether a part within a box could raise the bounds `found` of how far this part must go ([`past`](Self::past)).
-    /// `reach` is the largest coordinate of any part: rounding is taken for larger than it is.
+impl DirectionExtents {
+    /// Checks whether a part within `bounds` could raise the distance `found` that this part must move
+    /// ([`past`](Self::past)). `reach` is the largest coordinate of any part, so that the rounding errors are
+    /// overestimated.
     pub(crate) fn may_be_behind(&self, bounds: &Aabb, reach: f64, found: &Bounded) -> bool {
         let noise = 64.0 * f64::EPSILON * reach;
         let apart = |k: usize| {
-            (bounds.low[k] - self.around.high[k]).max(self.around.low[k] - bounds.high[k])
+            (bounds.low[k] - self.bounds.high[k]).max(self.bounds.low[k] - bounds.high[k])
         };
-        let way = bounds.high.z - self.around.low.z;
-        way + noise > found.lower && !(0..2).any(|k| apart(k) > noise)
+        let distance = bounds.high.z - self.bounds.low.z;
+        distance + noise > found.lower && !(0..2).any(|k| apart(k) > noise)
     }
 
-    /// The largest coordinate.
+    /// Returns the largest absolute coordinate of a vertex.
     pub(crate) const fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// How far this part must go until it lies wholly beyond another one, as [`Bodies::past`] says.
+    /// Returns the distance, with bounds, that this part must move until it lies wholly beyond another one;
+    /// see [`Bodies::past`].
     pub(crate) fn past(&self, fixed: &Self) -> Bounded {
         const U: f64 = f64::EPSILON / 2.0;
-        let (own, other) = (&self.around, &fixed.around);
-        // Three terms of at most this each, and axes that are rounded.
+        let (own, other) = (&self.bounds, &fixed.bounds);
+        // Each coordinate is a sum of three terms of at most this size, on rounded axes.
         let flush = 32.0 * U * self.reach.max(fixed.reach);
         let apart = |k: usize| (other.low[k] - own.high[k]).max(own.low[k] - other.high[k]);
         if (0..2).any(|k| apart(k) > flush) {
             return Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
         }
-        let way = other.high.z - own.low.z;
-        let error = U * (self.sums * self.terms.max(fixed.terms) + 9.0 * way.abs());
-        let [value, lower, upper] = [way, way - error, way + error].map(|x| x.max(0.0));
+        let distance = other.high.z - own.low.z;
+        let error = U * (self.sums * self.terms.max(fixed.terms) + 9.0 * distance.abs());
+        let [value, lower, upper] =
+            [distance, distance - error, distance + error].map(|x| x.max(0.0));
         Bounded { value, lower, upper }
     }
 }
 
-type OwnFits = (BTreeMap<[usize; 2], OwnFit>, BTreeMap<[usize; 2], Arc<Displaced>>);
+/// Fits of pairs, and the bodies of parts for queries of these pairs.
+type OwnFits = (BTreeMap<[usize; 2], OwnFit>, BTreeMap<[usize; 2], Arc<ShrunkBody>>);
 
-/// What pairs have of their own, and their parts as they are asked of each other.
-fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
+/// Resolves the roles and tolerances of pairs, and builds the bodies for them.
+fn resolved_pair_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
     let (mut pairs, mut own) = (BTreeMap::new(), BTreeMap::new());
-    // Of a part that is in many pairs, as a base is with its screws, each tolerance is made once.
-    let mut known: BTreeMap<(usize, u64, bool), Arc<Displaced>> = BTreeMap::new();
-    for (pair, said) in assembly.pairs() {
+    // Bodies by part, tolerance and kind of fit, so that a part of many pairs is shrunk once for each
+    // tolerance.
+    let mut known: BTreeMap<(usize, u64, bool), Arc<ShrunkBody>> = BTreeMap::new();
+    for (pair, given) in assembly.pairs() {
         let parts = pair.map(|k| &assembly.parts()[k]);
-        let (tolerated, thread) = match (said.role, said.tolerance) {
+        let (tolerated, thread) = match (given.role, given.tolerance) {
             (Some(Role::Glued), _) => (Tolerated::AsOne, None),
             (Some(Role::Snap), Some(length)) => (Tolerated::Bent(length), None),
             (Some(Role::Thread), _) => {
@@ -895,7 +951,7 @@ fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
                 (tolerated, core)
             }
             (_, Some(length)) => (Tolerated::Within(length), None),
-            (_, None) => match overlap_as_given(assembly, pair) {
+            (_, None) => match least_tolerance_of_parts(assembly, pair) {
                 None => continue,
                 Some(None) => (Tolerated::Crossing, None),
                 Some(Some(depth)) => {
@@ -908,16 +964,18 @@ fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
                 }
             },
         };
-        let alike = match fit {
+        let tolerance_fit = match fit {
             Fit::Tolerance(_) | Fit::Chords { .. } => fit,
             Fit::Apart(_) => Fit::default_for(assembly),
         };
         let own_fit = match tolerated {
             Tolerated::Within(length) => Fit::Tolerance(length),
-            Tolerated::Core(_) => match (said.tolerance, &thread) {
+            Tolerated::Core(_) => match (given.tolerance, &thread) {
                 (Some(length), _) => Fit::Tolerance(length),
-                (None, Some((thread, core))) => beside_thread(parts, thread, core, alike),
-                (None, None) => alike,
+                (None, Some((thread, core))) => {
+                    fit_of_thread_core(parts, thread, core, tolerance_fit)
+                }
+                (None, None) => tolerance_fit,
             },
             _ => fit,
         };
@@ -928,8 +986,8 @@ fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
         }
         for k in [0, 1] {
             let made = |core| {
-                let made = Displaced::new(parts[k], core, own_fit);
-                made.map(Arc::new).map_err(|e| refused(parts[k], e))
+                let made = ShrunkBody::new(parts[k], core, own_fit);
+                made.map(Arc::new).map_err(|e| part_error(parts[k], e))
             };
             let body = match &thread {
                 Some((thread, core)) if thread.screw == k => made(Some(core.clone()))?,
@@ -951,57 +1009,70 @@ fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
     Ok((pairs, own))
 }
 
-/// What ends the overlap of a screw's core, if it is shallow: of a tip that is a little in the bottom of its hole.
-fn beside_thread(parts: [&Part; 2], thread: &Thread, core: &Solid, fit: Fit) -> Fit {
+/// Returns the fit for a pair with a thread. If the core of the screw overlaps the other part, for example at
+/// the bottom of the hole, by no more than the depth of the thread, this is a tolerance that removes the
+/// overlap. Otherwise it is `fit`.
+fn fit_of_thread_core(parts: [&Part; 2], thread: &Thread, core: &Solid, fit: Fit) -> Fit {
     let mut solids = parts.map(Part::solid);
     solids[thread.screw] = core;
-    let Some(Some(depth)) = overlapping(solids) else { return fit };
+    let Some(Some(depth)) = least_tolerance_of_solids(solids) else { return fit };
     let length = two_digits_up(depth * DEEPER);
     let deepest = thread.radii[1] - thread.radii[0];
     if length > fit.tolerance() && length <= deepest { Fit::Tolerance(length) } else { fit }
 }
 
-fn refused(part: &Part, source: SolidError) -> AssemblyError {
+/// Returns the error about a part.
+fn part_error(part: &Part, source: SolidError) -> AssemblyError {
     AssemblyError::Part { part: part.name().into(), source: source.into() }
 }
 
-/// Whether two parts overlap, and the least tolerance with which they do not.
-#[expect(clippy::option_option, reason = "no overlap, or one that no tolerance ends")]
-fn overlap_as_given(assembly: &Assembly, pair: [usize; 2]) -> Option<Option<f64>> {
-    overlapping(pair.map(|k| assembly.parts()[k].solid()))
+/// Returns the least tolerance with which two parts do not overlap, as given in the files: `None` if they do
+/// not overlap, `Some(None)` if no tolerance suffices.
+#[expect(
+    clippy::option_option,
+    reason = "the outer None means no overlap, the inner one that no tolerance suffices"
+)]
+fn least_tolerance_of_parts(assembly: &Assembly, pair: [usize; 2]) -> Option<Option<f64>> {
+    least_tolerance_of_solids(pair.map(|k| assembly.parts()[k].solid()))
 }
 
-/// The same of two solids.
-#[expect(clippy::option_option, reason = "no overlap, or one that no tolerance ends")]
-fn overlapping(solids: [&Solid; 2]) -> Option<Option<f64>> {
+/// Returns the least tolerance with which two solids do not overlap: `None` if they do not overlap,
+/// `Some(None)` if no tolerance suffices.
+#[expect(
+    clippy::option_option,
+    reason = "the outer None means no overlap, the inner one that no tolerance suffices"
+)]
+fn least_tolerance_of_solids(solids: [&Solid; 2]) -> Option<Option<f64>> {
     let [a, b] = solids.map(|solid| solid.at(Pose::IDENTITY));
     let options = SolidOptions::default().with_tolerance(0.0);
     let cast = Cast::new(a, b, DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
     cast.overlaps().then(|| cast.least_tolerance())
 }
 
-/// Whether a tolerance leaves a body as it is, but smaller.
+/// Checks whether a solid shrunk by half of a tolerance is valid: closed, with positive volume and without
+/// inverted facets.
 fn stays_whole(solid: &Solid, tolerance: f64) -> bool {
     let fits = tolerance < solid.bounds().size().min_element();
     fits && solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
-        report.inverted.is_empty() && volume(&smaller) > 0.0 && smaller.is_closed()
+        report.inverted.is_empty() && enclosed_volume(&smaller) > 0.0 && smaller.is_closed()
     })
 }
 
-/// The next number of two decimal digits that is not smaller: 0 for 0.
+/// Rounds up to two significant decimal digits; returns 0, subnormal and not finite numbers unchanged.
 pub(crate) fn two_digits_up(x: f64) -> f64 {
     if !x.is_normal() {
         return x;
     }
     let exponent = 1 - x.log10().floor() as i32;
-    // Powers of ten as text: 0.06, not 0.060000000000000005.
+    // Powers of ten are written as text, because multiplication would yield 0.060000000000000005 instead of
+    // 0.06.
     let digits = (x * 10_f64.powi(exponent)).ceil();
     format!("{digits}e{}", -exponent).parse().unwrap_or(x)
 }
 
-/// For each triangle of a solid the one with the same corners of another, whose vertices have the same
-/// numbers: trees order triangles by where they are.
-fn same_triangles(solid: &Solid, other: &Solid) -> Vec<u32> {
+/// Returns for each triangle of a solid the triangle of another one with the same vertex indices. The order
+/// of triangles differs, because each tree sorts them by position.
+fn corresponding_triangles(solid: &Solid, other: &Solid) -> Vec<u32> {
     let sorted = |solid: &Solid| {
         let mut order: Vec<u32> = (0..solid.triangles().len() as u32).collect();
         order.sort_unstable_by_key(|&t| solid.triangles()[t as usize]);
@@ -1014,41 +1085,42 @@ fn same_triangles(solid: &Solid, other: &Solid) -> Vec<u32> {
     same
 }
 
-/// The volume that the triangles enclose; negative if they are inside out.
-fn volume(solid: &Solid) -> f64 {
+/// Returns the volume enclosed by the triangles; negative if they are inside out.
+fn enclosed_volume(solid: &Solid) -> f64 {
     let corner = |v: u32| solid.vertices()[v as usize] - solid.vertices()[0];
-    let of = |t: &[u32; 3]| {
+    let tetrahedron = |t: &[u32; 3]| {
         let [a, b, c] = t.map(corner);
         a.dot(b.cross(c)) / 6.0
     };
-    solid.triangles().iter().map(of).sum()
+    solid.triangles().iter().map(tetrahedron).sum()
 }
 
-/// Where two bodies meet.
-fn met(
+/// Returns the first contact of two bodies; `None` if they never meet, or overlap at the start.
+fn first_contact(
     bodies: [&Solid; 2],
     d: DVec3,
     options: SolidOptions,
     workspace: &mut Workspace,
 ) -> Option<SolidContact> {
-    match placed(bodies, d, options)?.clearance_in(workspace).ok()? {
+    match cast_in_world(bodies, d, options)?.clearance_in(workspace).ok()? {
         Clearance::Blocked { contact, .. } => Some(contact),
         _ => None,
     }
 }
 
-fn placed(
+/// Builds the cast of two bodies in the world frame; `None` if its input is invalid.
+fn cast_in_world(
     [moving, fixed]: [&Solid; 2],
     d: DVec3,
     options: SolidOptions,
 ) -> Option<Cast<'_, Solid>> {
     let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
-    // Directions and tolerances are checked on input, so nothing is refused here.
+    // Directions and tolerances were checked on input, so no error is expected.
     cast.and_then(|c| c.with_options(options)).ok()
 }
 
-/// The weights of a triangle's corners at a point of it.
-fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+/// Returns the barycentric weights of a point of a triangle.
+fn barycentric_weights([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
     let normal = (b - a).cross(c - a);
     let whole = normal.length_squared();
     if whole == 0.0 {
@@ -1056,7 +1128,7 @@ fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
     }
     let v = (point - a).cross(c - a).dot(normal) / whole;
     let w = (b - a).cross(point - a).dot(normal) / whole;
-    // A point on the rim may have come out beyond it, by rounding.
+    // Rounding may have moved a point of the boundary outside.
     let (v, w) = (v.clamp(0.0, 1.0), w.clamp(0.0, 1.0));
     let excess = (v + w).max(1.0);
     DVec3::new(1.0 - (v + w) / excess, v / excess, w / excess)

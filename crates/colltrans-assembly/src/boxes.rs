@@ -1,8 +1,8 @@
-//! A tree over boxes along the axes.
+//! A bounding volume tree over axis-aligned boxes.
 //!
-//! A box `A` swept along `d` meets `B` at the translations `t` for which `t d` lies in the box
-//! `B - A` (Minkowski difference): one slab test. Faces that only touch count, and the test allows
-//! for its own rounding, so that it never loses a pair.
+//! A box `A` swept along `d` meets `B` at the translations `t` for which `t d` is in the box `B - A` (the
+//! Minkowski difference). This is one slab test. Contacts of faces count, and the test allows for its own
+//! rounding, so that it never misses a pair.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -10,16 +10,18 @@ use std::collections::BinaryHeap;
 use colltrans::Aabb;
 use glam::DVec3;
 
-/// The least translation `t >= 0` along `d` at which a box meets another, from below.
-pub(crate) fn entry(moving: &Aabb, other: &Aabb, d: DVec3) -> Option<f64> {
+/// Returns a lower bound of the least translation `t >= 0` along `d` at which a box meets another one; `None`
+/// if it never does.
+pub(crate) fn entry_translation(moving: &Aabb, other: &Aabb, d: DVec3) -> Option<f64> {
     let size = moving.low.abs().max(moving.high.abs()).max(other.low.abs()).max(other.high.abs());
     let slack = 8.0 * f64::EPSILON * size.max_element();
     let (low, high) = (other.low - moving.high - slack, other.high - moving.low + slack);
     first_meeting([0, 1, 2].map(|k| ([low[k], high[k]], d[k])))
 }
 
-/// The least translation, from below, at which intervals that move each meet another one, which is from `low` to `high` away
-/// from it; `None` if there is none at which all do.
+/// Returns a lower bound of the least translation `t >= 0` at which all moving intervals meet their fixed
+/// ones. Each item holds the distances from the moving interval to both ends of the range of contact, and the
+/// speed. Returns `None` if no translation satisfies all items.
 pub(crate) fn first_meeting(gaps: impl IntoIterator<Item = ([f64; 2], f64)>) -> Option<f64> {
     let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
     for ([low, high], speed) in gaps {
@@ -36,67 +38,69 @@ pub(crate) fn first_meeting(gaps: impl IntoIterator<Item = ([f64; 2], f64)>) -> 
     (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
 }
 
-/// The least and the largest of some numbers; of none, infinities the wrong way round.
+/// Returns the minimum and maximum of some numbers; without numbers, `[infinity, -infinity]`.
 pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     values.into_iter().fold(none, |[low, high], x| [low.min(x), high.max(x)])
 }
 
+/// Maximum number of boxes in a leaf.
 const LEAF: usize = 4;
 
 struct Node {
     bounds: Aabb,
-    /// The second child is so far behind; 0 for a leaf.
+    /// Offset of the second child from this node; 0 for a leaf. The first child follows this node.
     skip: usize,
     first: usize,
     count: usize,
 }
 
-/// A tree over boxes, halved along the longest side of their centres.
+/// Tree over boxes, split at the median along the axis in which their centres spread most.
 pub(crate) struct BoxTree {
     nodes: Vec<Node>,
-    /// Boxes and their numbers, in the order of the leaves.
+    /// Boxes with their indices, in the order of the leaves.
     items: Vec<(Aabb, usize)>,
-    /// By number, the position among the items.
-    place: Vec<usize>,
+    /// For each index, the position among the items.
+    position_of: Vec<usize>,
 }
 
-/// Some of the boxes of a tree, which become fewer.
+/// Subset of the boxes of a tree, from which boxes are removed.
 pub(crate) struct Living {
-    /// By node of the tree, how many of its boxes are left.
+    /// For each node, the number of remaining boxes below it.
     under: Vec<usize>,
-    /// By number of a box.
+    /// For each index, whether the box remains.
     there: Vec<bool>,
 }
 
 impl Living {
-    /// Checks whether a box is left.
+    /// Checks whether a box remains.
     pub(crate) fn has(&self, number: usize) -> bool {
         self.there[number]
     }
 
-    /// Returns by number whether a box is left.
+    /// Returns for each index whether the box remains.
     pub(crate) fn there(&self) -> &[bool] {
         &self.there
     }
 }
 
 impl BoxTree {
+    /// Builds the tree; the index of a box is its position in `boxes`.
     pub(crate) fn new(boxes: impl IntoIterator<Item = Aabb>) -> Self {
         let items = boxes.into_iter().enumerate().map(|(k, b)| (b, k)).collect();
-        let mut tree = Self { nodes: Vec::new(), items, place: Vec::new() };
+        let mut tree = Self { nodes: Vec::new(), items, position_of: Vec::new() };
         let count = tree.items.len();
         if count > 0 {
-            tree.grow(0, count);
+            tree.build_subtree(0, count);
         }
-        tree.place = vec![0; count];
+        tree.position_of = vec![0; count];
         for (at, item) in tree.items.iter().enumerate() {
-            tree.place[item.1] = at;
+            tree.position_of[item.1] = at;
         }
         tree
     }
 
-    /// Returns the boxes that are `true`.
+    /// Returns the subset of boxes whose entry in `there` is `true`.
     pub(crate) fn living(&self, there: &[bool]) -> Living {
         let count = |node: &Node| {
             let items = &self.items[node.first..node.first + node.count];
@@ -105,7 +109,7 @@ impl BoxTree {
         Living { under: self.nodes.iter().map(count).collect(), there: there.to_vec() }
     }
 
-    /// Takes a box away from those that are left.
+    /// Removes a box from the subset. Runs in the depth of the tree.
     pub(crate) fn remove(&self, living: &mut Living, number: usize) {
         if !std::mem::take(&mut living.there[number]) {
             return;
@@ -117,15 +121,17 @@ impl BoxTree {
             if skip == 0 {
                 return;
             }
-            let second = self.place[number] >= self.nodes[at + skip].first;
+            let second = self.position_of[number] >= self.nodes[at + skip].first;
             at += if second { skip } else { 1 };
         }
     }
 
-    /// Calls with the boxes that are left and that `moving` meets along `d`, and with a lower bound of where, nearest first
-    /// and of equal ones by number, until a call returns `true`; returns the number of that box.
+    /// Calls `call` with the remaining boxes that `moving` meets along `d` and a lower bound of the
+    /// translation, until a call returns `true`. Returns the index of that box; `None` if no call returns
+    /// `true`.
     ///
-    /// Best first over the tree: what is not called with costs a look at the nodes beside the way to what is.
+    /// The order is best first: the nearest box first, and among equal bounds the one with the smaller index.
+    /// Only nodes along the paths to these boxes are visited.
     pub(crate) fn first_ahead(
         &self,
         living: &Living,
@@ -133,11 +139,12 @@ impl BoxTree {
         d: DVec3,
         mut call: impl FnMut(f64, usize) -> bool,
     ) -> Option<usize> {
-        // Bounds are not negative, so they are in the order of their bits; nodes come before boxes.
+        // Bounds are not negative, so their bit patterns are ordered like their values. Nodes precede boxes
+        // with the same bound.
         let mut open = BinaryHeap::new();
         let key = |bound: f64| bound.abs().to_bits();
         let add = |open: &mut BinaryHeap<_>, at: usize| {
-            let bound = entry(moving, &self.nodes[at].bounds, d);
+            let bound = entry_translation(moving, &self.nodes[at].bounds, d);
             if let Some(bound) = bound.filter(|_| living.under[at] > 0) {
                 open.push(Reverse((key(bound), false, at)));
             }
@@ -159,14 +166,15 @@ impl BoxTree {
                 continue;
             }
             for (bounds, number) in &self.items[node.first..node.first + node.count] {
-                let bound = entry(moving, bounds, d).filter(|_| living.has(*number));
+                let bound = entry_translation(moving, bounds, d).filter(|_| living.has(*number));
                 open.extend(bound.map(|bound| Reverse((key(bound), true, *number))));
             }
         }
         None
     }
 
-    /// Computes for each node the box around others that have the numbers of its boxes.
+    /// Computes for each node the bounds of other boxes, given by index, that take the place of the boxes
+    /// below it.
     pub(crate) fn bounds_of(&self, boxes: &[Aabb]) -> Vec<Aabb> {
         let mut bounds = vec![Aabb::EMPTY; self.nodes.len()];
         for (at, node) in self.nodes.iter().enumerate().rev() {
@@ -180,8 +188,9 @@ impl BoxTree {
         bounds
     }
 
-    /// Calls with the number of each box that is left under nodes for whose bounds, as of [`bounds_of`](Self::bounds_of),
-    /// `wanted` holds; of two nodes first under the one that reaches further along the third axis.
+    /// Calls `call` with the index of each remaining box below nodes whose `bounds`, computed by
+    /// [`bounds_of`](Self::bounds_of), satisfy `wanted`. Visits first the child that extends further along
+    /// the third axis.
     pub(crate) fn visit_high(
         &self,
         living: &Living,
@@ -206,7 +215,8 @@ impl BoxTree {
         }
     }
 
-    fn grow(&mut self, first: usize, count: usize) {
+    /// Builds the subtree of a range of items.
+    fn build_subtree(&mut self, first: usize, count: usize) {
         let at = self.nodes.len();
         let items = &mut self.items[first..first + count];
         let bounds = items.iter().map(|i| i.0).reduce(|a, b| a.join(&b)).unwrap_or(items[0].0);
@@ -220,12 +230,13 @@ impl BoxTree {
         items.select_nth_unstable_by(half, |a, b| {
             a.0.center()[axis].total_cmp(&b.0.center()[axis]).then(a.1.cmp(&b.1))
         });
-        self.grow(first, half);
+        self.build_subtree(first, half);
         self.nodes[at].skip = self.nodes.len() - at;
-        self.grow(first + half, count - half);
+        self.build_subtree(first + half, count - half);
     }
 
-    /// Calls with the number of each box for which `wanted` holds, and holds for the boxes around.
+    /// Calls `call` for each box that satisfies `wanted`, if the bounds of all nodes above it satisfy
+    /// `wanted` too.
     pub(crate) fn visit(
         &self,
         mut wanted: impl FnMut(&Aabb) -> bool,
@@ -250,7 +261,7 @@ impl BoxTree {
         }
     }
 
-    /// Numbers of boxes that meet `query`, in increasing order.
+    /// Returns the indices of the boxes that intersect `query`, in increasing order.
     pub(crate) fn meeting(&self, query: &Aabb) -> Vec<usize> {
         let mut found = Vec::new();
         self.visit(|b| b.meets(query), |_, k| found.push(k));
@@ -258,12 +269,12 @@ impl BoxTree {
         found
     }
 
-    /// Numbers of boxes that `moving` meets along `d`, each with a lower bound of where, nearest
-    /// first.
-    pub(crate) fn ahead(&self, moving: &Aabb, d: DVec3) -> Vec<(f64, usize)> {
+    /// Returns the boxes that `moving` meets along `d`, each as a lower bound of the translation and its
+    /// index, nearest first.
+    pub(crate) fn boxes_ahead(&self, moving: &Aabb, d: DVec3) -> Vec<(f64, usize)> {
         let mut found = Vec::new();
-        let wanted = |b: &Aabb| entry(moving, b, d).is_some();
-        self.visit(wanted, |b, k| found.extend(entry(moving, b, d).map(|t| (t, k))));
+        let wanted = |b: &Aabb| entry_translation(moving, b, d).is_some();
+        self.visit(wanted, |b, k| found.extend(entry_translation(moving, b, d).map(|t| (t, k))));
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         found
     }
@@ -285,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tree_finds_what_a_list_finds() {
+    fn tree_queries_equal_linear_scans() {
         let mut random = Random::new(7);
         for round in 0..200 {
             let snapped = round % 2 == 0;
@@ -295,12 +306,13 @@ mod tests {
             let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
             let listed: Vec<usize> = (0..round).filter(|&k| boxes[k].meets(&query)).collect();
             assert_eq!(tree.meeting(&query), listed);
-            let mut ahead: Vec<usize> = tree.ahead(&query, d).iter().map(|x| x.1).collect();
-            ahead.sort_unstable();
+            let mut boxes_ahead: Vec<usize> =
+                tree.boxes_ahead(&query, d).iter().map(|x| x.1).collect();
+            boxes_ahead.sort_unstable();
             let swept: Vec<usize> =
-                (0..round).filter(|&k| entry(&query, &boxes[k], d).is_some()).collect();
-            assert_eq!(ahead, swept);
-            // And nearest first of those that are left, as they become fewer.
+                (0..round).filter(|&k| entry_translation(&query, &boxes[k], d).is_some()).collect();
+            assert_eq!(boxes_ahead, swept);
+            // The best-first order, while boxes are removed one by one.
             let mut there: Vec<bool> = (0..round).map(|_| random.unit() < 0.7).collect();
             let mut living = tree.living(&there);
             loop {
@@ -309,7 +321,7 @@ mod tests {
                     called.push((bound, k));
                     false
                 });
-                let mut expected = tree.ahead(&query, d);
+                let mut expected = tree.boxes_ahead(&query, d);
                 expected.retain(|x| there[x.1]);
                 assert_eq!(called, expected);
                 let Some(gone) = (0..round).find(|&k| there[k]) else { break };
@@ -320,14 +332,14 @@ mod tests {
     }
 
     #[test]
-    fn the_highest_box_left_over_a_query_is_that_of_a_list() {
+    fn highest_remaining_box_equals_linear_scan() {
         let mut random = Random::new(9);
         for round in 1..200 {
             let boxes: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, false)).collect();
             let tree = BoxTree::new(boxes.iter().copied());
-            // Others of the same numbers, as of bodies seen along a direction.
-            let seen: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, false)).collect();
-            let bounds = tree.bounds_of(&seen);
+            // Other boxes with the same indices, as of parts in the frame of a direction.
+            let rotated: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, false)).collect();
+            let bounds = tree.bounds_of(&rotated);
             let there: Vec<bool> = (0..round).map(|_| random.unit() < 0.7).collect();
             let (living, query) = (tree.living(&there), random_box(&mut random, false));
             let over =
@@ -336,18 +348,18 @@ mod tests {
             let higher = |b: &Aabb| over(b) && b.high.z > best.get();
             tree.visit_high(&living, &bounds, higher, |k| {
                 assert!(there[k]);
-                if higher(&seen[k]) {
-                    best.set(seen[k].high.z);
+                if higher(&rotated[k]) {
+                    best.set(rotated[k].high.z);
                 }
             });
-            let all = (0..round).filter(|&k| there[k] && over(&seen[k]));
-            let expected = all.map(|k| seen[k].high.z).fold(f64::NEG_INFINITY, f64::max);
+            let all = (0..round).filter(|&k| there[k] && over(&rotated[k]));
+            let expected = all.map(|k| rotated[k].high.z).fold(f64::NEG_INFINITY, f64::max);
             assert_eq!(best.get(), expected);
         }
     }
 
     #[test]
-    fn a_box_enters_another_where_small_steps_first_meet_it() {
+    fn entry_translation_equals_first_contact_of_small_steps() {
         let mut random = Random::new(8);
         for round in 0..400 {
             let snapped = round % 2 == 0;
@@ -355,10 +367,10 @@ mod tests {
             let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
             let moved = |t: f64| Aabb { low: a.low + d * t, high: a.high + d * t };
             let stepped = (0..60_000).map(|k| f64::from(k) * 1e-3).find(|&t| moved(t).meets(&b));
-            match (entry(&a, &b, d), stepped) {
+            match (entry_translation(&a, &b, d), stepped) {
                 (Some(t), Some(s)) => assert!((t - s).abs() < 1.1e-3, "{t} {s}"),
                 (None, None) => (),
-                // Corners that pass between two steps.
+                // Only corners meet, between two steps.
                 (Some(t), None) => assert!(b.grown(2e-3).meets(&moved(t))),
                 (None, Some(s)) => panic!("missed at {s}"),
             }

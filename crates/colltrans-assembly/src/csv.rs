@@ -1,26 +1,27 @@
-//! CSV: cells that are text cannot leave their cell, nor be taken for formulas.
+//! Writes CSV in which text cells cannot break out of their cell or be read as formulas.
 //!
-//! Programs that show tables compute a cell that begins with `=`, `+`, `-` or `@`, also behind a tab or
-//! a line's end. Such a text gets an apostrophe before it, which they take for "text follows". What
-//! [steers](colltrans_mesh::plain) is written out.
+//! Spreadsheet programs evaluate a cell that begins with `=`, `+`, `-` or `@`. Such a text is prefixed with
+//! an apostrophe, which marks text there. [Control characters](colltrans_mesh::plain) are escaped first, so
+//! that none precedes such a sign.
 
 use std::fmt::Write;
 
 use colltrans_mesh::plain::shown;
 
-/// What a cell holds.
+/// Content of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Cell<'a> {
     Number(f64),
     Text(&'a str),
 }
 
-/// A table in the making.
+/// A table under construction.
 pub(crate) struct Table {
     text: String,
 }
 
 impl Table {
+    /// Creates a table with a header line.
     pub(crate) fn new(heads: &[&str]) -> Self {
         let mut table = Self { text: String::new() };
         let heads: Vec<Cell> = heads.iter().map(|head| Cell::Text(head)).collect();
@@ -28,6 +29,7 @@ impl Table {
         table
     }
 
+    /// Appends a line.
     pub(crate) fn row(&mut self, cells: &[Cell]) {
         for (k, cell) in cells.iter().enumerate() {
             if k > 0 {
@@ -37,23 +39,25 @@ impl Table {
                 Cell::Number(number) => {
                     let _ = write!(self.text, "{number}");
                 }
-                Cell::Text(text) => self.cell(text),
+                Cell::Text(text) => self.write_text_cell(text),
             }
         }
         self.text.push('\n');
     }
 
-    fn cell(&mut self, text: &str) {
+    /// Appends a text cell: escaped, quoted if it contains a separator or a quote.
+    fn write_text_cell(&mut self, text: &str) {
         let text = shown(text);
         let is_formula = text.starts_with(['=', '+', '-', '@']);
-        let mark = if is_formula { "'" } else { "" };
+        let prefix = if is_formula { "'" } else { "" };
         if text.contains([',', '"', ';']) {
-            let _ = write!(self.text, "\"{mark}{}\"", text.replace('"', "\"\""));
+            let _ = write!(self.text, "\"{prefix}{}\"", text.replace('"', "\"\""));
         } else {
-            let _ = write!(self.text, "{mark}{text}");
+            let _ = write!(self.text, "{prefix}{text}");
         }
     }
 
+    /// Returns the table as text.
     pub(crate) fn finish(self) -> String {
         self.text
     }
@@ -64,13 +68,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_stay_texts_and_in_their_cells() {
+    fn csv_formulas_and_control_characters_are_escaped() {
         let mut table = Table::new(&["a", "b"]);
         table.row(&[Cell::Text("=1+1"), Cell::Number(-0.5)]);
         table.row(&[Cell::Text("a,\"b\"\r\nc"), Cell::Text("\t@x")]);
         table.row(&[Cell::Text("\u{1b}[31m\u{9b}\u{7f}"), Cell::Text("@\u{200b}")]);
         table.row(&[Cell::Text("plain"), Cell::Text("-x")]);
-        let wanted = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n";
-        assert_eq!(table.finish(), wanted);
+        let expected = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n";
+        assert_eq!(table.finish(), expected);
     }
 }

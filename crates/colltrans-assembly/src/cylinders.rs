@@ -1,9 +1,9 @@
-//! Axes of cylinders, found from facets.
+//! Detects the axes of cylinders from facets.
 //!
-//! The edges along a tessellated cylinder are parallel to its axis, and the facets on either side meet
-//! there at a small angle. Such edges are gathered by direction; a direction along which the surface
-//! turns by a right angle or more in all, over at least four edges, is an axis. Of cones and spheres
-//! the edges point everywhere.
+//! Edges along a tessellated cylinder are parallel to its axis, and their facets meet at small angles. The
+//! search groups such edges by direction. A direction is an axis if it has at least four edges and the
+//! surface turns by at least a right angle over them. Edges of cones and spheres have many directions, so
+//! they yield no axis.
 
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
@@ -13,19 +13,20 @@ use glam::DVec3;
 
 use crate::sphere::angle;
 
-/// Facets that meet at a larger angle than this (60 degrees) do not stand for a round surface.
-const SMOOTH: f64 = 1.05;
-/// At a smaller angle than this they are one plane.
-const FLAT: f64 = 1e-3;
-/// Edges within this angle are parallel, in radians.
-const PARALLEL: f64 = 2e-3;
-/// How many edges an axis needs.
-const FEWEST: usize = 4;
-/// What share of the length of all such edges an axis needs.
-const LEAST_SHARE: f64 = 0.02;
-/// Of each solid, at most so many axes.
-const MOST: usize = 4;
+/// Maximum angle in radians (60 degrees) between facets of a round surface.
+const MAX_SMOOTH_ANGLE: f64 = 1.05;
+/// Minimum angle in radians between facets that are not coplanar.
+const MIN_ANGLE: f64 = 1e-3;
+/// Maximum angle in radians between parallel edges.
+const PARALLEL_ANGLE: f64 = 2e-3;
+/// Minimum number of edges of an axis.
+const MIN_EDGES: usize = 4;
+/// Minimum share of the length of all smooth edges that are along an axis.
+const MIN_LENGTH_SHARE: f64 = 0.02;
+/// Maximum number of axes of a solid.
+const MAX_AXES: usize = 4;
 
+/// Parallel smooth edges.
 struct Bundle {
     axis: DVec3,
     length: f64,
@@ -33,17 +34,17 @@ struct Bundle {
     edges: usize,
 }
 
-/// The axes of the cylinders of a solid, those with the most length of edges first, each with that
-/// length.
+/// Returns the unit axes of the cylinders of a solid, each with the total length of its edges, longest first.
+/// Takes time proportional to the number of facets, apart from sorting the smooth edges.
 pub fn axes(solid: &Solid) -> Vec<(f64, DVec3)> {
     let mut edges = smooth_edges(solid);
     edges.sort_by(|x, y| y.0.length_squared().total_cmp(&x.0.length_squared()));
-    let whole: f64 = edges.iter().map(|e| e.0.length()).sum();
+    let total_length: f64 = edges.iter().map(|e| e.0.length()).sum();
     let mut bundles: Vec<Bundle> = Vec::new();
     for (edge, turn) in edges {
         let length = edge.length();
         let axis = edge / length;
-        let near = |b: &&mut Bundle| angle(b.axis, axis).min(angle(b.axis, -axis)) < PARALLEL;
+        let near = |b: &&mut Bundle| angle(b.axis, axis).min(angle(b.axis, -axis)) < PARALLEL_ANGLE;
         let count = bundles.len();
         match bundles.iter_mut().find(near) {
             Some(bundle) => {
@@ -51,38 +52,38 @@ pub fn axes(solid: &Solid) -> Vec<(f64, DVec3)> {
                 bundle.turn += turn;
                 bundle.edges += 1;
             }
-            // Spheres would make one for each edge; the longest edges come first.
+            // Without this limit, spheres would add a bundle for each edge. The longest edges come first.
             None if count < 64 => bundles.push(Bundle { axis, length, turn, edges: 1 }),
             None => (),
         }
     }
-    let least = LEAST_SHARE * whole;
-    bundles.retain(|b| b.edges >= FEWEST && b.turn >= FRAC_PI_2 && b.length >= least);
+    let least = MIN_LENGTH_SHARE * total_length;
+    bundles.retain(|b| b.edges >= MIN_EDGES && b.turn >= FRAC_PI_2 && b.length >= least);
     bundles.sort_by(|x, y| y.length.total_cmp(&x.length));
-    bundles.truncate(MOST);
+    bundles.truncate(MAX_AXES);
     bundles.into_iter().map(|b| (b.length, b.axis)).collect()
 }
 
-/// Edges at which two facets meet at a small angle, each with the angle.
+/// Returns the edges at which two facets meet at a small angle, each with the angle in radians.
 fn smooth_edges(solid: &Solid) -> Vec<(DVec3, f64)> {
     let corner = |v: u32| solid.vertices()[v as usize];
     let normal = |t: &[u32; 3]| {
         let [a, b, c] = t.map(corner);
         (b - a).cross(c - a).normalize_or_zero()
     };
-    let mut seen: HashMap<[u32; 2], (DVec3, usize)> = HashMap::new();
+    let mut open_edges: HashMap<[u32; 2], (DVec3, usize)> = HashMap::new();
     let mut edges = Vec::new();
     for (k, t) in solid.triangles().iter().enumerate() {
         let n = normal(t);
         for i in 0..3 {
             let (a, b) = (t[i], t[(i + 1) % 3]);
-            if let Some((m, _)) = seen.remove(&[a.min(b), a.max(b)]) {
+            if let Some((m, _)) = open_edges.remove(&[a.min(b), a.max(b)]) {
                 let turn = angle(n, m);
-                if turn > FLAT && turn < SMOOTH {
+                if turn > MIN_ANGLE && turn < MAX_SMOOTH_ANGLE {
                     edges.push((corner(b) - corner(a), turn));
                 }
             } else {
-                seen.insert([a.min(b), a.max(b)], (n, k));
+                open_edges.insert([a.min(b), a.max(b)], (n, k));
             }
         }
     }
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_turned_cylinder_has_one_axis_and_a_cube_none() {
+    fn rotated_cylinder_has_one_axis_and_cube_none() {
         let mut random = Random::new(5);
         for sides in [8, 12, 33] {
             let rotation = random.rotation();

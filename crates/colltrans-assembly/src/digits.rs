@@ -1,11 +1,15 @@
-//! Numbers for people.
+//! Rounded numbers for text output.
 
-/// Up to four significant digits, for people.
+/// Formats a number with up to four significant digits.
 pub(crate) fn short(x: f64) -> String {
     digits(x, 4)
 }
 
-/// Up to so many significant digits; all before the point.
+/// Formats a number with up to `count` significant digits.
+///
+/// - Digits before the decimal point are always written in full.
+/// - Magnitudes below `1e-4` or from `1e7` on are written in scientific notation with three digits.
+/// - Values that are not finite are written as `∞`.
 pub(crate) fn digits(x: f64, count: i32) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { "∞".into() };

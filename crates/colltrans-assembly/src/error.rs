@@ -1,142 +1,146 @@
-//! Errors of assemblies, with the file and the place.
+//! Errors of assemblies.
 
 use colltrans::free::FreeError;
 use colltrans_mesh::body::Refused;
 use thiserror::Error;
 
-/// Why something about an assembly cannot be answered.
+/// Reason why a question about an assembly cannot be answered.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AssemblyError {
-    /// A part's surface is not one of a solid.
+    /// The surface of a part cannot be used as a solid.
     #[error("part {part}: {source}")]
     Part {
-        /// Its name.
+        /// Name of the part.
         part: String,
-        /// What is wrong.
+        /// Reason.
         source: Refused,
     },
-    /// Two parts have one name.
-    #[error("two parts are named {name}")]
+    /// Two parts have the same name.
+    #[error("duplicate part name {name}; part names must be unique")]
     SameName {
         /// The name.
         name: String,
     },
-    /// A part or a subassembly has no name.
-    #[error("a part or a subassembly has no name")]
+    /// The name of a part or subassembly is empty.
+    #[error("a part or subassembly has an empty name; names must not be empty")]
     NoName,
-    /// A pair is one part.
-    #[error("{name} and {name} are no pair: a part does not block itself")]
+    /// A pair consists of one part twice.
+    #[error("pair {name},{name} names the same part twice; a pair needs two different parts")]
     SamePart {
         /// The part's name.
         name: String,
     },
     /// No part has this name.
-    #[error("no part is named {name}{}", hint(near.as_deref()))]
+    #[error("unknown part {name}{}", similar_name_hint(near.as_deref()))]
     UnknownPart {
         /// The name.
         name: String,
-        /// The most similar name that exists.
+        /// The existing name with the longest common prefix; `None` if no name shares a first letter.
         near: Option<String>,
     },
-    /// Parts of which each would leave before itself.
-    #[error("nothing can leave before itself, and that is asked of {}", names.join(", "))]
+    /// Order constraints form a cycle.
+    #[error("cyclic order constraints: {}; remove one of these constraints", names.join(", "))]
     Order {
-        /// Their names.
+        /// Names of the parts of the cycle.
         names: Vec<String>,
     },
-    /// Two subassemblies share parts, and neither holds the other.
-    #[error("{} and {} share parts, and neither holds the other", names[0], names[1])]
+    /// Two subassemblies share parts, and neither contains the other.
+    #[error("subassemblies {} and {} overlap; they must be disjoint, or one must contain the other", names[0], names[1])]
     Subassemblies {
-        /// What they are called, or their parts.
+        /// Names of the subassemblies; without a name, the names of their parts.
         names: [String; 2],
     },
-    /// Fewer parts than there have to be.
-    #[error("{what} takes more parts than {count}")]
+    /// A group has fewer than two parts.
+    #[error("{what} needs at least two parts; {count} given")]
     TooFew {
-        /// What they were given for.
+        /// Kind of the group.
         what: &'static str,
-        /// How many were given.
+        /// Number of parts given.
         count: usize,
     },
-    /// None or all of the parts are to be taken out.
-    #[error("{count} of {of} parts are to be taken out: some, but not all, can be")]
+    /// None or all of the parts are to be removed.
+    #[error("cannot remove {count} of {of} parts; give at least one part, and fewer than all")]
     Removal {
-        /// How many were given.
+        /// Number of parts given.
         count: usize,
-        /// Of how many.
+        /// Number of parts of the assembly.
         of: usize,
     },
-    /// A part that is never moved is to be taken out.
-    #[error("{name} is to be taken out, and is fixed")]
+    /// A fixed part is to be removed.
+    #[error("part {name} is both fixed and to be removed; drop one of the two options")]
     Fixed {
-        /// Its name.
+        /// Name of the part.
         name: String,
     },
-    /// Nothing is said of a pair.
-    #[error("{} and {} are a pair: give a role or a tolerance", names[0], names[1])]
+    /// A pair has neither a role nor a tolerance.
+    #[error("the entry for pair {},{} has neither a role nor a tolerance; give one of them", names[0], names[1])]
     NoFit {
-        /// The parts.
+        /// Names of the parts.
         names: [String; 2],
     },
-    /// A snap of which nobody says how far it bends.
-    #[error("{} and {} snap: say by how much, as a tolerance", names[0], names[1])]
+    /// A snap fit has no tolerance.
+    #[error("the snap fit of {} and {} has no tolerance; give the deflection as a tolerance", names[0], names[1])]
     NoTolerance {
-        /// The parts.
+        /// Names of the parts.
         names: [String; 2],
     },
-    /// An angle that is none.
-    #[error("an angle of {degrees} degrees: it must be at least 0 and less than 180")]
+    /// An angle is out of range.
+    #[error("angle of {degrees} degrees is out of range; accepted: at least 0 and less than 180")]
     Angle {
-        /// As given.
+        /// The given angle in degrees.
         degrees: f64,
     },
-    /// A length that is negative or not finite.
-    #[error("{what} {value:?} is not a length: it must be finite, not negative and below 1.6e60")]
+    /// A length or factor is negative, not finite or too large.
+    #[error("invalid {what} {value:?}; accepted: finite, not negative, below 1.6e60")]
     Length {
-        /// What it is for.
+        /// Purpose of the value.
         what: &'static str,
-        /// As given.
+        /// The given value.
         value: f64,
     },
-    /// A direction that is zero or not finite.
-    #[error("direction {direction:?} is zero, not finite or out of range")]
+    /// A direction is zero, not finite or out of range.
+    #[error(
+        "direction {direction:?} is zero, not finite or out of range; give a finite vector that is not zero"
+    )]
     Direction {
-        /// As given.
+        /// The given direction.
         direction: [f64; 3],
     },
-    /// More than is looked at: memory goes with the number.
-    #[error("more than {most} {what}: that is too many; take fewer parts at a time")]
+    /// A limit that bounds the memory is exceeded.
+    #[error("more than {most} {what}; split the assembly into smaller groups of parts")]
     TooMany {
-        /// What there is too much of.
+        /// The counted objects.
         what: &'static str,
-        /// How many there may be.
+        /// Maximum number.
         most: usize,
     },
-    /// All free directions are told of parts that stop each other as they are.
-    #[error("all directions cannot be told of {a} and {b}: {why}")]
+    /// Free directions are requested of two parts that cannot be answered exactly, for example because they
+    /// overlap.
+    #[error("cannot compute the free directions of {a} and {b}: {why}")]
     NoDirections {
-        /// A part of the group.
+        /// Name of a part of the moving group.
         a: String,
-        /// One of the others.
+        /// Name of one of the other parts.
         b: String,
-        /// What is in the way.
+        /// Reason.
         why: &'static str,
     },
-    /// Free directions cannot be told.
+    /// The search for free directions failed.
     #[error(transparent)]
     Free(FreeError),
-    /// The caller asked to stop.
+    /// The caller cancelled the run.
     #[error("cancelled")]
     Cancelled,
-    /// A step of the plan did not pass its own check: a bug, with the facts to report.
-    #[error("a step of the plan does not hold when it is replayed: {facts}; please report this")]
+    /// A step of the plan failed when it was replayed: a defect of the program.
+    #[error("internal error: a step of the plan fails its check: {facts}; please report this")]
     Replay {
-        /// Which parts and direction.
+        /// Parts and direction of the step.
         facts: String,
     },
 }
 
-fn hint(near: Option<&str>) -> String {
-    near.map_or_else(String::new, |name| format!("; is it {name}?"))
+/// Returns `; did you mean NAME?`, or an empty text without a similar name.
+fn similar_name_hint(near: Option<&str>) -> String {
+    near.map_or_else(String::new, |name| format!("; did you mean {name}?"))
 }

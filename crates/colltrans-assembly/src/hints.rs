@@ -1,11 +1,11 @@
-//! What looks odd about the parts as they were read: said, never applied.
+//! Hints about oddities of the parts as read. They are reported and never applied.
 //!
-//! - *Identical* parts are those of one shape ([`likes`]).
-//! - *Frames*: parts that are one body in one place, or of which most pairs overlap deeply around the origin, stand in
-//!   frames of their own rather than where they belong.
-//! - *Units*: of two parts of one shape one is 1,000 or 25.4 times as large; or sizes fall in two groups so far apart that
-//!   one is in millimetres and the other in metres. Where most pairs overlap deeply, a smaller ratio counts, and
-//!   the hint about frames is left out.
+//! - *Identical*: parts of the same shape ([`likes`]).
+//! - *Frames*: parts seem to be in their own frames instead of at their places in the assembly. Either equal
+//!   parts coincide, or all parts surround the origin and most pairs overlap deeply.
+//! - *Units*: parts seem to have another unit of length. Either one of two parts of the same shape is 1,000
+//!   or 25.4 times as large, or the sizes form two groups whose ratio is that of metres and millimetres. If
+//!   most pairs overlap deeply, a smaller ratio suffices, and a units hint replaces the frames hint.
 
 use std::cell::Cell;
 
@@ -19,50 +19,51 @@ use crate::likes::{common_name, likes};
 use crate::part::{Assembly, Part};
 use crate::start::{Overlap, Start};
 
-/// Boxes that differ by less than this share of their size are one.
-const SAME: f64 = 1e-6;
-/// So large a share of all pairs overlaps deeply where parts stand in frames of their own, ...
-const MOST: f64 = 0.5;
-/// ... of so many parts at least, whose middles are within this share of their size from the origin.
-const FEWEST: usize = 3;
-const NEAR: f64 = 0.75;
-/// Factors between units: of millimetres and metres, and of millimetres and inches.
-const FACTORS: [f64; 2] = [1_000.0, 25.4];
-/// Sizes that are so many times apart are of different units.
-const APART: f64 = 250.0;
-/// Ratio of sizes from which on a factor of 1,000 brings them nearer to each other: its square root. It counts where
-/// most pairs of parts overlap deeply.
-const NEARER: f64 = 32.0;
-/// Lengths of equal shapes differ by less than this share.
+/// Maximum difference of coinciding boxes, as a share of their size.
+const COINCIDENT: f64 = 1e-6;
+/// Minimum share of pairs that overlap deeply, for the frames hint.
+const MIN_DEEP_SHARE: f64 = 0.5;
+/// Minimum number of parts for the frames hint on deep overlaps.
+const MIN_PARTS: usize = 3;
+/// Maximum distance of a part's centre from the origin, as a share of its size, for the frames hint.
+const MAX_CENTER_DISTANCE: f64 = 0.75;
+/// Ratios of units: metres to millimetres, and inches to millimetres.
+const UNIT_RATIOS: [f64; 2] = [1_000.0, 25.4];
+/// Minimum ratio of sizes of parts in different units.
+const UNIT_GAP: f64 = 250.0;
+/// Minimum ratio of sizes from which a factor of 1,000 brings them closer together: its square root. It
+/// applies if most pairs overlap deeply.
+const UNIT_GAP_OF_OVERLAPS: f64 = 32.0;
+/// Maximum difference of lengths of equal shapes, as a share.
 const EQUAL: f64 = 1e-3;
-/// Names that a hint lists.
-const MAX_NAMED: usize = 4;
+/// Maximum number of names in a hint.
+const MAX_NAMES: usize = 4;
 
-/// What looks odd, or may be used.
+/// An oddity of the parts, or a property that may be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Hint {
-    /// Of what it is.
+    /// Kind of the hint.
     pub kind: HintKind,
-    /// Positions of the parts, in increasing order.
+    /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// In words, with what may be done.
+    /// Description, with a suggestion where there is one.
     pub words: String,
 }
 
-/// Of what a hint is.
+/// Kind of a hint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum HintKind {
-    /// One shape in several places.
+    /// Several parts have the same shape.
     Identical,
-    /// Parts that do not stand where they belong.
+    /// Parts are not at their places in the assembly.
     Frames,
-    /// Parts in different units.
+    /// Parts are in different units of length.
     Units,
 }
 
 impl HintKind {
-    /// `identical`, `frames` or `units`.
+    /// Returns `identical`, `frames` or `units`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Identical => "identical",
@@ -72,49 +73,51 @@ impl HintKind {
     }
 }
 
-/// All of them: identical parts first, largest groups first.
+/// Returns all hints: identical parts first, the largest group first.
 pub fn hints(bodies: &Bodies, start: &Start) -> Vec<Hint> {
     let assembly = bodies.assembly();
     let likes = likes(assembly);
-    let mut all = identical(assembly, &likes);
-    let frames = frames(bodies, start, &likes);
+    let mut all = identical_parts_hints(assembly, &likes);
+    let frames = frame_hint(bodies, start, &likes);
     let overlaps = frames.as_ref().is_some_and(|hint| hint.parts.len() == assembly.parts().len());
-    let units = units(assembly, &likes, if overlaps { NEARER } else { APART });
-    // Parts a thousand times too large overlap as parts in frames of their own do.
+    let units = unit_hint(assembly, &likes, if overlaps { UNIT_GAP_OF_OVERLAPS } else { UNIT_GAP });
+    // Parts that are a thousand times too large overlap like parts in their own frames.
     all.extend(frames.filter(|_| !(overlaps && units.is_some())));
     all.extend(units);
     all
 }
 
-fn identical(assembly: &Assembly, likes: &[usize]) -> Vec<Hint> {
+/// Returns a hint for each group of identical parts, the largest group first.
+fn identical_parts_hints(assembly: &Assembly, likes: &[usize]) -> Vec<Hint> {
     let group = |first: usize| (first..likes.len()).filter(move |&k| likes[k] == first).collect();
     let all = (0..likes.len()).filter(|&k| likes[k] == k).map(group);
     let mut groups: Vec<Vec<usize>> = all.filter(|group: &Vec<usize>| group.len() > 1).collect();
     groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
-    let told = |parts: Vec<usize>| {
+    let hint = |parts: Vec<usize>| {
         let names = assembly.names(&parts);
         let words = match common_name(&names) {
             Some(name) => format!("{} x {name} are identical", parts.len()),
-            None => format!("{} are identical", first_named(&names, MAX_NAMED)),
+            None => format!("{} are identical", first_named(&names, MAX_NAMES)),
         };
         Hint { kind: HintKind::Identical, parts, words }
     };
-    groups.into_iter().map(told).collect()
+    groups.into_iter().map(hint).collect()
 }
 
-fn frames(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
+/// Returns the hint that parts are in their own frames; `None` without signs of that.
+fn frame_hint(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
     let assembly = bodies.assembly();
     let parts = assembly.parts();
     let same = |a: &usize, b: &usize| {
         let [p, q] = [a, b].map(|k| parts[*k].bounds());
         let off = (p.low - q.low).abs().max((p.high - q.high).abs()).max_element();
-        likes[*a] == likes[*b] && off <= SAME * p.size().max_element()
+        likes[*a] == likes[*b] && off <= COINCIDENT * p.size().max_element()
     };
-    // Twins have their low corners in one place, so only parts with a corner near there are compared.
+    // The low corners of coinciding parts coincide, so only parts with nearby corners are compared.
     let corner = |k: usize| Aabb::of_points([parts[k].bounds().low]);
     let corners = BoxTree::new((0..parts.len()).map(corner));
-    let twice = |b: &usize| {
-        let reach = 2.0 * SAME * parts[*b].bounds().size().max_element();
+    let has_twin = |b: &usize| {
+        let reach = 2.0 * COINCIDENT * parts[*b].bounds().size().max_element();
         let (near, found) = (corner(*b).grown(reach), Cell::new(false));
         corners.visit(
             |corner| !found.get() && corner.meets(&near),
@@ -122,63 +125,66 @@ fn frames(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
         );
         found.get()
     };
-    let twins: Vec<usize> = (0..parts.len()).filter(|b| twice(b)).collect();
-    let advice = "give a manifest with their places, or export the assembly as one file";
+    let twins: Vec<usize> = (0..parts.len()).filter(|b| has_twin(b)).collect();
+    let advice = "add a manifest with their places, or export the assembly as one file";
     if let Some(&twin) = twins.first() {
         let first = (0..twin).find(|a| same(a, &twin)).unwrap_or(twin);
         let mut group = vec![first];
         group.extend(twins.into_iter().filter(|k| same(&first, k)));
-        let names = first_named(&assembly.names(&group), MAX_NAMED);
+        let names = first_named(&assembly.names(&group), MAX_NAMES);
         let words = format!(
-            "{names} are one body in one place: parts seem to stand in frames of their own; {advice}"
+            "{names} are one body in one place: parts seem to be in frames of their own; {advice}"
         );
         return Some(Hint { kind: HintKind::Frames, parts: group, words });
     }
     let is_near = |part: &&Part| {
         let Aabb { low, high } = part.bounds();
-        ((low + high) * 0.5).length() <= NEAR * (high - low).length()
+        ((low + high) * 0.5).length() <= MAX_CENTER_DISTANCE * (high - low).length()
     };
     let near = parts.iter().filter(is_near).count();
     let deep = |o: &&Overlap| !o.is_shallow(bodies);
     let deep = start.overlaps.iter().filter(deep).count();
     let pairs = parts.len() * (parts.len().max(1) - 1) / 2;
-    let odd = parts.len() >= FEWEST && near == parts.len() && deep as f64 >= MOST * pairs as f64;
+    let odd = parts.len() >= MIN_PARTS
+        && near == parts.len()
+        && deep as f64 >= MIN_DEEP_SHARE * pairs as f64;
     odd.then(|| Hint {
         kind: HintKind::Frames,
         parts: (0..parts.len()).collect(),
         words: format!(
-            "{deep} of {pairs} pairs of parts overlap deeply around the origin: parts seem to stand in frames of their \
+            "{deep} of {pairs} pairs of parts overlap deeply around the origin: parts seem to be in frames of their \
              own; {advice}"
         ),
     })
 }
 
-/// Finds parts in another unit; `apart` is the ratio of sizes that shows two units where no two parts have one shape.
-fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
+/// Returns the hint that parts are in another unit; `None` without signs of that. `apart` is the minimum
+/// ratio of sizes that indicates two units where no two parts have the same shape.
+fn unit_hint(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
     let parts = assembly.parts();
-    let said = |small: Vec<usize>, factor: f64, why: &str| {
+    let hint_of_small = |small: Vec<usize>, factor: f64, why: &str| {
         let names = assembly.names(&small);
         let words = format!(
             "{} may be in another unit, {factor} times too small: {why}; --scale {}={factor} corrects it",
-            first_named(&names, MAX_NAMED),
+            first_named(&names, MAX_NAMES),
             names[0]
         );
         Hint { kind: HintKind::Units, parts: small, words }
     };
-    // In a source in metres, as URDF is, the larger parts have the wrong unit.
+    // In a source in metres, such as URDF, the larger parts have the wrong unit.
     let is_in_metres = assembly.unit() == Some("m");
-    // The same shape in two sizes.
+    // Two parts of the same shape but different size.
     let shapes: Vec<usize> = (0..parts.len()).filter(|&k| likes[k] == k).collect();
     for (&a, &b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
         let [small, large] = [a, b].map(|k| parts[k].solid());
-        let found = FACTORS.into_iter().find(|factor| is_scaled(small, large, *factor));
+        let found = UNIT_RATIOS.into_iter().find(|factor| is_scaled(small, large, *factor));
         if let Some(factor) = found {
             let group = |like: usize| (0..parts.len()).filter(|&k| likes[k] == like).collect();
-            if is_in_metres && factor == FACTORS[0] {
-                return Some(in_millimetres(assembly, group(b)));
+            if is_in_metres && factor == UNIT_RATIOS[0] {
+                return Some(millimetre_hint(assembly, group(b)));
             }
             let why = format!("{} has its shape", parts[b].name());
-            return Some(said(group(a), factor, &why));
+            return Some(hint_of_small(group(a), factor, &why));
         }
     }
     let mut sizes: Vec<(f64, usize)> = (0..parts.len())
@@ -187,31 +193,36 @@ fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         .collect();
     sizes.sort_by(|x, y| x.0.total_cmp(&y.0));
     let gap = (1..sizes.len()).find(|&k| sizes[k].0 >= apart * sizes[k - 1].0)?;
-    let numbers = |group: &[(f64, usize)]| {
-        let mut numbers: Vec<usize> = group.iter().map(|x| x.1).collect();
-        numbers.sort_unstable();
-        numbers
+    let indices = |group: &[(f64, usize)]| {
+        let mut indices: Vec<usize> = group.iter().map(|x| x.1).collect();
+        indices.sort_unstable();
+        indices
     };
     if is_in_metres {
-        return Some(in_millimetres(assembly, numbers(&sizes[gap..])));
+        return Some(millimetre_hint(assembly, indices(&sizes[gap..])));
     }
-    Some(said(numbers(&sizes[..gap]), FACTORS[0], "all others are hundreds of times as large"))
+    Some(hint_of_small(
+        indices(&sizes[..gap]),
+        UNIT_RATIOS[0],
+        "all others are hundreds of times as large",
+    ))
 }
 
-/// Returns the hint that these parts of a source in metres have the numbers of millimetres.
-fn in_millimetres(assembly: &Assembly, large: Vec<usize>) -> Hint {
+/// Returns the hint that parts of a source in metres have their coordinates in millimetres.
+fn millimetre_hint(assembly: &Assembly, large: Vec<usize>) -> Hint {
     let names = assembly.names(&large);
     let scales: Vec<String> =
-        names.iter().take(MAX_NAMED).map(|name| format!("--scale {name}=0.001")).collect();
+        names.iter().take(MAX_NAMES).map(|name| format!("--scale {name}=0.001")).collect();
     let words = format!(
         "{} may be in millimetres beside parts in metres, 1000 times too large: {} corrects it",
-        first_named(&names, MAX_NAMED),
+        first_named(&names, MAX_NAMES),
         scales.join(" ")
     );
     Hint { kind: HintKind::Units, parts: large, words }
 }
 
-/// Whether one solid has the shape of another one, so many times as large.
+/// Checks whether one solid has the shape of another one scaled by `factor`. Compares the numbers of vertices
+/// and triangles, the area and the volume.
 fn is_scaled(small: &Solid, large: &Solid, factor: f64) -> bool {
     let counts = |solid: &Solid| [solid.vertices().len(), solid.triangles().len()];
     let sizes = |solid: &Solid| {

@@ -1,38 +1,43 @@
-//! Principal axes of inertia of a solid, of its volume.
+//! Centre and principal axes of inertia of the volume of a solid.
 //!
-//! The second moments about the centre, `C = integral of (x - m)(x - m)^T`, are a sum over
-//! tetrahedra from one point to each facet. Their eigenvectors by Jacobi's rotations.
+//! The second moments about the centre `m`, `C = integral of (x - m)(x - m)^T`, are summed over the
+//! tetrahedra from one point to each facet. Jacobi rotations compute their eigenvectors.
 
 use colltrans::Aabb;
 use colltrans::Solid;
 use glam::{DMat3, DVec3};
 
-/// Eigenvalues closer than this share of the largest leave the axes open.
+/// Minimum difference of distinct eigenvalues, as a share of the largest one.
 const DISTINCT: f64 = 1e-3;
 
-/// The axes that are well defined: none for a cube, one for a cylinder, else three.
+/// Returns the unit principal axes whose eigenvalues are distinct: none for a cube, one for a cylinder, else
+/// three.
 pub fn axes(solid: &Solid) -> Vec<DVec3> {
-    let (values, vectors) = eigen(second_moments(solid));
+    let (values, vectors) = eigen_decomposition(second_moments(solid));
     let largest = values.abs().max_element();
-    let apart = |i: usize, j: usize| (values[i] - values[j]).abs() > DISTINCT * largest;
-    let well = |i: usize| apart(i, (i + 1) % 3) && apart(i, (i + 2) % 3);
-    (0..3).filter(|&i| largest > 0.0 && well(i)).map(|i| vectors.col(i).normalize()).collect()
+    let are_distinct = |i: usize, j: usize| (values[i] - values[j]).abs() > DISTINCT * largest;
+    let is_defined = |i: usize| are_distinct(i, (i + 1) % 3) && are_distinct(i, (i + 2) % 3);
+    (0..3).filter(|&i| largest > 0.0 && is_defined(i)).map(|i| vectors.col(i).normalize()).collect()
 }
 
-/// Third moments are clear from this share of the deviation on, and second moments of a solid with a hand are apart by it:
-/// single precision rounds far less.
-const CLEAR: f64 = 0.03;
+/// Threshold for the handedness of a solid, far above the rounding of single precision: a share of the
+/// deviation for third moments, a share of the largest one for differences of second moments.
+const MIN_ASYMMETRY: f64 = 0.03;
 
-/// Whether the principal axes of a solid, in the order of their moments and each turned to where the solid is drawn out
-/// farther, are right-handed: of mirror images one has right-handed axes and one left-handed ones. `None` where axes or
-/// sides are not clear, as of all that has a plane of symmetry.
+/// Checks whether the principal axes of a solid are right-handed. The axes are in the order of their moments,
+/// each directed to the side with the positive third moment. Mirror images have opposite handedness.
+///
+/// Returns `None` if the axes or their directions are not clear, for example for solids with a plane of
+/// symmetry.
 pub fn is_right_handed(solid: &Solid) -> Option<bool> {
     let (center, _) = center(solid)?;
-    let (values, vectors) = eigen(second_moments(solid));
+    let (values, vectors) = eigen_decomposition(second_moments(solid));
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
     let [small, middle, large] = order.map(|i| values[i]);
-    let apart = small > 0.0 && middle - small > CLEAR * large && large - middle > CLEAR * large;
+    let are_distinct = small > 0.0
+        && middle - small > MIN_ASYMMETRY * large
+        && large - middle > MIN_ASYMMETRY * large;
     let axes = order.map(|i| vectors.col(i).normalize());
     let corner = |v: u32| solid.vertices()[v as usize] - center;
     let (mut volume, mut third) = (0.0, DVec3::ZERO);
@@ -41,28 +46,31 @@ pub fn is_right_handed(solid: &Solid) -> Option<bool> {
         let v = a.dot(b.cross(c)) / 6.0;
         volume += v;
         let [x, y, z] = [a, b, c].map(|p| DVec3::from_array(axes.map(|axis| p.dot(axis))));
-        // The integral of the cube of a linear form over a tetrahedron with a corner where it is zero.
+        // Integral of the cube of a linear form over a tetrahedron with a vertex at which the form is zero.
         let cubes = x * x * (x + y + z) + y * y * (x + y + z) + z * z * (x + y + z) + x * y * z;
         third += cubes * (v / 20.0);
     }
     let cubed = |variance: f64| variance * variance.sqrt();
     let skew = third / volume / DVec3::new(cubed(small), cubed(middle), cubed(large));
-    let clear = apart && skew.abs().min_element() > CLEAR;
+    let is_clear = are_distinct && skew.abs().min_element() > MIN_ASYMMETRY;
     let [x, y, z] = axes;
-    clear.then(|| skew.element_product() * x.cross(y).dot(z) > 0.0)
+    is_clear.then(|| skew.element_product() * x.cross(y).dot(z) > 0.0)
 }
 
-/// The principal second moments of the volume about its centre, in increasing order.
+/// Returns the principal second moments of the volume about its centre, in increasing order, divided by the
+/// volume.
 pub fn moments(solid: &Solid) -> DVec3 {
-    let mut values = eigen(second_moments(solid)).0.to_array();
+    let mut values = eigen_decomposition(second_moments(solid)).0.to_array();
     values.sort_by(f64::total_cmp);
     DVec3::from_array(values)
 }
 
-/// The centre of the volume, and how far it is off at most; `None` where rounding leaves nothing of the volume.
+/// Returns the centre of the volume and a bound on its error; `None` if the volume is not positive beyond
+/// rounding.
 ///
-/// Each of `n` terms, a product of three lengths with ten roundings, is off by at most `(n + 10) u` of the product of these
-/// lengths, once it is in the sum; so is its moment, with a factor of one of them.
+/// Error bound: each of `n` terms is a product of three lengths with ten roundings. Within the sum, its error
+/// is at most `(n + 10) u` times the product of these lengths. The error of its moment has one of the lengths
+/// as a further factor.
 pub fn center(solid: &Solid) -> Option<(DVec3, f64)> {
     const U: f64 = f64::EPSILON / 2.0;
     let Aabb { low, high } = solid.bounds();
@@ -77,13 +85,14 @@ pub fn center(solid: &Solid) -> Option<(DVec3, f64)> {
         terms += a.length() * b.length() * c.length();
         reach = reach.max(a.length()).max(b.length()).max(c.length());
     }
-    let off = (solid.triangles().len() as f64 + 16.0) * U * terms;
-    let least = volume - off;
+    let volume_error = (solid.triangles().len() as f64 + 16.0) * U * terms;
+    let least = volume - volume_error;
     let center = first / volume;
-    let error = 4.0 * off * reach / least + 8.0 * U * (reach + origin.length());
+    let error = 4.0 * volume_error * reach / least + 8.0 * U * (reach + origin.length());
     (least > 0.0).then_some((origin + center, error))
 }
 
+/// Returns the matrix of second moments about the centre, divided by the volume; zero without volume.
 fn second_moments(solid: &Solid) -> DMat3 {
     let Aabb { low, high } = solid.bounds();
     let origin = (low + high) * 0.5;
@@ -105,8 +114,8 @@ fn second_moments(solid: &Solid) -> DMat3 {
     second * (1.0 / volume) - DMat3::from_cols(mean * mean.x, mean * mean.y, mean * mean.z)
 }
 
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix.
-fn eigen(matrix: DMat3) -> (DVec3, DMat3) {
+/// Returns the eigenvalues and eigenvectors (columns) of a symmetric matrix, by Jacobi rotations.
+fn eigen_decomposition(matrix: DMat3) -> (DVec3, DMat3) {
     let (mut a, mut vectors) = (matrix, DMat3::IDENTITY);
     for _ in 0..24 {
         let off = [(0, 1), (0, 2), (1, 2)];
@@ -142,7 +151,7 @@ mod tests {
     use crate::sphere::angle;
 
     #[test]
-    fn a_turned_block_has_the_axes_it_was_turned_to() {
+    fn principal_axes_follow_rotation_and_cube_has_none() {
         let mut random = Random::new(9);
         for _ in 0..50 {
             let rotation = random.rotation();

@@ -1,22 +1,22 @@
-//! Assemblies: which parts come out, along which directions, in which order, and what holds the rest.
+//! Disassembly planning: which parts of an assembly come out, along which directions, in which order, and
+//! which parts block the others.
 //!
-//! Data flow: files, which `colltrans-assembly-io` reads -> [`Assembly`], parts in one world and one unit -> [`Fit`] (how
-//! tight: shrunk by a tolerance, or to be kept a length apart) -> `bodies` (two parts and a direction: the
-//! only module that asks `colltrans`; with [`roles`] and [`threads`] what a pair tolerates) -> [`start`] (overlaps now; [`suggest`] what they may be, [`hints`] what is odd about parts), [`liaisons`] (who touches whom) ->
-//! [`candidates`] (directions worth asking, axes of [`cylinders`] and of [`inertia`] among them) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
-//! [`blocking`] (the graph; with [`constraints`] its arcs), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
-//! directions); all of that by one [`Question`] -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
+//! The stages of a run, in order. One [`Question`] runs them all.
+//! - [`Assembly`]: parts in one world frame and one unit, read from files by `colltrans-assembly-io`.
+//! - [`Bodies`] with a [`Fit`] (a tolerance, or a minimum gap). `bodies` holds nearly all queries of pairs to
+//!   `colltrans`; [`roles`] and [`threads`] describe what a pair tolerates.
+//! - [`start`] (overlaps), [`suggest`] (causes of overlaps), [`hints`] (oddities of the parts), [`liaisons`]
+//!   (contacts).
+//! - [`candidates`] (directions, also of [`cylinders`] and [`inertia`]), [`matrix`] and [`rooms`] (who stops
+//!   whom, how far).
+//! - [`blocking`] (graph; arcs of [`constraints`]), [`likes`] (parts of equal shape), [`plan`] (steps,
+//!   interlocked groups), [`map`] (all directions of a part).
+//! - [`record`] (JSON), and [`report`] (pictures, an HTML file, an animation) with the feature `report`.
 //!
-//! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
-//! Everything is the same on any number of threads. The memory of a run is that of the parts, 100
-//! bytes for each pair of parts that meets along a direction asked, and on each thread up to 50 kB for
-//! each pair of parts whose facets are kept to be asked again.
-//!
-//! Without the feature `report` nothing is drawn: for a page.
-//!
-//! What a part meets does not depend on what has
-//! gone, as all stand where they were: one matrix serves all states of a plan. Everything parallel is gathered in order, so
-//! results are the same on any number of threads.
+//! Lengths are in the unit of the files. Directions have length 1. Results do not depend on the number of
+//! threads. One matrix serves all states of a plan, because parts do not move until they leave. Memory,
+//! besides the parts: 100 bytes for each pair and direction with a contact, and on each thread up to 50 kB
+//! for each pair of parts whose facets are cached.
 
 mod bodies;
 mod boxes;

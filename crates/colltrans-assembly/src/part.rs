@@ -1,4 +1,4 @@
-//! Parts in one world.
+//! Parts in one world frame, and the assembly that they form.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
@@ -13,16 +13,16 @@ use crate::constraints::{Constraints, Unit};
 use crate::error::AssemblyError;
 use crate::roles::{PairFit, Role};
 
-/// A mesh and its place: a part has one or several, which may overlap each other.
+/// A mesh and its pose. A part consists of one or several pieces, which may overlap.
 #[derive(Debug, Clone)]
 pub struct Piece {
-    /// In the piece's own frame; faces run counter-clockwise as seen from outside.
+    /// Mesh in the piece's own frame; faces run counter-clockwise as seen from outside.
     pub mesh: Mesh,
-    /// From the piece's frame to the world; may scale and mirror.
+    /// Transformation from the piece's frame to the world; may scale and mirror.
     pub world_from_piece: DAffine3,
 }
 
-/// A rigid part, where it stands in the assembly.
+/// A rigid part at its place in the assembly.
 #[derive(Debug, Clone)]
 pub struct Part {
     name: String,
@@ -37,18 +37,22 @@ pub struct Part {
 }
 
 impl Part {
-    /// A part of pieces; open shells become surfaces that block from both sides, which is noted.
+    /// Creates a part from pieces. Open shells become surfaces that block from both sides, and are listed in
+    /// [`Self::defects`].
     ///
     /// # Errors
-    /// A surface that is not one of a solid; no pieces; a name without letters.
+    /// [`AssemblyError::NoName`], or [`AssemblyError::Part`] if there are no pieces or their surface is not
+    /// that of a solid.
     pub fn new(name: impl Into<String>, pieces: &[Piece]) -> Result<Self, AssemblyError> {
         Self::with_options(name, pieces, &BodyOptions::default())
     }
 
-    /// The same with options, of which those of solids count; open shells are always allowed.
+    /// Creates a part from pieces with options for solids. Open shells are accepted whatever the options
+    /// state.
     ///
     /// # Errors
-    /// As [`Self::new`]; a surface that has to be mended, if it is to be taken [as it is](BodyOptions::as_is).
+    /// Those of [`Self::new`], and [`AssemblyError::Part`] if a surface needs repair and
+    /// [`BodyOptions::as_is`] disables it.
     pub fn with_options(
         name: impl Into<String>,
         pieces: &[Piece],
@@ -62,7 +66,7 @@ impl Part {
         let mut defects = Vec::new();
         let mut solids = Vec::with_capacity(pieces.len());
         for (k, piece) in pieces.iter().enumerate() {
-            let Loaded { body, notes, .. } = solid(piece, options).map_err(refused)?;
+            let Loaded { body, notes, .. } = solid_of_piece(piece, options).map_err(refused)?;
             solids.push(body);
             let several = pieces.len() > 1;
             defects.extend(notes.iter().map(|note| {
@@ -88,91 +92,95 @@ impl Part {
         })
     }
 
-    /// The same part, which is never moved if `fixed`.
+    /// Returns the part marked as fixed or not. A plan never moves a fixed part.
     #[must_use]
     pub fn with_fixed(self, fixed: bool) -> Self {
         Self { fixed, ..self }
     }
 
-    /// The same part, whose facets are at most so far from the surface that they stand for; `None` if nobody knows.
+    /// Returns the part with the maximum distance of its facets from the true surface; `None` if that is
+    /// unknown.
     #[must_use]
     pub fn with_chord_error(self, chord_error: Option<f64>) -> Self {
         Self { chord_error, ..self }
     }
 
-    /// The same part in a colour, of which red, green and blue are as screens have them, from 0 to 1; `None` if nobody
-    /// knows.
+    /// Returns the part with an sRGB colour, channels from 0 to 1; `None` if that is unknown.
     #[must_use]
     pub fn with_colour(self, colour: Option<[f64; 3]>) -> Self {
         Self { colour, ..self }
     }
 
-    /// Its name, unique in an assembly.
+    /// Returns the name, which is unique in an assembly.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The surface, in the world.
+    /// Returns the surface, in the world.
     pub const fn solid(&self) -> &Solid {
         &self.solid
     }
 
-    /// Number of facets in the file.
+    /// Returns the number of facets in the file.
     pub const fn facets(&self) -> usize {
         self.facets
     }
 
-    /// Whether it is never moved.
+    /// Checks whether a plan must not move the part.
     pub const fn fixed(&self) -> bool {
         self.fixed
     }
 
-    /// How far its facets are from the surface that they stand for, at most, as its source says; `None` if nobody knows.
+    /// Returns the maximum distance of the facets from the true surface, as stated by the source; `None` if
+    /// that is unknown.
     pub const fn chord_error(&self) -> Option<f64> {
         self.chord_error
     }
 
-    /// Returns the tolerance between two parts of its files, for the last digits of the numbers in these.
+    /// Returns the tolerance between two parts of these files that accounts for the last digits of the
+    /// numbers in them.
     pub(crate) const fn last_digits(&self) -> f64 {
         self.last_digits
     }
 
-    /// Checks whether places of its vertices may be off by the last digits of single precision of the assembly's
-    /// extent.
+    /// Checks whether rounding of the vertices is bounded only by the last digits of single precision of the
+    /// assembly's extent.
     pub(crate) const fn is_coarse(&self) -> bool {
         self.is_coarse
     }
 
-    /// Its colour, if its source has one.
+    /// Returns the sRGB colour; `None` if the source states none.
     pub const fn colour(&self) -> Option<[f64; 3]> {
         self.colour
     }
 
-    /// What was mended of its surface, or is wrong with it, in words.
+    /// Returns descriptions of repairs and of remaining defects of the surface.
     pub fn defects(&self) -> &[String] {
         &self.defects
     }
 
-    /// Whether it is a surface, at least in part: some shell of it is open.
+    /// Checks whether some shell of the part is open.
     pub fn is_surface(&self) -> bool {
         !self.solid.is_closed()
     }
 
+    /// Returns the axis-aligned box of the part in the world.
     pub(crate) fn bounds(&self) -> Aabb {
         self.solid.bounds()
     }
 }
 
-/// Tolerance between two files of text or doubles, in multiples of [`Mesh::precision`]: as of
+/// Factor of [`Mesh::precision`] for the tolerance between two files of text or doubles, as in
 /// [`between`](body::between).
 const PRECISIONS: f64 = 4.0;
-/// Tolerance between two files in single precision, in multiples of [`Mesh::precision`].
+/// Factor of [`Mesh::precision`] for the tolerance between two files in single precision.
 const SINGLE_PRECISIONS: f64 = 2.0;
 
 impl Piece {
-    /// Returns the tolerance between two such pieces for the last digits of the numbers in their files, in the world.
+    /// Returns the tolerance between two such pieces for the last digits of the numbers in their files, in
+    /// the world.
     fn last_digits(&self) -> f64 {
-        let stretch = self.columns().map(DVec3::length).into_iter().fold(0.0, f64::max);
+        let stretch = self.pose_columns().map(DVec3::length).into_iter().fold(0.0, f64::max);
         let precisions = match self.mesh.format {
             NumberFormat::Single => SINGLE_PRECISIONS,
             _ => PRECISIONS,
@@ -180,22 +188,25 @@ impl Piece {
         precisions * self.mesh.precision * stretch
     }
 
-    /// Checks whether its vertices may be off by more than its file explains: it comes from no file, is in single
-    /// precision, or is turned by a pose whose digits are unknown.
+    /// Checks whether rounding of the vertices may exceed the precision of the file. This holds for meshes
+    /// without a file, for files in single precision, and for poses that are not aligned with the axes,
+    /// because the digits of such poses are unknown.
     fn is_coarse(&self) -> bool {
-        let of_file = self.mesh.precision > 0.0 && self.mesh.format != NumberFormat::Single;
+        let has_known_digits =
+            self.mesh.precision > 0.0 && self.mesh.format != NumberFormat::Single;
         let is_along_axis =
             |column: DVec3| column.to_array().iter().filter(|x| **x != 0.0).count() == 1;
-        !(of_file && self.columns().into_iter().all(is_along_axis))
+        !(has_known_digits && self.pose_columns().into_iter().all(is_along_axis))
     }
 
-    fn columns(&self) -> [DVec3; 3] {
+    /// Returns the columns of the linear part of the pose.
+    fn pose_columns(&self) -> [DVec3; 3] {
         self.world_from_piece.matrix3.to_cols_array_2d().map(DVec3::from_array)
     }
 }
 
-/// A piece where it stands.
-fn solid(piece: &Piece, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
+/// Builds the solid of a piece in the world. Faces are reversed if the pose mirrors.
+fn solid_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);
@@ -206,18 +217,18 @@ fn solid(piece: &Piece, options: &BodyOptions) -> Result<Loaded<Solid>, Refused>
     body::solid(&mesh, &options.with_open(true))
 }
 
-/// What of two parts is let pass.
+/// Contacts of a pair that are ignored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Ignored {
     /// The overlap at the start. Contacts that begin later block, as with
-    /// [`StartOverlap::Ignore`](colltrans::solid::StartOverlap::Ignore), and so does what would make the overlap
-    /// deeper than it is, where there is a tolerance with which there is none.
+    /// [`StartOverlap::Ignore`](colltrans::solid::StartOverlap::Ignore). Motions that deepen the overlap
+    /// block too, if some tolerance removes the overlap.
     Overlap,
-    /// Everything: the two are never asked about.
+    /// All contacts: the pair is never tested.
     Always,
 }
 
-/// Parts with different names in one world, and pairs that let each other pass.
+/// Parts with different names in one world frame, and the pairs whose contacts are ignored.
 #[derive(Debug, Clone, Default)]
 pub struct Assembly {
     parts: Vec<Part>,
@@ -231,10 +242,10 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// An assembly of these parts, in this order.
+    /// Creates an assembly of these parts, in this order.
     ///
     /// # Errors
-    /// Two parts with one name.
+    /// [`AssemblyError::SameName`] if two parts have the same name.
     pub fn new(parts: Vec<Part>) -> Result<Self, AssemblyError> {
         let mut seen = HashMap::new();
         for (k, part) in parts.iter().enumerate() {
@@ -245,11 +256,11 @@ impl Assembly {
         Ok(Self { parts, ..Self::default() })
     }
 
-    /// The same, with pairs (by name) of which so much is let pass. A pair that is named twice keeps
-    /// what lets more pass.
+    /// Returns the assembly with pairs (by name) whose contacts are ignored. A pair that is given twice keeps
+    /// the more permissive value.
     ///
     /// # Errors
-    /// A name that no part has; a part paired with itself.
+    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::SamePart`] if a part is paired with itself.
     pub fn with_ignored<S: AsRef<str>>(
         mut self,
         pairs: &[[S; 2]],
@@ -260,19 +271,24 @@ impl Assembly {
             if a == b {
                 return Err(AssemblyError::SamePart { name: self.parts[a].name.clone() });
             }
-            let known = self.ignored.entry([a.min(b), a.max(b)]).or_insert(ignored);
-            *known = ignored.max(*known);
+            let stored = self.ignored.entry([a.min(b), a.max(b)]).or_insert(ignored);
+            *stored = ignored.max(*stored);
         }
         Ok(self)
     }
 
-    /// The same, with what parts are to others where their contact is not like all others, and a tolerance of their own:
-    /// of each pair of one of the first and one of the second. What is said later counts. Names are as of
+    /// Returns the assembly with a role, a tolerance or both for each pair of a part of the first group and
+    /// one of the second. A later entry for a pair replaces an earlier one. Names are patterns of
     /// [`group`](Self::group).
     ///
     /// # Errors
-    /// A name that no part has; a part paired with itself alone; neither a role nor a tolerance; a tolerance that is none;
-    /// a snap without one; what is glued would leave before itself.
+    /// - [`AssemblyError::UnknownPart`]
+    /// - [`AssemblyError::SamePart`] if both groups consist of the same single part
+    /// - [`AssemblyError::Length`] if the tolerance is negative, not finite or too large
+    /// - [`AssemblyError::NoFit`] without role and tolerance
+    /// - [`AssemblyError::NoTolerance`] for a snap fit without tolerance
+    /// - [`AssemblyError::Order`] or [`AssemblyError::Subassemblies`] if glued parts conflict with other
+    ///   constraints
     pub fn with_pair<S: AsRef<str>>(
         mut self,
         [first, second]: [&[S]; 2],
@@ -309,10 +325,11 @@ impl Assembly {
         Ok(self)
     }
 
-    /// The same, with parts that are never moved. Names are as of [`group`](Self::group).
+    /// Returns the assembly with fixed parts, which a plan never moves. Names are patterns of
+    /// [`group`](Self::group).
     ///
     /// # Errors
-    /// A name that no part has.
+    /// [`AssemblyError::UnknownPart`].
     pub fn with_fixed<S: AsRef<str>>(mut self, names: &[S]) -> Result<Self, AssemblyError> {
         for part in self.group(names)? {
             self.parts[part].fixed = true;
@@ -320,11 +337,11 @@ impl Assembly {
         Ok(self)
     }
 
-    /// The same, where parts leave before others: none of the second ones leaves while one of the first ones stays. Names
-    /// are as of [`group`](Self::group).
+    /// Returns the assembly with an order constraint: none of the second parts leaves while one of the first
+    /// parts is still in place. Names are patterns of [`group`](Self::group).
     ///
     /// # Errors
-    /// A name that no part has; something would leave before itself.
+    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::Order`] if the constraints become cyclic.
     pub fn with_before<S: AsRef<str>>(
         mut self,
         first: &[S],
@@ -336,18 +353,21 @@ impl Assembly {
         Ok(self)
     }
 
-    /// The same, where parts stay together: they leave as one, and are not taken apart.
+    /// Returns the assembly with parts that leave as one and are not separated afterwards. Names are patterns
+    /// of [`group`](Self::group).
     ///
     /// # Errors
-    /// A name that no part has; fewer than two parts; something would leave before itself.
+    /// [`AssemblyError::UnknownPart`], [`AssemblyError::TooFew`] for fewer than two parts,
+    /// [`AssemblyError::Subassemblies`], and [`AssemblyError::Order`] if the constraints become cyclic.
     pub fn with_together<S: AsRef<str>>(self, names: &[S]) -> Result<Self, AssemblyError> {
         self.with_unit_of(None, names, false)
     }
 
-    /// The same with a subassembly: its parts leave as one, and are taken apart by themselves.
+    /// Returns the assembly with a subassembly: its parts leave as one, and are then taken apart separately.
+    /// Names are patterns of [`group`](Self::group).
     ///
     /// # Errors
-    /// As [`Self::with_together`]; it has no name; it shares parts with another one, and neither holds the other.
+    /// Those of [`Self::with_together`], and [`AssemblyError::NoName`] for an empty name.
     pub fn with_subassembly<S: AsRef<str>>(
         self,
         name: impl Into<String>,
@@ -360,6 +380,8 @@ impl Assembly {
         self.with_unit_of(Some(name), parts, true)
     }
 
+    /// Returns the assembly with a group that leaves as one; `apart` states whether it is taken apart
+    /// afterwards.
     fn with_unit_of<S: AsRef<str>>(
         mut self,
         name: Option<String>,
@@ -368,7 +390,7 @@ impl Assembly {
     ) -> Result<Self, AssemblyError> {
         let parts = self.group(parts)?;
         if parts.len() < 2 {
-            let what = if apart { "a subassembly" } else { "to stay together" };
+            let what = if apart { "a subassembly" } else { "a group that stays together" };
             return Err(AssemblyError::TooFew { what, count: parts.len() });
         }
         let named = |part: usize| self.parts[part].name();
@@ -376,10 +398,12 @@ impl Assembly {
         Ok(self)
     }
 
-    /// The same, where parts never go along a direction, of any length, nor along others within an angle in degrees.
+    /// Returns the assembly with directions along which parts must not move: `direction`, of any length, and
+    /// all directions within an angle of `within` degrees of it.
     ///
     /// # Errors
-    /// A name that no part has; a direction of no length; an angle that is not at least 0 and less than 180.
+    /// [`AssemblyError::UnknownPart`], [`AssemblyError::Direction`] for a direction without length, and
+    /// [`AssemblyError::Angle`] unless the angle is at least 0 and less than 180 degrees.
     pub fn with_never<S: AsRef<str>>(
         mut self,
         names: &[S],
@@ -392,143 +416,144 @@ impl Assembly {
         Ok(self)
     }
 
-    /// The same, with the unit of its lengths, as the file says it.
+    /// Returns the assembly with the name of its unit of length, as stated by the file.
     #[must_use]
     pub fn with_unit(self, unit: impl Into<String>) -> Self {
         Self { unit: Some(unit.into()), ..self }
     }
 
-    /// The same, with what is upwards in its frame, if the format says it.
+    /// Returns the assembly with the upward direction of its frame.
     #[must_use]
     pub fn with_up(self, up: DVec3) -> Self {
         Self { up: Some(up), ..self }
     }
 
-    /// The same, with something that the reader has to say.
+    /// Returns the assembly with another note of its reader.
     #[must_use]
     pub fn with_note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
-    /// The same, with the files that it was read from.
+    /// Returns the assembly with the list of files that it was read from.
     #[must_use]
     pub fn with_files(self, files: Vec<PathBuf>) -> Self {
         Self { files, ..self }
     }
 
-    /// The parts.
+    /// Returns the parts.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// The unit of lengths, if the file says it.
+    /// Returns the name of the unit of length; `None` if the file states none.
     pub fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
     }
 
-    /// What is upwards: y of glTF, else z.
+    /// Returns the upward direction; z unless [`Self::with_up`] set another one.
     pub fn up(&self) -> DVec3 {
         self.up.unwrap_or(DVec3::Z)
     }
 
-    /// What the reader noted: meshes skipped, for instance.
+    /// Returns the notes of the reader, for example about skipped meshes.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// The files that it was read from: whoever writes files must not write over these.
+    /// Returns the files that the assembly was read from. Programs must not overwrite them.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// What of two parts is let pass, if anything.
+    /// Returns which contacts of two parts are ignored; `None` if all of them count.
     pub fn ignored(&self, a: usize, b: usize) -> Option<Ignored> {
         self.ignored.get(&[a.min(b), a.max(b)]).copied()
     }
 
-    /// The pairs of which something is let pass, the smaller position first.
+    /// Iterates over the pairs with ignored contacts, the smaller index first.
     pub(crate) fn ignored_pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         self.ignored.keys().copied()
     }
 
-    /// What is asked of plans: an order, subassemblies, directions.
+    /// Returns the constraints of plans: order, subassemblies and forbidden directions.
     pub const fn constraints(&self) -> &Constraints {
         &self.constraints
     }
 
-    /// The parts with these names, in increasing order; `bolt*` are all whose names begin with `bolt`, if no part has just
-    /// that name.
+    /// Returns the indices of the parts with these names, in increasing order. `bolt*` stands for all parts
+    /// whose names begin with `bolt`, unless a part has exactly that name.
     ///
     /// # Errors
-    /// A name that no part has.
+    /// [`AssemblyError::UnknownPart`] if a name or pattern matches no part.
     pub fn group<S: AsRef<str>>(&self, names: &[S]) -> Result<Vec<usize>, AssemblyError> {
         let mut group = Vec::new();
         for name in names.iter().map(|name| name.as_ref().trim()) {
-            let like = match name.strip_suffix('*') {
+            let matching = match name.strip_suffix('*') {
                 Some(prefix) if self.parts.iter().all(|part| part.name != name) => {
                     let parts = self.parts.iter().enumerate();
                     parts.filter(|(_, p)| p.name.starts_with(prefix)).map(|(k, _)| k).collect()
                 }
                 _ => vec![self.index(name)?],
             };
-            if like.is_empty() {
+            if matching.is_empty() {
                 return Err(AssemblyError::UnknownPart { name: name.into(), near: None });
             }
-            group.extend(like);
+            group.extend(matching);
         }
         group.sort_unstable();
         group.dedup();
         Ok(group)
     }
 
-    /// What is said of two parts, if anything.
+    /// Returns the role and tolerance given for two parts; `None` if none are given.
     pub fn pair(&self, a: usize, b: usize) -> Option<PairFit> {
         self.pairs.get(&[a.min(b), a.max(b)]).copied()
     }
 
-    /// All pairs of which something is said, the smaller position first.
+    /// Iterates over the pairs with a role or tolerance of their own, the smaller index first.
     pub fn pairs(&self) -> impl Iterator<Item = ([usize; 2], PairFit)> {
         self.pairs.iter().map(|(pair, fit)| (*pair, *fit))
     }
 
-    /// Position of the part with a name.
+    /// Returns the index of the part with a name.
     ///
     /// # Errors
-    /// There is none; the error names the most similar one.
+    /// [`AssemblyError::UnknownPart`], with the name that has the longest common prefix.
     pub fn index(&self, name: &str) -> Result<usize, AssemblyError> {
         let found = self.parts.iter().position(|p| p.name == name);
         found.ok_or_else(|| {
-            let shared = |p: &&Part| common_prefix(&p.name, name);
+            let shared = |p: &&Part| common_prefix_length(&p.name, name);
             let near = self.parts.iter().max_by_key(shared).filter(|p| shared(p) > 0);
             AssemblyError::UnknownPart { name: name.into(), near: near.map(|p| p.name.clone()) }
         })
     }
 
-    /// Names of parts by position.
+    /// Returns the names of parts by index.
     pub fn names(&self, parts: &[usize]) -> Vec<&str> {
         parts.iter().map(|&k| self.parts[k].name()).collect()
     }
 
-    /// The box around all parts; of no extent at the origin without parts.
+    /// Returns the box of all parts; without parts, an empty box at the origin.
     pub fn bounds(&self) -> Aabb {
         let all = self.parts.iter().map(Part::bounds).reduce(|a, b| a.join(&b));
         all.unwrap_or(Aabb { low: DVec3::ZERO, high: DVec3::ZERO })
     }
 
-    /// The largest distance of a vertex's coordinate from the world's origin, or between two: what
-    /// rounding errors grow with.
+    /// Returns the largest absolute coordinate of a vertex or side of the box of all parts. Rounding errors
+    /// are proportional to it.
     pub fn size(&self) -> f64 {
         let Aabb { low, high } = self.bounds();
         low.abs().max(high.abs()).max(high - low).max_element()
     }
 
-    /// The largest side of the box around all parts.
+    /// Returns the largest side of the box of all parts.
     pub(crate) fn extent(&self) -> f64 {
         self.bounds().size().max_element()
     }
 }
 
-fn common_prefix(a: &str, b: &str) -> usize {
+/// Returns the number of leading characters that two names share, ignoring ASCII case.
+fn common_prefix_length(a: &str, b: &str) -> usize {
     a.chars().zip(b.chars()).take_while(|(x, y)| x.eq_ignore_ascii_case(y)).count()
 }

@@ -1,7 +1,7 @@
-//! What was found out, as JSON: the same in the files of the command line and on a page.
+//! Results as JSON, for the command line and for web pages.
 //!
-//! Parts are told by their names, directions have length 1; `docs/guide/assemblies.md` describes the fields,
-//! `docs/answers.schema.json` holds them.
+//! Parts are referred to by name. Directions have length 1. `docs/guide/assemblies.md` describes the fields,
+//! and `docs/answers.schema.json` defines them.
 
 use colltrans::solid::ShellKind;
 use glam::DVec3;
@@ -19,42 +19,42 @@ use crate::rooms::PartRoom;
 use crate::start::{Overlap, Start};
 use crate::suggest::Suggestion;
 
-/// A part as the file has it.
+/// Returns a part as given in the file.
 pub fn part(part: &Part) -> Value {
     let bounds = part.solid().volume_bounds();
-    // What is open has none.
+    // Open surfaces have no volume.
     let volume = bounds.map(|_| part.solid().volume());
-    let mut told = json!({
+    let mut object = json!({
         "name": part.name(), "facets": part.facets(), "volume": volume, "volume_bounds": bounds
     });
     if part.is_surface() {
         let count = |kind: ShellKind| (kind.name().to_owned(), part.solid().report().count(kind));
-        told["shells"] = ShellKind::ALL.into_iter().map(count).collect();
+        object["shells"] = ShellKind::ALL.into_iter().map(count).collect();
     }
     if let Some(error) = part.chord_error() {
-        told["chord_error"] = json!(error);
+        object["chord_error"] = json!(error);
     }
     if !part.defects().is_empty() {
-        told["defects"] = json!(part.defects());
+        object["defects"] = json!(part.defects());
     }
-    told
+    object
 }
 
-/// Pairs that overlap as the files have them.
+/// Returns the pairs that overlap at the start.
 pub fn overlaps(assembly: &Assembly, start: &Start) -> Value {
-    let told = |o: &Overlap| {
+    let to_json = |o: &Overlap| {
         json!({
             "parts": assembly.names(&o.parts),
             "least_tolerance": o.depth,
             "remains": o.remains,
         })
     };
-    start.overlaps.iter().map(told).collect()
+    start.overlaps.iter().map(to_json).collect()
 }
 
-/// What pairs that overlap may be to each other.
+/// Returns the suggested roles and tolerances of overlapping pairs.
 pub fn suggestions(assembly: &Assembly, suggestions: &[Suggestion]) -> Value {
-    let told = |s: &Suggestion| {
+    let to_json = |s: &Suggestion| {
         json!({
             "parts": assembly.names(&s.parts),
             "role": s.fit.role.map(Role::name),
@@ -62,33 +62,33 @@ pub fn suggestions(assembly: &Assembly, suggestions: &[Suggestion]) -> Value {
             "why": s.why,
         })
     };
-    suggestions.iter().map(told).collect()
+    suggestions.iter().map(to_json).collect()
 }
 
-/// What looks odd about parts, and which are identical.
+/// Returns the hints about parts, for example about identical ones.
 pub fn hints(assembly: &Assembly, hints: &[Hint]) -> Value {
-    let told = |hint: &Hint| {
+    let to_json = |hint: &Hint| {
         json!({
             "kind": hint.kind.name(),
             "parts": assembly.names(&hint.parts),
             "words": hint.words,
         })
     };
-    hints.iter().map(told).collect()
+    hints.iter().map(to_json).collect()
 }
 
-/// Pairs that have a fit of their own, and what is let pass of them.
+/// Returns the pairs with a fit of their own and the contacts that it tolerates.
 pub fn pairs(bodies: &Bodies) -> Value {
-    let told = |(parts, fit): ([usize; 2], PairFit)| {
+    let to_json = |(parts, fit): ([usize; 2], PairFit)| {
         let tolerated = bodies.tolerated(parts)?;
-        Some(passed(bodies.assembly(), &Passed { parts, role: fit.role, tolerated }))
+        Some(passed_json(bodies.assembly(), &Passed { parts, role: fit.role, tolerated }))
     };
-    bodies.assembly().pairs().filter_map(told).collect()
+    bodies.assembly().pairs().filter_map(to_json).collect()
 }
 
-/// Pairs that touch.
+/// Returns the pairs that touch.
 pub fn liaisons(assembly: &Assembly, liaisons: &[Liaison]) -> Value {
-    let told = |l: &Liaison| {
+    let to_json = |l: &Liaison| {
         json!({
             "parts": assembly.names(&l.parts),
             "area": l.area(),
@@ -96,30 +96,31 @@ pub fn liaisons(assembly: &Assembly, liaisons: &[Liaison]) -> Value {
             "center": l.center().to_array(),
         })
     };
-    liaisons.iter().map(told).collect()
+    liaisons.iter().map(to_json).collect()
 }
 
-/// How far a part goes alone.
+/// Returns how far one part moves along unit direction `d` until another part stops it.
 pub fn room(bodies: &Bodies, part: usize, d: DVec3, room: &PartRoom) -> Value {
-    let mut told = sample(bodies, d, room);
-    told["part"] = json!(bodies.assembly().parts()[part].name());
-    let PartRoom::Blocked { stop, .. } = room else { return told };
+    let mut object = free_travel_json(bodies, d, room);
+    object["part"] = json!(bodies.assembly().parts()[part].name());
+    let PartRoom::Blocked { stop, .. } = room else { return object };
     let name = match bodies.fit() {
         Fit::Tolerance(_) | Fit::Chords { .. } => {
-            told["translation"] = json!(stop.translation.value);
-            told["translation_bounds"] = json!(stop.translation.bounds());
+            object["translation"] = json!(stop.translation.value);
+            object["translation_bounds"] = json!(stop.translation.bounds());
             "shrunk_distance"
         }
         Fit::Apart(_) => "kept_distance",
     };
-    told[name] = json!(stop.displaced.value);
-    told[format!("{name}_bounds")] = json!(stop.displaced.bounds());
-    told["point"] = json!(stop.point.to_array());
-    told["normal"] = json!(stop.normal.to_array());
-    told
+    object[name] = json!(stop.displaced.value);
+    object[format!("{name}_bounds")] = json!(stop.displaced.bounds());
+    object["point"] = json!(stop.point.to_array());
+    object["normal"] = json!(stop.normal.to_array());
+    object
 }
 
-fn sample(bodies: &Bodies, d: DVec3, room: &PartRoom) -> Value {
+/// Returns the outcome, distance and blocking part of a motion, without details of the contact.
+fn free_travel_json(bodies: &Bodies, d: DVec3, room: &PartRoom) -> Value {
     let distance = room.distance();
     json!({
         "direction": d.to_array(),
@@ -129,10 +130,10 @@ fn sample(bodies: &Bodies, d: DVec3, room: &PartRoom) -> Value {
     })
 }
 
-/// The ordered pairs that are not free along a direction of a matrix.
+/// Returns the ordered pairs that are not free along a direction of a matrix.
 pub fn meetings(assembly: &Assembly, matrix: &Matrix, direction: usize) -> Value {
     let name = |part: usize| assembly.parts()[part].name();
-    let told = |m: &Meeting| {
+    let to_json = |m: &Meeting| {
         json!({
             "moving": name(m.moving),
             "fixed": name(m.fixed),
@@ -140,14 +141,22 @@ pub fn meetings(assembly: &Assembly, matrix: &Matrix, direction: usize) -> Value
             "distance": m.distance(),
         })
     };
-    matrix.meetings(direction).iter().map(told).collect()
+    matrix.meetings(direction).iter().map(to_json).collect()
 }
 
-/// The fields of a plan: `plan` (its steps), `stages` (those that are told as one, by the first and last one), `rounds`
-/// (those that may go at once), `assembly` (how it is put together), `last`, `left`, `stuck`.
+/// Returns the fields of a plan.
+///
+/// | field | content |
+/// |---|---|
+/// | `plan` | the steps |
+/// | `stages` | ranges of steps that are described as one, as the first and the last step |
+/// | `rounds` | steps that can be done at the same time |
+/// | `assembly` | the steps in the order of assembly, with those that each needs |
+/// | `last`, `left`, `stuck` | the parts that stay, the parts that are left, the interlocked groups |
+/// | `wanted` | the requested removal, if any |
 pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
-    let steps: Vec<Value> = plan.steps.iter().map(|s| step(bodies.assembly(), s)).collect();
-    let stuck: Vec<Value> = plan.stuck.iter().map(|s| self::stuck(bodies, s)).collect();
+    let steps: Vec<Value> = plan.steps.iter().map(|s| step_json(bodies.assembly(), s)).collect();
+    let stuck: Vec<Value> = plan.stuck.iter().map(|s| stuck_json(bodies, s)).collect();
     let names = |parts: &[usize]| json!(bodies.assembly().names(parts));
     let stages = plan.stages().into_iter().map(|stage| {
         let takes = plan.takes(bodies.assembly(), &stage);
@@ -156,7 +165,7 @@ pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
     });
     let stages: Vec<Value> = stages.collect();
     let put = |(step, after): (usize, Vec<usize>)| json!({ "step": step, "after": after });
-    let mut told = json!({
+    let mut object = json!({
         "plan": steps,
         "stages": stages,
         "rounds": plan.rounds(),
@@ -166,83 +175,87 @@ pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
         "stuck": stuck,
     });
     if let Some(wanted) = &plan.wanted {
-        told["wanted"] = json!({
+        object["wanted"] = json!({
             "parts": names(&wanted.parts),
             "others": names(&wanted.others),
             "least": wanted.least,
             "out": wanted.out,
         });
     }
-    told
+    object
 }
 
-fn step(assembly: &Assembly, step: &Step) -> Value {
-    let mut told = json!({
+/// Returns a step of a plan.
+fn step_json(assembly: &Assembly, step: &Step) -> Value {
+    let mut object = json!({
         "parts": assembly.names(&step.parts),
         "direction": step.direction.to_array(),
         "travel": step.travel.value,
         "travel_bounds": step.travel.bounds(),
-        "path": legs(assembly, &step.path),
+        "path": path_json(assembly, &step.path),
     });
     if let Some(name) = assembly.constraints().name(&step.parts) {
-        told["subassembly"] = json!(name);
+        object["subassembly"] = json!(name);
     }
     if !step.back.is_empty() {
-        told["back"] = legs(assembly, &step.back);
+        object["back"] = path_json(assembly, &step.back);
     }
     if !step.ignored.is_empty() {
         let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.names(pair)).collect();
-        told["ignored"] = json!(pairs);
+        object["ignored"] = json!(pairs);
     }
     if !step.passed.is_empty() {
-        told["passed"] = step.passed.iter().map(|passed| self::passed(assembly, passed)).collect();
+        object["passed"] = step.passed.iter().map(|passed| passed_json(assembly, passed)).collect();
     }
     for (name, parts) in [("falls", &step.falls), ("off_balance", &step.off_balance)] {
         if !parts.is_empty() {
-            told[name] = json!(assembly.names(parts));
+            object[name] = json!(assembly.names(parts));
         }
     }
-    told["after"] = json!(step.after);
+    object["after"] = json!(step.after);
     if let Some(within) = step.within {
-        told["within"] = json!(within);
+        object["within"] = json!(within);
     }
     if !step.surfaces.is_empty() {
-        told["surfaces"] = json!(assembly.names(&step.surfaces));
+        object["surfaces"] = json!(assembly.names(&step.surfaces));
     }
-    told
+    object
 }
 
-fn passed(assembly: &Assembly, passed: &Passed) -> Value {
-    let mut told = json!({
+/// Returns the contacts of a pair that a step tolerates.
+fn passed_json(assembly: &Assembly, passed: &Passed) -> Value {
+    let mut object = json!({
         "parts": assembly.names(&passed.parts),
         "role": passed.role.map(Role::name),
         "words": passed.tolerated.words(passed.role),
     });
     match passed.tolerated {
-        Tolerated::Within(length) | Tolerated::Bent(length) => told["tolerance"] = json!(length),
-        Tolerated::Core(radius) => told["core_radius"] = json!(radius),
+        Tolerated::Within(length) | Tolerated::Bent(length) => object["tolerance"] = json!(length),
+        Tolerated::Core(radius) => object["core_radius"] = json!(radius),
         Tolerated::Crossing | Tolerated::AsOne => (),
     }
-    told
+    object
 }
 
-fn legs(assembly: &Assembly, legs: &[Leg]) -> Value {
-    let told = |leg: &Leg| {
-        let mut told = json!({
+/// Returns the moves of a path.
+fn path_json(assembly: &Assembly, legs: &[Leg]) -> Value {
+    let to_json = |leg: &Leg| {
+        let mut object = json!({
             "parts": assembly.names(&leg.parts),
             "direction": leg.direction.to_array(),
             "travel": leg.travel,
         });
         if let Some(turn) = &leg.turn {
-            told["turn"] = self::turn(leg, turn);
+            object["turn"] = turn_json(leg, turn);
         }
-        told
+        object
     };
-    legs.iter().map(told).collect()
+    legs.iter().map(to_json).collect()
 }
 
-fn turn(leg: &Leg, turn: &Turn) -> Value {
-    let mut told = json!({
+/// Returns a move along a screw.
+fn turn_json(leg: &Leg, turn: &Turn) -> Value {
+    let mut object = json!({
         "point": turn.point.to_array(),
         "axis": leg.direction.to_array(),
         "turns": turn.turns,
@@ -253,14 +266,15 @@ fn turn(leg: &Leg, turn: &Turn) -> Value {
     });
     match &turn.proof {
         Ok(TurnProof { tolerance, pairs, .. }) => {
-            told["proof"] = json!({ "tolerance": tolerance, "pairs": pairs });
+            object["proof"] = json!({ "tolerance": tolerance, "pairs": pairs });
         }
-        Err(why) => told["not_proven"] = json!(why),
+        Err(why) => object["not_proven"] = json!(why),
     }
-    told
+    object
 }
 
-fn moves(moves: &Moves) -> Value {
+/// Returns the result of the search for paths of several moves.
+fn moves_json(moves: &Moves) -> Value {
     match moves {
         Moves::NotAsked(why) => json!({ "not_asked": why }),
         Moves::NotKept => json!({ "not_kept": true }),
@@ -274,14 +288,15 @@ fn moves(moves: &Moves) -> Value {
     }
 }
 
-fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
+/// Returns an interlocked group.
+fn stuck_json(bodies: &Bodies, stuck: &Stuck) -> Value {
     let assembly = bodies.assembly();
     let set = |(parts, d): &(Vec<usize>, DVec3)| json!({ "parts": assembly.names(parts), "direction": d.to_array() });
     let holds = stuck.holds.iter().map(|hold| {
         let least: Vec<Value> = hold.by.iter().map(set).collect();
         json!({ "part": assembly.parts()[hold.part].name(), "least": least })
     });
-    let mut told = json!({
+    let mut object = json!({
         "parts": assembly.names(&stuck.parts),
         "because": stuck.because(bodies),
         "directions": stuck.directions,
@@ -289,39 +304,39 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
             Some(cells) => json!({ "proven": cells }),
             None => json!({ "asked": stuck.directions }),
         },
-        "moves": moves(&stuck.moves),
+        "moves": moves_json(&stuck.moves),
         "holds": holds.collect::<Vec<_>>(),
     });
     if stuck.constrained {
-        told["constrained"] = json!(true);
+        object["constrained"] = json!(true);
     }
-    told
+    object
 }
 
-/// A removal map without its samples: free regions with points of their borders, isolated directions, and all that is
-/// free, exactly; or why it is sampled.
+/// Returns a removal map without its samples: free regions with points of their borders, isolated free
+/// directions, and either the exact result or the reason why the map is only sampled.
 pub fn regions(assembly: &Assembly, map: &RemovalMap) -> Value {
     let region = |r: &Region| {
         let border: Vec<[f64; 3]> = r.border.iter().map(DVec3::to_array).collect();
         json!({ "solid_angle": r.solid_angle, "center": r.center.to_array(), "border": border })
     };
-    let mut told = json!({
+    let mut object = json!({
         "parts": assembly.names(&map.group),
         "free_share": map.free_share(),
         "regions": map.regions.iter().map(region).collect::<Vec<_>>(),
         "isolated": map.isolated.iter().map(DVec3::to_array).collect::<Vec<_>>(),
     });
     match &map.cover {
-        Ok(cover) => told["exactly"] = json!(cover.record),
-        Err(why) => told["sampled"] = json!(why),
+        Ok(cover) => object["exactly"] = json!(cover.record),
+        Err(why) => object["sampled"] = json!(why),
     }
-    told
+    object
 }
 
-/// A removal map with all its samples.
+/// Returns a removal map with all its samples.
 pub fn map(bodies: &Bodies, map: &RemovalMap) -> Value {
-    let mut told = regions(bodies.assembly(), map);
+    let mut object = regions(bodies.assembly(), map);
     let samples = map.sphere.directions.iter().zip(&map.rooms);
-    told["samples"] = samples.map(|(d, room)| sample(bodies, *d, room)).collect();
-    told
+    object["samples"] = samples.map(|(d, room)| free_travel_json(bodies, *d, room)).collect();
+    object
 }

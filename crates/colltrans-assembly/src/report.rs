@@ -1,8 +1,11 @@
-//! What people read: one HTML file ([`html`]), and an animation ([`glb`]). The same facts as JSON: [`facts`].
+//! Reports for people: one HTML file ([`html`]) and an animation ([`glb`]), and all findings as JSON
+//! ([`facts`]).
 //!
-//! The file has a first page (`cover`, with an `exploded` view), a page for each step (`sheet`), what follows them (`after`),
-//! `tables` with blocking graphs ([`graph`]), and a `viewer`. `words` says lengths and ways, `kinds` which parts are
-//! alike, `scene` draws with the `lines` of each part.
+//! - `cover`: the first page, with an `exploded` view. `sheet`: a page for each step. `after`: the sections
+//!   after the steps.
+//! - `tables`: folded tables with blocking graphs ([`graph`]). `viewer`: an interactive view.
+//! - `words`: lengths, directions and names as text. `kinds`: parts of equal shape.
+//! - `scene`: pictures, with the `lines` of each part.
 
 mod after;
 mod cover;
@@ -29,20 +32,21 @@ use crate::plan::Step;
 use scene::Studio;
 use words::Words;
 
-/// What all pages are made of.
+/// Data that all pages share.
 struct Report<'a> {
     pub f: &'a Findings<'a>,
     pub words: Words<'a>,
     pub studio: Studio<'a>,
-    /// Of each step.
+    /// For each step, the estimated handling time in seconds.
     pub seconds: Vec<f64>,
-    /// The number of each step's round.
+    /// For each step, the index of its round.
     pub rounds: Vec<usize>,
-    /// The length of the diagonal of the box around all parts.
+    /// Length of the diagonal of the box of all parts.
     pub diagonal: f64,
 }
 
 impl<'a> Report<'a> {
+    /// Prepares the data of a report.
     fn new(f: &'a Findings<'a>) -> Self {
         let mut rounds = vec![0; f.plan.steps.len()];
         for (round, steps) in f.plan.rounds().iter().enumerate() {
@@ -57,12 +61,12 @@ impl<'a> Report<'a> {
     }
 }
 
-/// A picture that was drawn here, whose texts are escaped.
-fn picture(svg: String) -> PreEscaped<String> {
+/// Marks an SVG picture that this crate drew as safe HTML. Its texts are escaped already.
+fn picture_markup(svg: String) -> PreEscaped<String> {
     PreEscaped(svg)
 }
 
-/// A direction, for people: an axis by name.
+/// Formats a direction: an axis by its signed name, other directions by their components.
 pub(crate) fn arrow(d: glam::DVec3) -> String {
     let names = [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y"), (glam::DVec3::Z, "z")];
     for (axis, name) in names {
@@ -73,39 +77,40 @@ pub(crate) fn arrow(d: glam::DVec3) -> String {
             return format!("−{name}");
         }
     }
-    // No zero is negative.
+    // Small components become positive zeros.
     let [x, y, z] = d.to_array().map(|c| if c.abs() < 0.000_5 { 0.0 } else { c });
     format!("({x:.3}, {y:.3}, {z:.3})")
 }
 
-/// The parts that are there when a step begins: of all, or of the group that it takes apart.
-fn there<'a>(f: &'a Findings, step: usize) -> impl Iterator<Item = usize> + use<'a> {
-    let (steps, mut is_there) = (&f.plan.steps, vec![true; f.bodies.len()]);
+/// Iterates over the parts that are present when a step begins: of the assembly, or of the group that the
+/// step takes apart.
+fn present_parts<'a>(f: &'a Findings, step: usize) -> impl Iterator<Item = usize> + use<'a> {
+    let (steps, mut is_present) = (&f.plan.steps, vec![true; f.bodies.len()]);
     let within = steps[step].within;
     if let Some(group) = within {
-        is_there = f.bodies.mask(&steps[group].parts);
+        is_present = f.bodies.mask(&steps[group].parts);
     }
     for before in steps[..step].iter().filter(|before| before.within == within) {
-        before.parts.iter().for_each(|&part| is_there[part] = false);
+        before.parts.iter().for_each(|&part| is_present[part] = false);
     }
-    (0..is_there.len()).filter(move |&part| is_there[part])
+    (0..is_present.len()).filter(move |&part| is_present[part])
 }
 
-/// By how much a part has been moved before the last move of a step.
-fn aside(step: &Step, part: usize) -> DVec3 {
+/// Returns the displacement of a part by all moves of a step but the last one.
+fn displacement_before_last_move(step: &Step, part: usize) -> DVec3 {
     let before = &step.path[..step.path.len() - 1];
     let own = before.iter().filter(|leg| leg.parts.contains(&part));
     own.map(|leg| leg.direction * leg.travel).sum()
 }
 
-/// A colour as HTML writes it.
-fn hexadecimal(colour: [f64; 3]) -> String {
+/// Formats an sRGB colour for HTML.
+fn html_colour(colour: [f64; 3]) -> String {
     let [r, g, b] = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0) as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A colour for each kind of parts, spread by the golden angle.
-fn tint(kind: usize) -> [f64; 3] {
+/// Returns the colour of a kind of parts. Hues are spread by the golden angle.
+fn kind_colour(kind: usize) -> [f64; 3] {
     let hue = (kind as f64 * 0.381_966_011_250_105 + 0.58) % 1.0;
     let channel = |shift: f64| {
         let h = (hue + shift).fract() * 6.0;
@@ -120,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_for_people() {
+    fn numbers_and_axes_are_formatted_for_people() {
         let cases =
             [(0.0, "0"), (27.0, "27"), (0.0617, "0.0617"), (1234.56, "1235"), (1e-9, "1.00e-9")];
         for (x, text) in cases {

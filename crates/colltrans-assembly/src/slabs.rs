@@ -1,13 +1,14 @@
-//! How far parts reach along directions that are asked of all: planes between parts that boxes along the axes of the world
-//! do not know of.
+//! Extents of parts along the normals of contacts: slabs that separate parts whose axis-aligned boxes
+//! overlap.
 //!
-//! A machine that is turned has its faces in slanting planes, and the boxes of plates that lie on each other overlap. Between
-//! slabs `low <= n . x <= high` along the normals of contacts, which are among the directions asked, there is room.
-//! A part that moves by `t d` meets another one only at such `t` for which it does so along each `n`, as of boxes ([`boxes`]).
+//! In a machine that is rotated against the world axes, the boxes of plates in contact overlap, but their
+//! slabs `low <= n . x <= high` along the contact normals `n` do not. A part that moves by `t d` can meet
+//! another one only at values of `t` at which their slabs meet for every `n`, as for [`boxes`](crate::boxes).
 //!
-//! Rounding. With `S` the largest coordinate, `n . x` is off by less than `6 u S` (two of them by `12 u S`), and `n . d` by
-//! `3 u`; parts meet at `|t| <= 4 S` or not at all, so that the latter takes `12 u S`: slabs are `64 u S` further
-//! apart than computed, and `n . d` of no more than `8 u` counts as 0.
+//! Rounding, with the largest coordinate `S`:
+//! - `n . x` has an error below `6 u S` (two products: `12 u S`), and `n . d` one below `3 u`.
+//! - Parts meet at `|t| <= 4 S` or never, therefore the error of `n . d` contributes `12 u S`.
+//! - Slabs are widened by `64 u S`, and `n . d` of at most `8 u` counts as 0.
 
 use colltrans::Solid;
 use glam::DVec3;
@@ -15,22 +16,22 @@ use rayon::prelude::*;
 
 use crate::boxes::{first_meeting, span};
 
-/// Rounding of how far apart slabs are, in multiples of the largest coordinate.
+/// Widening of the distance of slabs, in multiples of the largest coordinate.
 const SLACK: f64 = 32.0 * f64::EPSILON;
-/// Directions are orthogonal that are so to within this.
-const LEVEL: f64 = 4.0 * f64::EPSILON;
+/// Bound on `|n . d|` below which directions count as orthogonal.
+const MAX_ORTHOGONAL_DOT: f64 = 4.0 * f64::EPSILON;
 
-/// The reach of parts along some directions.
+/// Extents of all parts along some directions.
 pub(crate) struct Slabs {
-    /// Of two opposite ones one.
+    /// The directions, without opposite ones.
     normals: Vec<DVec3>,
-    /// For each part, along each.
+    /// For each part and each direction, the lower and the upper end.
     ends: Vec<Vec<[f64; 2]>>,
     slack: f64,
 }
 
 impl Slabs {
-    /// Of the bodies of each part, with something around them.
+    /// Computes the extents of the bodies of each part, widened by `around`.
     pub(crate) fn new(parts: &[Vec<&Solid>], around: f64, directions: &[DVec3]) -> Self {
         let mut normals: Vec<DVec3> = Vec::new();
         for &d in directions {
@@ -40,8 +41,8 @@ impl Slabs {
         }
         let reach = |bodies: &Vec<&Solid>| -> Vec<[f64; 2]> {
             let along = |&n: &DVec3| {
-                let places = bodies.iter().flat_map(|body| body.vertices()).map(|p| n.dot(*p));
-                let [low, high] = span(places);
+                let coordinates = bodies.iter().flat_map(|body| body.vertices()).map(|p| n.dot(*p));
+                let [low, high] = span(coordinates);
                 [low - around, high + around]
             };
             normals.iter().map(along).collect()
@@ -53,13 +54,14 @@ impl Slabs {
         Self { normals, ends, slack: SLACK * size }
     }
 
-    /// The least translation at which a part may meet another one, from below; `None` if it never does.
-    pub(crate) fn entry(&self, [moving, fixed]: [usize; 2], d: DVec3) -> Option<f64> {
+    /// Returns a lower bound of the translation at which a part may meet another one; `None` if it never
+    /// does.
+    pub(crate) fn entry_translation(&self, [moving, fixed]: [usize; 2], d: DVec3) -> Option<f64> {
         let (own, other) = (&self.ends[moving], &self.ends[fixed]);
         let each = self.normals.iter().zip(own).zip(other);
         first_meeting(each.map(|((n, [low, high]), [least, most])| {
             let along = n.dot(d);
-            let along = if along.abs() <= LEVEL { 0.0 } else { along };
+            let along = if along.abs() <= MAX_ORTHOGONAL_DOT { 0.0 } else { along };
             ([least - high - self.slack, most - low + self.slack], along)
         }))
     }
@@ -72,12 +74,12 @@ mod tests {
     use glam::DQuat;
 
     use super::*;
-    use crate::boxes::entry as entry_of;
+    use crate::boxes::entry_translation;
 
     const FACES: [[u32; 4]; 6] =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
-    /// A box of whole numbers, turned.
+    /// Returns a rotated box with integer sides and corners.
     fn block(random: &mut Random, world: DQuat) -> Solid {
         let mut whole =
             |most: f64| DVec3::from_array([0; 3].map(|_| (random.unit() * most).floor()));
@@ -87,10 +89,10 @@ mod tests {
         Solid::from_mesh(&vertices, &FACES).expect("a box")
     }
 
-    /// Boxes on a grid that is turned, so that they touch, slide and pass each other all the time: no pair that meets is
-    /// lost, and of others fewer are kept than by boxes along the axes of the world.
+    /// Tests boxes on a rotated grid, which often touch and slide. Pairs that meet must never be excluded. Of
+    /// the other pairs, slabs must exclude more than axis-aligned boxes.
     #[test]
-    fn what_meets_is_kept_and_little_else() {
+    fn slabs_keep_all_contacts_and_exclude_more_than_boxes() {
         let mut random = Random::new(12);
         let [mut met, mut kept, mut boxed, mut lost] = [0; 4];
         for round in 0..60 {
@@ -107,11 +109,12 @@ mod tests {
                 {
                     let place = |k: usize| bodies[k].at(Pose::IDENTITY);
                     let cast = Cast::new(place(a), place(b), d).expect("a cast");
-                    let entry = slabs.entry([a, b], d);
+                    let entry = slabs.entry_translation([a, b], d);
                     match cast.clearance().expect("an answer") {
                         Clearance::Free(_) => {
                             kept += usize::from(entry.is_some());
-                            let by_boxes = entry_of(&bodies[a].bounds(), &bodies[b].bounds(), d);
+                            let by_boxes =
+                                entry_translation(&bodies[a].bounds(), &bodies[b].bounds(), d);
                             boxed += usize::from(by_boxes.is_some());
                         }
                         Clearance::Blocked { contact, .. } => {

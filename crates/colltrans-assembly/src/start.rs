@@ -1,5 +1,4 @@
-//! Overlaps of the parts as the files have them, how deep they are, and which tolerance lets them
-//! pass.
+//! Overlaps of the parts as given in the files: their depths, and a tolerance that removes them.
 
 use rayon::prelude::*;
 
@@ -11,51 +10,54 @@ use crate::watch::{Stage, Watch};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Overlap {
-    /// Positions of the parts, the smaller first.
+    /// Indices of the parts, the smaller first.
     pub parts: [usize; 2],
-    /// The least tolerance with which they do not; `None` if there is none up to their size.
+    /// The least tolerance with which the parts do not overlap; `None` if no tolerance up to their size
+    /// suffices.
     pub depth: Option<f64>,
-    /// Whether they still overlap with the fit that is asked about.
+    /// Whether the parts still overlap with the requested fit.
     pub remains: bool,
 }
 
 impl Overlap {
-    /// Whether it is small against both parts: else it is no tolerance, but a fault of the model.
+    /// Checks whether the depth is at most [`MAX_TOLERANCE_SHARE`] of the thickness of both parts. A deeper
+    /// overlap counts as a fault of the model.
     pub(crate) fn is_shallow(&self, bodies: &Bodies) -> bool {
-        self.is_within(bodies, LARGEST_SHARE)
+        self.is_within(bodies, MAX_TOLERANCE_SHARE)
     }
 
-    /// Whether its depth is at most such a share of the thickness of both parts.
+    /// Checks whether the depth is at most `share` of the thickness of both parts. The thickness is the
+    /// smallest side of a part's box.
     pub(crate) fn is_within(&self, bodies: &Bodies, share: f64) -> bool {
-        let thin = self.parts.map(|k| bodies.bounds(k).size().min_element());
-        self.depth.is_some_and(|depth| depth <= share * thin[0].min(thin[1]))
+        let thicknesses = self.parts.map(|k| bodies.bounds(k).size().min_element());
+        self.depth.is_some_and(|depth| depth <= share * thicknesses[0].min(thicknesses[1]))
     }
 }
 
-/// How the assembly starts.
+/// Overlaps of an assembly at the start.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Start {
-    /// Pairs that overlap as the files have them, deepest first.
+    /// Pairs that overlap as given in the files, or with the requested fit, deepest first.
     pub overlaps: Vec<Overlap>,
-    /// A tolerance with which no pair overlaps: a little more than the deepest, two digits, if that
-    /// is small against the parts; `None` if there is nothing to suggest.
+    /// Tolerance with which no shallow overlap remains: 5 % above the deepest shallow overlap, rounded up to
+    /// two digits. `None` if there is no shallow overlap above the noise.
     pub suggested: Option<f64>,
 }
 
-/// A tolerance larger than this share of a part's box is no tolerance, but a fault of the model.
-const LARGEST_SHARE: f64 = 0.1;
+/// Maximum depth of a shallow overlap, as a share of the thickness of both parts.
+const MAX_TOLERANCE_SHARE: f64 = 0.1;
 
 impl Start {
-    /// Looks at all pairs.
+    /// Finds the overlaps of all pairs that are not ignored.
     ///
     /// # Errors
-    /// Cancelled; too many parts lie within each other's boxes.
+    /// [`AssemblyError::Cancelled`], and [`AssemblyError::TooMany`] if too many boxes of parts intersect.
     pub fn new(bodies: &Bodies, watch: Watch) -> Result<Self, AssemblyError> {
         let mut pairs = bodies.neighbours(0.0)?;
         pairs.retain(|&[a, b]| bodies.assembly().ignored(a, b).is_none());
         let tally = watch.stage(Stage::Start, pairs.len());
-        let look = |&[a, b]: &[usize; 2]| {
+        let examine = |&[a, b]: &[usize; 2]| {
             let remains = bodies.overlaps(a, b);
             let given = bodies.overlap_as_given(a, b);
             let overlap = (remains || given.is_some()).then_some(Overlap {
@@ -66,26 +68,27 @@ impl Start {
             tally.step().map(|()| overlap)
         };
         let found: Result<Vec<Option<Overlap>>, AssemblyError> =
-            pairs.par_iter().map(look).collect();
+            pairs.par_iter().map(examine).collect();
         let mut overlaps: Vec<Overlap> = found?.into_iter().flatten().collect();
-        let key = |o: &Overlap| o.depth.unwrap_or(f64::INFINITY);
-        overlaps.sort_by(|x, y| key(y).total_cmp(&key(x)).then(x.parts.cmp(&y.parts)));
-        let suggested = suggest(bodies, &overlaps);
+        let depth_of = |o: &Overlap| o.depth.unwrap_or(f64::INFINITY);
+        overlaps.sort_by(|x, y| depth_of(y).total_cmp(&depth_of(x)).then(x.parts.cmp(&y.parts)));
+        let suggested = suggested_tolerance(bodies, &overlaps);
         Ok(Self { overlaps, suggested })
     }
 
-    /// Pairs that overlap even with the fit asked about.
+    /// Iterates over the pairs that overlap even with the requested fit.
     pub fn remaining(&self) -> impl Iterator<Item = &Overlap> {
         self.overlaps.iter().filter(|o| o.remains)
     }
 }
 
-fn suggest(bodies: &Bodies, overlaps: &[Overlap]) -> Option<f64> {
+/// Returns the tolerance for [`Start::suggested`].
+fn suggested_tolerance(bodies: &Bodies, overlaps: &[Overlap]) -> Option<f64> {
     let deepest = overlaps
         .iter()
         .filter(|o| o.is_shallow(bodies))
         .filter_map(|o| o.depth)
-        // What is rounded off goes without saying.
+        // Overlaps within the noise need no suggestion.
         .filter(|depth| *depth > bodies.noise())
         .reduce(f64::max)?;
     Some(two_digits_up(deepest * 1.05))
@@ -96,7 +99,7 @@ mod tests {
     use super::two_digits_up;
 
     #[test]
-    fn two_digits() {
+    fn two_digits_up_rounds_up_to_two_significant_digits() {
         assert_eq!(two_digits_up(0.0519), 0.052);
         assert_eq!(two_digits_up(0.052), 0.052);
         assert_eq!(two_digits_up(1.21e-7), 1.3e-7);

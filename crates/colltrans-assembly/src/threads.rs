@@ -1,12 +1,13 @@
-//! Threads, found from two parts of which one is screwed into the other.
+//! Detects threads of two parts of which one is screwed into the other.
 //!
-//! Notation: about an axis, `r` is a point's distance from it and `z` its place along it. The *hole* is as wide as the part
-//! around it comes near the axis, over the length that both parts have in common; the *crest* is as far as the vertices of
-//! the screw reach there, heads aside. They interlock: the hole is narrower than the crest. In a turn the crest climbs by
-//! the *pitch* `P`, which is positive of a right-handed thread (module `helix`).
-//!
-//! The *core* of the screw is the same surface with all vertices from the hole to the crest moved inwards, to the hole: on a
-//! thread `r` is a function of angle and `z`, so it stays a surface, and what of it is not thread stays where it is.
+//! About an axis, `r` is the distance of a point from it and `z` its coordinate along it. Both radii are
+//! measured over the range of `z` that both parts share.
+//! - *Hole*: the least `r` of the facets of the outer part.
+//! - *Crest*: the largest `r` of the vertices of the screw, without heads. A thread has a crest wider than
+//!   the hole.
+//! - *Pitch* `P`: the rise of the crest in a turn, positive for a right-handed thread (module `helix`).
+//! - *Core*: the surface of the screw with all vertices between hole and crest moved inward to the hole. It
+//!   remains a surface, because on a thread `r` is a function of the angle and `z`.
 
 mod helix;
 mod seat;
@@ -19,61 +20,65 @@ use crate::boxes::span;
 use crate::{cylinders, inertia};
 
 pub use seat::Seat;
-use surface::About;
+use surface::AxisFrame;
 
-/// A crest is no wider than this many holes: of M1.6 it is 1.31 times as wide, and a head wider.
-const WIDEST: f64 = 1.35;
-/// Nor less than this: a press fit is no thread.
-const LEAST: f64 = 1.02;
-/// The ends of the common length that are not looked at, as a share of it: chamfers, and bottoms of holes.
-const ENDS: f64 = 0.05;
-/// So many vertices make a crest.
-const FEWEST: usize = 12;
-/// What is moved to the hole stops short of it by this share.
-const SHORT: f64 = 1e-6;
-/// Rows in which a solid is seen to be round.
+/// Maximum ratio of crest and hole. M1.6 has 1.31, and heads are wider.
+const MAX_CREST_RATIO: f64 = 1.35;
+/// Minimum ratio of crest and hole, which excludes press fits.
+const MIN_CREST_RATIO: f64 = 1.02;
+/// Share of the common length that is left out at each end, because of chamfers and bottoms of holes.
+const END_SHARE: f64 = 0.05;
+/// Minimum number of vertices of a crest.
+const MIN_CREST_VERTICES: usize = 12;
+/// Relative distance from the hole to which the core is moved.
+const CORE_MARGIN: f64 = 1e-6;
+/// Number of rows in which a solid is checked for rotational symmetry.
 const ROUND_ROWS: usize = 24;
-/// Beyond the crest, as it was measured about an axis that was found, by this share of it: heads begin farther out.
-const OVER: f64 = 0.01;
+/// Relative margin beyond the measured crest. Heads begin farther out.
+const CREST_MARGIN: f64 = 0.01;
 
-/// A thread of two parts.
+/// The thread of two parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Thread {
-    /// Which of the two is the screw.
+    /// Which of the two parts is the screw: 0 or 1.
     pub screw: usize,
-    /// A point on the axis, and its direction, of length 1.
+    /// A point on the axis, and the unit direction of the axis.
     pub axis: [DVec3; 2],
-    /// The radius of the hole, and of the crest.
+    /// Radii of the hole and of the crest.
     pub radii: [f64; 2],
-    /// How long both parts are together, along the axis.
+    /// Length of the range along the axis that both parts share.
     pub length: f64,
-    /// How far the crest climbs in a turn; negative if it is left-handed. `None` if no helix is seen.
+    /// Rise of the crest in a turn, negative for a left-handed thread; `None` if no helix is detected.
     pub pitch: Option<f64>,
 }
 
 impl Thread {
-    /// The thread of two parts, if they look like one; of several axes one about which there is a helix.
+    /// Detects the thread of two parts; `None` if they do not form one. Of several axes, prefers one with a
+    /// helix, then the one with the largest ratio of hole and crest.
     pub fn of(parts: [&Solid; 2]) -> Option<Self> {
-        let mut all: Vec<Self> = rounds(parts).filter_map(|round| round.thread(parts)).collect();
-        // About any other axis the hole is narrower and the crest wider.
-        all.sort_by(|a, b| b.tightness().total_cmp(&a.tightness()));
+        let mut all: Vec<Self> =
+            round_contacts(parts).filter_map(|round| round.to_thread(parts)).collect();
+        // About any other axis, the hole is narrower and the crest wider.
+        all.sort_by(|a, b| b.radius_ratio().total_cmp(&a.radius_ratio()));
         all.iter().find(|thread| thread.pitch.is_some()).or(all.first()).copied()
     }
 
-    fn tightness(&self) -> f64 {
+    /// Returns the ratio of hole and crest.
+    fn radius_ratio(&self) -> f64 {
         self.radii[0] / self.radii[1]
     }
 
-    /// Whether the other part is on all sides of the screw, as near as its crest; a wheel that a worm drives is not.
+    /// Checks whether the other part surrounds the screw: within the radius of the crest, it has facets with
+    /// vertices in all four quadrants. This excludes a wheel driven by a worm.
     pub(crate) fn is_surrounded(&self, other: &Solid) -> bool {
         let [point, axis] = self.axis;
-        let flat = flattened(axis);
+        let flat = axial_projection(axis);
         let middle = flat(point);
         let mut sides = [false; 4];
         for t in other.triangles() {
             let corners = t.map(|v| flat(other.vertices()[v as usize]));
-            if distance(middle, corners) <= self.radii[1] {
+            if triangle_distance(middle, corners) <= self.radii[1] {
                 for out in corners.map(|corner| corner - middle) {
                     sides[usize::from(out.x < 0.0) + 2 * usize::from(out.y < 0.0)] = true;
                 }
@@ -82,7 +87,8 @@ impl Thread {
         sides == [true; 4]
     }
 
-    /// The screw with its thread moved inwards; `None` if that is no surface of a solid.
+    /// Returns the screw with its thread moved inward to the hole; `None` if the result is not the surface of
+    /// a solid.
     pub fn core(&self, screw: &Solid) -> Option<Solid> {
         let [point, axis] = self.axis;
         let [hole, crest] = self.radii;
@@ -91,8 +97,8 @@ impl Thread {
             let foot = point + axis * along;
             let out = *p - foot;
             let r = out.length();
-            if r > hole * (1.0 - SHORT) && r <= crest * (1.0 + OVER) {
-                foot + out * (hole * (1.0 - SHORT) / r)
+            if r > hole * (1.0 - CORE_MARGIN) && r <= crest * (1.0 + CREST_MARGIN) {
+                foot + out * (hole * (1.0 - CORE_MARGIN) / r)
             } else {
                 *p
             }
@@ -103,51 +109,60 @@ impl Thread {
     }
 }
 
-/// One part around another, all along their common length.
+/// One part around another one, over their common length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Round {
-    /// Which of the two is within the other.
+    /// Which of the two parts is the inner one: 0 or 1.
     inner: usize,
+    /// A point on the axis, and the unit direction of the axis.
     axis: [DVec3; 2],
-    /// The hole's facets, its vertices, and the vertices of what is in it.
+    /// Least radius of the outer part's facets, least radius of its vertices, and largest radius of the inner
+    /// part's vertices.
     radii: [f64; 3],
+    /// Length of the range along the axis that both parts share.
     length: f64,
 }
 
 impl Round {
-    /// One part around another one that overlaps it by less than a thread would; of several axes the one with the longest
-    /// contact.
+    /// Detects one part around another one with an overlap smaller than that of a thread; `None` if there is
+    /// none. Of several axes, returns the one with the longest contact relative to the radius.
     pub fn of(parts: [&Solid; 2]) -> Option<Self> {
-        let all = rounds(parts).filter(|round| round.radii[2] < LEAST * round.radii[0]);
+        let all =
+            round_contacts(parts).filter(|round| round.radii[2] < MIN_CREST_RATIO * round.radii[0]);
         all.max_by(|a, b| (a.length / a.radii[0]).total_cmp(&(b.length / b.radii[0])))
     }
 
-    /// The radius of what is within.
+    /// Returns the radius of the inner part.
     pub const fn radius(&self) -> f64 {
         self.radii[2]
     }
 
-    /// By how much vertices of the inner part lie farther out than those of the outer one.
+    /// Returns how far vertices of the inner part are outside those of the outer part.
     pub fn interference(&self) -> f64 {
         self.radii[2] - self.radii[1]
     }
 
-    /// About one direction, through the middle of what is within, if the one part lies around the other there and overlaps it.
-    fn about(parts: [&Solid; 2], inner: usize, axis: DVec3) -> Option<Self> {
+    /// Measures one part around another about an axis direction through the middle of the inner part; `None`
+    /// if the outer part does not surround the inner one there, or does not overlap it.
+    fn about_direction(parts: [&Solid; 2], inner: usize, axis: DVec3) -> Option<Self> {
         let own = parts[inner];
-        let [low, high] = common(own, parts[1 - inner], axis)?;
-        let seen = seen(own, axis, [low, high]);
-        let few = seen.iter().copied().reduce(DVec2::min)?;
-        let most = seen.into_iter().reduce(DVec2::max)?;
-        Self::around(parts, inner, [axis * low + inverse(axis, (few + most) * 0.5), axis])
+        let [low, high] = common_range(own, parts[1 - inner], axis)?;
+        let projections = axial_projections(own, axis, [low, high]);
+        let few = projections.iter().copied().reduce(DVec2::min)?;
+        let most = projections.into_iter().reduce(DVec2::max)?;
+        Self::about_axis(
+            parts,
+            inner,
+            [axis * low + lateral_vector(axis, (few + most) * 0.5), axis],
+        )
     }
 
-    /// The same about an axis through a point.
-    fn around(parts: [&Solid; 2], inner: usize, [point, axis]: [DVec3; 2]) -> Option<Self> {
+    /// Measures one part around another about a given axis; `None` as in [`Self::about_direction`].
+    fn about_axis(parts: [&Solid; 2], inner: usize, [point, axis]: [DVec3; 2]) -> Option<Self> {
         let (own, other) = (parts[inner], parts[1 - inner]);
-        let [low, high] = common(own, other, axis)?;
-        let flat = flattened(axis);
-        let (middle, seen) = (flat(point), seen(own, axis, [low, high]));
+        let [low, high] = common_range(own, other, axis)?;
+        let flat = axial_projection(axis);
+        let (middle, projections) = (flat(point), axial_projections(own, axis, [low, high]));
         let height = |p: DVec3| p.dot(axis);
         let meets = |corners: [DVec3; 3]| {
             let z = corners.map(height);
@@ -158,89 +173,98 @@ impl Round {
             let all = solid.triangles().iter().map(corners);
             all.filter(|corners| meets(*corners)).collect::<Vec<[DVec3; 3]>>()
         };
-        let near = facets(other).into_iter().map(|corners| distance(middle, corners.map(flat)));
+        let near =
+            facets(other).into_iter().map(|corners| triangle_distance(middle, corners.map(flat)));
         let hole = near.fold(f64::INFINITY, f64::min);
         let width = |p: &DVec2| p.distance(middle);
-        let crest = seen.iter().map(width).filter(|r| *r <= WIDEST * hole).fold(0.0, f64::max);
-        // Of what is around it the side faces the axis.
+        let crest = projections
+            .iter()
+            .map(width)
+            .filter(|r| *r <= MAX_CREST_RATIO * hole)
+            .fold(0.0, f64::max);
+        // The inner part's facets must face away from the axis.
         let outwards = facets(own).into_iter().map(|[a, b, c]| {
             let (normal, out) = ((b - a).cross(c - a), flat((a + b + c) / 3.0) - middle);
-            let near = out.length() <= WIDEST * hole;
+            let near = out.length() <= MAX_CREST_RATIO * hole;
             if near { flat(normal).dot(out.normalize_or_zero()) } else { 0.0 }
         });
         let outwards = outwards.sum::<f64>() > 0.0;
-        let rim = other.vertices().iter().map(|p| flat(*p).distance(middle));
-        let rim = rim.filter(|r| *r >= hole * (1.0 - SHORT)).fold(f64::INFINITY, f64::min);
+        let inner_rim = other.vertices().iter().map(|p| flat(*p).distance(middle));
+        let inner_rim =
+            inner_rim.filter(|r| *r >= hole * (1.0 - CORE_MARGIN)).fold(f64::INFINITY, f64::min);
         (hole > 0.0 && crest > hole && outwards).then_some(Self {
             inner,
             axis: [point, axis],
-            radii: [hole, rim, crest],
-            length: (high - low) / (1.0 - 2.0 * ENDS),
+            radii: [hole, inner_rim, crest],
+            length: (high - low) / (1.0 - 2.0 * END_SHARE),
         })
     }
 
-    /// The axis through the middles of both halves of what is within.
-    fn straightened(&self, parts: [&Solid; 2]) -> Option<DVec3> {
+    /// Returns a direction of the axis through the middles of both halves of the inner part; `None` if a half
+    /// has no vertices.
+    fn refined_direction(&self, parts: [&Solid; 2]) -> Option<DVec3> {
         let (own, mut axis) = (parts[self.inner], self.axis[1]);
         for _ in 0..4 {
-            let [low, high] = common(own, parts[1 - self.inner], axis)?;
-            let (flat, half) = (flattened(axis), low.midpoint(high));
+            let [low, high] = common_range(own, parts[1 - self.inner], axis)?;
+            let (flat, half) = (axial_projection(axis), low.midpoint(high));
             let middle = flat(self.axis[0]);
             let center = |from: f64, to: f64| {
                 let seen = own.vertices().iter().filter(|p| (from..to).contains(&p.dot(axis)));
                 let near = seen.map(|p| flat(*p));
-                let near: Vec<DVec2> =
-                    near.filter(|p| p.distance(middle) <= WIDEST * self.radii[2]).collect();
+                let near: Vec<DVec2> = near
+                    .filter(|p| p.distance(middle) <= MAX_CREST_RATIO * self.radii[2])
+                    .collect();
                 let few = near.iter().copied().reduce(DVec2::min)?;
                 Some((few + near.into_iter().reduce(DVec2::max)?) * 0.5)
             };
             let shift = center(half, high)? - center(low, half)?;
-            axis = (axis + inverse(axis, shift) / (high - half)).normalize();
+            axis = (axis + lateral_vector(axis, shift) / (high - half)).normalize();
         }
         Some(axis)
     }
 
-    /// The thread, if the crest is wide enough for one.
-    fn thread(self, parts: [&Solid; 2]) -> Option<Thread> {
+    /// Returns the thread; `None` if the crest is too narrow or has too few vertices.
+    fn to_thread(self, parts: [&Solid; 2]) -> Option<Thread> {
         let Self { inner: screw, axis: [point, axis], radii: [hole, _, crest], length } = self;
-        let (own, flat) = (parts[screw], flattened(axis));
-        let [low, high] = common(own, parts[1 - screw], axis)?;
+        let (own, flat) = (parts[screw], axial_projection(axis));
+        let [low, high] = common_range(own, parts[1 - screw], axis)?;
         let middle = flat(point);
         let radius = |p: DVec3| flat(p).distance(middle);
         let top = crest - 0.1 * (crest - hole);
         let is_top = |p: DVec3| {
             let z = p.dot(axis);
-            z > low && z < high && radius(p) >= top && radius(p) <= WIDEST * hole
+            z > low && z < high && radius(p) >= top && radius(p) <= MAX_CREST_RATIO * hole
         };
         let count = own.vertices().iter().filter(|p| is_top(**p)).count();
-        if crest < LEAST * hole || count < FEWEST {
+        if crest < MIN_CREST_RATIO * hole || count < MIN_CREST_VERTICES {
             return None;
         }
-        let about = About { axis, middle, range: [low, high] };
-        let outer = crest * (1.0 + OVER);
+        let about = AxisFrame { axis, middle, range: [low, high] };
+        let outer = crest * (1.0 + CREST_MARGIN);
         let pitch = helix::pitch(own, &about, [hole, outer]);
         let known = Thread { screw, axis: [point, axis], radii: [hole, crest], length, pitch };
         let better = pitch.and_then(|pitch| {
-            let [point, axis] = helix::straightened(own, &about, pitch, outer);
-            let round = Self::around(parts, screw, [point, axis])?;
+            let [point, axis] = helix::refined_axis(own, &about, pitch, outer);
+            let round = Self::about_axis(parts, screw, [point, axis])?;
             let [hole, _, crest] = round.radii;
-            let about = About {
+            let about = AxisFrame {
                 axis,
-                middle: flattened(axis)(point),
-                range: common(own, parts[1 - screw], axis)?,
+                middle: axial_projection(axis)(point),
+                range: common_range(own, parts[1 - screw], axis)?,
             };
-            let pitch = Some(helix::pitch(own, &about, [hole, crest * (1.0 + OVER)])?);
+            let pitch = Some(helix::pitch(own, &about, [hole, crest * (1.0 + CREST_MARGIN)])?);
             let (axis, length) = (round.axis, round.length);
             Some(Thread { screw, axis, radii: [hole, crest], length, pitch })
         });
-        // Nor is an axis better about which the hole is narrower, or the crest wider.
-        let better = better.filter(|better| better.tightness() > known.tightness());
+        // An axis with a narrower hole or a wider crest is not better.
+        let better = better.filter(|better| better.radius_ratio() > known.radius_ratio());
         Some(better.unwrap_or(known))
     }
 }
 
-/// About all axes of two parts, either within the other.
-fn rounds(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
+/// Iterates over the contacts of one part around the other, for all axes of cylinders and all principal axes
+/// of both parts.
+fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
     let found = parts.into_iter().flat_map(|part| {
         let cylinders = cylinders::axes(part).into_iter().map(|(_, axis)| axis);
         cylinders.chain(inertia::axes(part)).collect::<Vec<_>>()
@@ -252,65 +276,69 @@ fn rounds(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
         }
     }
     axes.into_iter().flat_map(move |axis| {
-        let of = |inner| {
-            let about = Round::about(parts, inner, axis);
-            // Principal axes of what is threaded are a little off.
-            let better = about.as_ref().and_then(|round| round.straightened(parts));
-            about.into_iter().chain(better.and_then(|axis| Round::about(parts, inner, axis)))
+        let contacts = |inner| {
+            let about = Round::about_direction(parts, inner, axis);
+            // The principal axes of a threaded part differ slightly from the axis of the thread.
+            let better = about.as_ref().and_then(|round| round.refined_direction(parts));
+            about
+                .into_iter()
+                .chain(better.and_then(|axis| Round::about_direction(parts, inner, axis)))
         };
-        of(0).chain(of(1)).collect::<Vec<_>>()
+        contacts(0).chain(contacts(1)).collect::<Vec<_>>()
     })
 }
 
-/// Whether a solid looks the same however it is turned about an axis through a point, to its facets: not by more than a
-/// share of its radius.
+/// Checks whether a solid is rotationally symmetric about an axis, apart from its facets: in each row, the
+/// outer radius varies by at most `share` of the solid's radius.
 pub(crate) fn is_round(solid: &Solid, [point, axis]: [DVec3; 2], share: f64) -> bool {
-    let Some([low, high]) = common(solid, solid, axis) else { return false };
-    let flat = flattened(axis);
+    let Some([low, high]) = common_range(solid, solid, axis) else { return false };
+    let flat = axial_projection(axis);
     let middle = flat(point);
     let far = solid.vertices().iter().map(|p| flat(*p).distance(middle)).fold(0.0, f64::max);
-    let about = About { axis, middle, range: [low, high] };
+    let about = AxisFrame { axis, middle, range: [low, high] };
     let rows = about.envelope(solid, far, ROUND_ROWS, f64::max);
     rows.iter().all(|row| {
-        let seen = || row.iter().flatten();
+        let radii = || row.iter().flatten();
         let [few, most] =
-            seen().fold([f64::INFINITY, 0.0_f64], |[few, most], r| [few.min(*r), most.max(*r)]);
-        seen().count() == 0 || seen().count() == row.len() && most - few <= share * far
+            radii().fold([f64::INFINITY, 0.0_f64], |[few, most], r| [few.min(*r), most.max(*r)]);
+        radii().count() == 0 || radii().count() == row.len() && most - few <= share * far
     })
 }
 
-/// The vertices of a solid in a range along an axis, as seen along it; of a cylinder, which has vertices at its ends only, all.
-fn seen(solid: &Solid, axis: DVec3, [low, high]: [f64; 2]) -> Vec<DVec2> {
-    let flat = flattened(axis);
+/// Returns the vertices of a solid in a range along an axis, projected along it. Returns all vertices if none
+/// are in the range, for example for a cylinder with vertices at its ends only.
+fn axial_projections(solid: &Solid, axis: DVec3, [low, high]: [f64; 2]) -> Vec<DVec2> {
+    let flat = axial_projection(axis);
     let within = |p: &DVec3| p.dot(axis) > low && p.dot(axis) < high;
-    let seen = |p: &DVec3| flat(*p);
-    let all: Vec<DVec2> = solid.vertices().iter().filter(|p| within(p)).map(seen).collect();
-    if all.is_empty() { solid.vertices().iter().map(seen).collect() } else { all }
+    let project = |p: &DVec3| flat(*p);
+    let all: Vec<DVec2> = solid.vertices().iter().filter(|p| within(p)).map(project).collect();
+    if all.is_empty() { solid.vertices().iter().map(project).collect() } else { all }
 }
 
-/// Where along an axis both parts are, but for its ends.
-fn common(own: &Solid, other: &Solid, axis: DVec3) -> Option<[f64; 2]> {
+/// Returns the range along an axis that both parts share, without its ends; `None` if there is no common
+/// range.
+fn common_range(own: &Solid, other: &Solid, axis: DVec3) -> Option<[f64; 2]> {
     let along = |solid: &Solid| span(solid.vertices().iter().map(|p| p.dot(axis)));
     let ([a, b], [c, d]) = (along(own), along(other));
     let (low, high) = (a.max(c), b.min(d));
-    let end = ENDS * (high - low);
+    let end = END_SHARE * (high - low);
     (high > low).then_some([low + end, high - end])
 }
 
-/// A point as seen along an axis.
-fn flattened(axis: DVec3) -> impl Fn(DVec3) -> DVec2 + Copy {
+/// Returns the projection along an axis.
+fn axial_projection(axis: DVec3) -> impl Fn(DVec3) -> DVec2 + Copy {
     let (u, v) = axis.any_orthonormal_pair();
     move |p: DVec3| DVec2::new(p.dot(u), p.dot(v))
 }
 
-/// The point across the axis that is seen there.
-fn inverse(axis: DVec3, seen: DVec2) -> DVec3 {
+/// Returns the vector perpendicular to the axis that has this projection.
+fn lateral_vector(axis: DVec3, seen: DVec2) -> DVec3 {
     let (u, v) = axis.any_orthonormal_pair();
     u * seen.x + v * seen.y
 }
 
-/// How near a triangle in the plane comes to a point; 0 if the point is in it.
-fn distance(point: DVec2, corners: [DVec2; 3]) -> f64 {
+/// Returns the distance of a point from a triangle in the plane; 0 inside the triangle.
+fn triangle_distance(point: DVec2, corners: [DVec2; 3]) -> f64 {
     let mut least = f64::INFINITY;
     let mut sides = [0.0; 3];
     for k in 0..3 {
@@ -336,13 +364,13 @@ mod tests {
         Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap()
     }
 
-    /// A triangle of a wave, from 0 to 1 and back.
+    /// Returns a triangle wave from 0 to 1 and back.
     fn wave(phase: f64) -> f64 {
         1.0 - (2.0 * phase - 1.0).abs()
     }
 
     #[test]
-    fn screws_and_nuts_have_axis_pitch_and_hand_and_a_core_in_the_hole() {
+    fn thread_of_screw_and_nut_has_axis_pitch_hand_and_core() {
         for pitch in [1.0, -1.25] {
             let screw = helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 6);
             let nut = helical(Some(9.0), |phase| 5.1 + 0.6 * wave(phase), pitch, 3);
@@ -351,7 +379,7 @@ mod tests {
                 assert_eq!(thread.screw, k);
                 assert!(thread.axis[1].cross(DVec3::Z).length() < 2e-3, "{thread:?}");
                 let found = thread.pitch.unwrap();
-                // The hand is that seen from either end.
+                // The hand does not depend on the end from which a thread is viewed.
                 assert!((found - pitch).abs() < 0.03, "{found}");
                 assert!((thread.radii[0] - 5.1).abs() < 0.06 && thread.radii[1] < 5.62);
                 let core = thread.core(&screw).unwrap();
@@ -364,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn what_climbs_more_than_it_goes_around_is_no_thread() {
+    fn helix_steeper_than_45_degrees_has_no_pitch() {
         let around = std::f64::consts::TAU * 5.6;
         for (pitch, found) in [(0.5 * around, true), (1.5 * around, false)] {
             let screw = helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 2);
@@ -374,7 +402,7 @@ mod tests {
     }
 
     #[test]
-    fn pins_and_boxes_are_no_threads() {
+    fn pins_in_rings_are_not_threads() {
         let pin = helical(None, |_| 5.0, 1.0, 3);
         let ring = helical(Some(9.0), |_| 4.95, 1.0, 2);
         assert!(Thread::of([&pin, &ring]).is_none(), "a press fit");

@@ -1,6 +1,6 @@
-//! Units of length: their names in files, and how many metres they are.
+//! Units of length: their names in files and their lengths in metres.
 
-/// A unit, the name that is written first, and how many metres it is.
+/// Units: accepted names, the preferred one first, and the length in metres.
 const UNITS: [(&[&str], f64); 6] = [
     (&["m", "meter", "metre"], 1.0),
     (&["mm", "millimeter", "millimetre"], 1e-3),
@@ -10,12 +10,12 @@ const UNITS: [(&[&str], f64); 6] = [
     (&["micron", "um"], 1e-6),
 ];
 
-/// Returns how many metres a unit is; `None` if its name is not known.
+/// Returns the length of a unit in metres; `None` if the name is unknown.
 pub fn metres(name: &str) -> Option<f64> {
     UNITS.iter().find(|(names, _)| names.contains(&name)).map(|(_, metres)| *metres)
 }
 
-/// Returns the name of a unit of so many metres, if it has one.
+/// Returns the preferred name of the unit of this length; `None` if no listed unit has it.
 pub fn name(metres: f64) -> Option<&'static str> {
     let same = |(_, of): &&(&[&'static str], f64)| (of / metres - 1.0).abs() < 1e-9;
     UNITS.iter().find(same).map(|(names, _)| names[0])

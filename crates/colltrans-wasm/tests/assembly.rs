@@ -129,7 +129,7 @@ fn what_cannot_be_answered_is_said() {
     };
     refused(json!({ "do": "along", "direction": [0, 0, 0] }), "direction");
     refused(json!({ "do": "map", "group": [99] }), "99");
-    refused(json!({ "do": "fit", "tolerance": -1 }), "not a length");
+    refused(json!({ "do": "fit", "tolerance": -1 }), "invalid tolerance");
 }
 
 /// The same with parts of a GLB file, which has a unit.

@@ -1,4 +1,4 @@
-//! Two parts of which one turns: what is asked of [`MotionCast`].
+//! Queries about two parts of which one moves along a screw, by [`MotionCast`].
 
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 use colltrans::solid::{SolidCast, SolidOptions, StartOverlap};
@@ -9,46 +9,51 @@ use super::Bodies;
 use crate::roles::Tolerated;
 use crate::threads::Thread;
 
-/// Shares of a motion at which bodies are looked at once more.
-const PLACES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
+/// Shares of a motion at which overlap is tested again, independently of the motion cast.
+const RECHECKED_SHARES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
 
-/// What is said of a part that turns against another one.
+/// Outcome of the motion of a part along a screw, and then along a direction, against a fixed part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Turned {
-    /// They never meet, neither on the motion nor when the part goes on from its end; so many pairs of parts of them were
-    /// looked at.
+    /// The parts never meet, neither on the motion nor along the direction from its end. Holds the number of
+    /// node pairs that the search visited.
     Free(u64),
-    /// They do not meet before this share of the motion; 1 if they meet when the part goes on from its end.
+    /// The parts do not meet before this share of the motion; 1 if they meet along the direction after its
+    /// end.
     Blocked(f64),
-    /// They overlap where the motion begins, with the least tolerance with which they would not, if there is one.
+    /// The parts overlap at the start of the motion. Holds the least tolerance that removes the overlap, if
+    /// any.
     Overlapping(Option<f64>),
 }
 
 impl Bodies<'_> {
-    /// The thread of two parts of which that is said.
+    /// Returns the thread of two parts whose screw is tested as its core.
     pub(crate) fn thread(&self, pair: [usize; 2]) -> Option<Thread> {
         self.own_fit(pair).and_then(|own| own.thread)
     }
 
-    /// Where the screw of such a thread sits best.
+    /// Returns the best position of the screw in its hole; `None` if the thread has no helix or no profile.
     pub(crate) fn seat(&self, pair: [usize; 2], thread: &Thread) -> Option<crate::threads::Seat> {
         let [a, b] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
         thread.seat([a, b].map(|part| self.assembly().parts()[part].solid()))
     }
 
-    /// One part on a motion, and then on along `d`, against another one that stays, both as they were given and shrunk by
-    /// half of a tolerance; or without one, as they are asked of each other.
+    /// Moves the first part along a motion, and then along `d`, against the second one. With a tolerance both
+    /// parts are the given ones, shrunk by half of it; without one they are the bodies of this pair.
+    ///
+    /// # Errors
+    /// The motion, the direction or the tolerance is out of range.
     pub(crate) fn turned(
         &self,
         pair: [usize; 2],
         (motion, d): (&Motion, DVec3),
         tolerance: Option<f64>,
     ) -> Result<Turned, QueryError> {
-        let [moving, fixed] = self.asked(pair, tolerance);
+        let [moving, fixed] = self.queried_solids(pair, tolerance);
         let cast = MotionCast::new(moving.along(motion), fixed.at(Pose::IDENTITY))?;
         let cast = match tolerance {
             Some(tolerance) => cast.tolerating(tolerance)?,
-            None => cast.keeping(self.fit_of(pair).keep())?,
+            None => cast.keeping(self.pair_fit(pair).min_gap())?,
         };
         let pairs = match cast.first_contact()? {
             MotionOutcome::Overlapping(_) => {
@@ -63,21 +68,22 @@ impl Bodies<'_> {
             MotionOutcome::Free(free) => free.steps.nodes,
             _ => return Ok(Turned::Blocked(0.0)),
         };
-        // Looked at once more, in a few places.
-        for share in PLACES {
-            if self.turned_cast(pair, (motion, d), tolerance, share)?.overlaps() {
+        // Overlap is tested again at a few places.
+        for share in RECHECKED_SHARES {
+            if self.cast_after_turning(pair, (motion, d), tolerance, share)?.overlaps() {
                 return Ok(Turned::Blocked(share));
             }
         }
-        let beyond = self.turned_cast(pair, (motion, d), tolerance, 1.0)?;
+        let beyond = self.cast_after_turning(pair, (motion, d), tolerance, 1.0)?;
         let goes_on = matches!(beyond.clearance()?, Clearance::Free(_));
         Ok(if goes_on { Turned::Free(pairs) } else { Turned::Blocked(1.0) })
     }
 
-    /// Up to which share of a motion the first part does not meet the second one, and how many pairs of parts of them were
-    /// looked at; `None` if they overlap where it begins.
+    /// Returns the share of a motion up to which the first part does not meet the second one, and the number
+    /// of node pairs that the search visited. Returns `None` if the parts overlap at the start or the motion
+    /// cannot be evaluated.
     pub(crate) fn stopped(&self, pair: [usize; 2], motion: &Motion) -> Option<(f64, u64)> {
-        let [moving, fixed] = self.asked(pair, None);
+        let [moving, fixed] = self.queried_solids(pair, None);
         let cast = MotionCast::new(moving.along(motion), fixed.at(Pose::IDENTITY)).ok()?;
         match cast.first_contact().ok()? {
             MotionOutcome::Free(free) => Some((1.0, free.steps.nodes)),
@@ -88,48 +94,54 @@ impl Bodies<'_> {
         }
     }
 
-    /// Whether the first part is free of the second one along `d` from the end of a motion, as they are asked of each other.
+    /// Checks whether the first part is free of the second one along `d` from the end of a motion. The parts
+    /// are the bodies of this pair.
+    ///
+    /// # Errors
+    /// The motion or the direction is out of range.
     pub(crate) fn goes_on(
         &self,
         pair: [usize; 2],
         along: (&Motion, DVec3),
     ) -> Result<bool, QueryError> {
-        let beyond = self.turned_cast(pair, along, None, 1.0)?;
+        let beyond = self.cast_after_turning(pair, along, None, 1.0)?;
         Ok(matches!(beyond.clearance()?, Clearance::Free(_)))
     }
 
-    /// Two parts as they were given, or without a tolerance as they are asked of each other.
-    fn asked(&self, pair: [usize; 2], tolerance: Option<f64>) -> [&Solid; 2] {
+    /// Returns the given solids of two parts with a tolerance, and the bodies of this pair without one.
+    fn queried_solids(&self, pair: [usize; 2], tolerance: Option<f64>) -> [&Solid; 2] {
         match tolerance {
             Some(_) => pair.map(|part| self.assembly().parts()[part].solid()),
-            None => self.solids(pair),
+            None => self.pair_solids(pair),
         }
     }
 
-    /// The same bodies after a share of the motion, and on along `d` from there.
-    fn turned_cast(
+    /// Builds the cast along `d` of the first part after a share of the motion.
+    fn cast_after_turning(
         &self,
         pair: [usize; 2],
         (motion, d): (&Motion, DVec3),
         tolerance: Option<f64>,
         share: f64,
     ) -> Result<Cast<'_, Solid>, QueryError> {
-        let [moving, fixed] = self.asked(pair, tolerance);
-        let there = motion.at(share).map_err(|_| QueryError::Direction { direction: d })?;
+        let [moving, fixed] = self.queried_solids(pair, tolerance);
+        let pose = motion.at(share).map_err(|_| QueryError::Direction { direction: d })?;
         let options = SolidOptions::default()
             .with_tolerance(tolerance.unwrap_or(0.0))
-            .with_keep(self.fit_of(pair).keep());
-        Cast::new(moving.at(there), fixed.at(Pose::IDENTITY), d)?.with_options(options)
+            .with_keep(self.pair_fit(pair).min_gap());
+        Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), d)?.with_options(options)
     }
 
-    /// Whether a part may come near another one while it turns about an axis and goes along it, as far as parts are.
+    /// Checks whether a part may meet another one while it turns about an axis and moves along it by up to
+    /// twice the diagonal of the assembly. Compares the box of the swept cylinder with the box of the other
+    /// part.
     pub(crate) fn may_meet_turning(
         &self,
         [part, other]: [usize; 2],
         [point, axis]: [DVec3; 2],
     ) -> bool {
         let all = self.assembly().bounds();
-        let way = 2.0 * (all.high - all.low).length();
+        let travel = 2.0 * (all.high - all.low).length();
         let Aabb { low, high } = self.bounds(part);
         let corners = (0..8).map(|k| {
             let of = |i: usize| if k >> i & 1 == 0 { low[i] } else { high[i] };
@@ -141,12 +153,12 @@ impl Bodies<'_> {
             radius = radius.max((corner - axis * along).length());
             z = [z[0].min(along), z[1].max(along)];
         }
-        let ends = [z[0], z[1] + way].map(|z| point + axis * z);
+        let ends = [z[0], z[1] + travel].map(|z| point + axis * z);
         let swept = Aabb::of_points(ends).grown(radius * (1.0 + 1e-9));
         swept.meets(&self.bounds(other))
     }
 
-    /// Whether a plan passes over what two parts do, by request, but for their thread.
+    /// Checks whether a plan disregards contacts of two parts for a reason other than their thread.
     pub(crate) fn is_let_pass(&self, [a, b]: [usize; 2], start: StartOverlap) -> bool {
         !matches!(self.tolerated([a, b]), Some(Tolerated::Core(_))) && self.lets_pass(a, b, start)
     }

@@ -1,37 +1,38 @@
-//! What follows the steps: their order, the way back, what stays together, what overlaps, and maps.
+//! Sections after the steps: order, assembly, interlocked groups, overlaps and maps.
 
 use std::ops::Range;
 
 use maud::{Markup, html};
 
-use super::sheet::{self, far, step_words, takes, ways};
-use super::words::{numbers, time};
-use super::{Report, arrow, picture, short};
+use super::sheet::{self, direction_text, step_list, taken_parts_text, travel_text};
+use super::words::{number_runs, time_text};
+use super::{Report, arrow, picture_markup, short};
 use crate::Fit;
 use crate::map;
 use crate::plan::Passed;
 use crate::roles::{PairFit, Role};
 use crate::suggest::Suggestion;
 
-/// What was asked is listed up to so many.
-const MOST_SAID: usize = 20;
+/// Maximum number of items in a list of constraints or suggestions.
+const MAX_ITEMS: usize = 20;
 
-pub(super) fn section(r: &Report) -> Markup {
+/// Returns the sections after the steps.
+pub(super) fn after_section(r: &Report) -> Markup {
     let f = r.f;
     html! {
         section.sheet id="after" {
-            (order(r))
-            (backwards(r))
-            (stuck(r))
-            (asked(r))
-            (overlaps(r))
+            (order_section(r))
+            (assembly_section(r))
+            (interlocked_section(r))
+            (constraints_section(r))
+            (overlaps_section(r))
             @for (name, map) in &f.maps { (map_section(map, name)) }
         }
     }
 }
 
-/// Which steps wait for which, and how long they take.
-fn order(r: &Report) -> Markup {
+/// Returns the table of steps with the steps that each needs, its round and its time.
+fn order_section(r: &Report) -> Markup {
     let steps = &r.f.plan.steps;
     let rounds = r.rounds.iter().max().map_or(0, |k| k + 1);
     html! {
@@ -41,11 +42,11 @@ fn order(r: &Report) -> Markup {
         } @else {
             p {
                 @if steps.len() > 1 {
-                    "A step may be done as soon as those that it needs are done; steps of one round may be done at the \
+                    "A step can be done once the steps that it needs are done. Steps of the same round can be done at the \
                      same time. "
                     @if rounds > 1 { "There are " (rounds) " rounds. " }
                 }
-                "By the table of handling times it takes about " (time(r.seconds.iter().sum()))
+                "By the table of handling times it takes about " (time_text(r.seconds.iter().sum()))
                 @if steps.len() > 1 { ", one step after another" }
                 "."
             }
@@ -58,12 +59,12 @@ fn order(r: &Report) -> Markup {
                             @let after: Vec<usize> = steps[stage.clone()].iter().flat_map(|s| s.after.iter().copied()).collect();
                             @let rounds: Vec<usize> = all.iter().map(|&k| r.rounds[k]).collect();
                             tr {
-                                td { (numbers(&all)) }
-                                td { (takes(r, &stage)) }
-                                td { (way(r, &stage)) }
-                                td { @if !after.is_empty() { (numbers(&after)) } }
-                                td { (numbers(&rounds)) }
-                                td.n { (time(r.seconds[stage.clone()].iter().sum())) }
+                                td { (number_runs(&all)) }
+                                td { (taken_parts_text(r, &stage)) }
+                                td { (move_text(r, &stage)) }
+                                td { @if !after.is_empty() { (number_runs(&after)) } }
+                                td { (number_runs(&rounds)) }
+                                td.n { (time_text(r.seconds[stage.clone()].iter().sum())) }
                             }
                         }
                     }
@@ -73,37 +74,38 @@ fn order(r: &Report) -> Markup {
     }
 }
 
-fn way(r: &Report, stage: &Range<usize>) -> String {
+/// Describes the move of a stage, or the number of its moves.
+fn move_text(r: &Report, stage: &Range<usize>) -> String {
     let steps = &r.f.plan.steps[stage.clone()];
-    let way = ways(r, stage, 1.0);
-    match (steps[0].path.len(), far(r, steps)) {
-        (1, None) => way,
-        (1, Some(far)) => format!("{way}, {far}"),
+    let direction = direction_text(r, stage, 1.0);
+    match (steps[0].path.len(), travel_text(r, steps)) {
+        (1, None) => direction,
+        (1, Some(far)) => format!("{direction}, {far}"),
         (moves, _) => format!("{moves} moves"),
     }
 }
 
-/// How it is put together.
-fn backwards(r: &Report) -> Markup {
+/// Returns the steps in reverse order, as instructions for assembly.
+fn assembly_section(r: &Report) -> Markup {
     let plan = &r.f.plan;
     let stages = plan.stages();
     html! {
         @if plan.steps.len() > 1 {
             h3 { "Putting it together" }
             p {
-                "The steps backwards, each move the other way, which the same proofs allow"
-                @if !plan.last.is_empty() { "; it begins with " (r.words.names(&plan.last)) }
+                "The steps in reverse order, with each move reversed; the same proofs apply"
+                @if !plan.last.is_empty() { ". It begins with " (r.words.name_list(&plan.last)) }
                 "."
             }
             ol {
                 @for stage in stages.iter().rev() {
                     @let step = &plan.steps[stage.start];
                     li {
-                        (takes(r, stage)) ": "
+                        (taken_parts_text(r, stage)) ": "
                         @if step.path.len() > 1 {
-                            (step_words(&stage.clone().collect::<Vec<_>>())) " backwards"
+                            (step_list(&stage.clone().collect::<Vec<_>>())) " in reverse"
                         } @else {
-                            (ways(r, stage, -1.0))
+                            (direction_text(r, stage, -1.0))
                         }
                         @if step.within.is_some() { ", before its group is put in" }
                     }
@@ -113,55 +115,56 @@ fn backwards(r: &Report) -> Markup {
     }
 }
 
-fn stuck(r: &Report) -> Markup {
+/// Returns the list of interlocked groups with the reasons.
+fn interlocked_section(r: &Report) -> Markup {
     html! {
         @if !r.f.plan.stuck.is_empty() {
             h3 { "What stays together, and why" }
             ul {
                 @for s in &r.f.plan.stuck {
                     @let (reason, details) = (s.reason(r.f.bodies), s.details(r.f.bodies));
-                    li { b { (r.words.names(&s.parts)) ": " (reason) } " " (details) }
+                    li { b { (r.words.name_list(&s.parts)) ": " (reason) } " " (details) }
                 }
             }
         }
     }
 }
 
-/// What was said of pairs and asked of the order.
-fn asked(r: &Report) -> Markup {
+/// Returns the list of fits of pairs and of constraints on the plan.
+fn constraints_section(r: &Report) -> Markup {
     let (assembly, words) = (r.f.bodies.assembly(), &r.words);
     let constraints = assembly.constraints();
     let name = |part: usize| assembly.parts()[part].name();
-    let mut said: Vec<String> = sheet::told(r, &tolerated(r));
+    let mut items: Vec<String> = sheet::passed_texts(r, &pairs_with_fit(r));
     let before = constraints.before().iter();
-    said.extend(before.map(|&[a, b]| format!("{} leaves before {}", name(a), name(b))));
-    said.extend(constraints.units().iter().map(|unit| {
-        let names = words.names(&unit.parts);
+    items.extend(before.map(|&[a, b]| format!("{} leaves before {}", name(a), name(b))));
+    items.extend(constraints.units().iter().map(|unit| {
+        let names = words.name_list(&unit.parts);
         let apart = if unit.apart { ", and is then taken apart" } else { ", and stays together" };
         match &unit.name {
             Some(known) => format!("{known} ({names}) leaves as one{apart}"),
             None => format!("{names} leave as one"),
         }
     }));
-    said.extend(constraints.never().iter().map(|never| {
+    items.extend(constraints.never().iter().map(|never| {
         let within = short(never.within);
         format!(
             "{} never goes {}, nor within {within}° of that",
             name(never.part),
-            words.way(never.direction)
+            words.direction_text(never.direction)
         )
     }));
     html! {
-        @if !said.is_empty() {
-            h3 { "What was said of parts" }
-            ul { @for text in said.iter().take(MOST_SAID) { li { (text) } } }
-            @if said.len() > MOST_SAID { p { (said.len() - MOST_SAID) " more are in assembly.json." } }
+        @if !items.is_empty() {
+            h3 { "Given fits and constraints" }
+            ul { @for text in items.iter().take(MAX_ITEMS) { li { (text) } } }
+            @if items.len() > MAX_ITEMS { p { (items.len() - MAX_ITEMS) " more are in assembly.json." } }
         }
     }
 }
 
-/// All pairs with a fit of their own.
-fn tolerated(r: &Report) -> Vec<Passed> {
+/// Returns all pairs with a fit of their own.
+fn pairs_with_fit(r: &Report) -> Vec<Passed> {
     let bodies = r.f.bodies;
     let pair = |(parts, fit): ([usize; 2], PairFit)| {
         Some(Passed { parts, role: fit.role, tolerated: bodies.tolerated(parts)? })
@@ -169,8 +172,8 @@ fn tolerated(r: &Report) -> Vec<Passed> {
     bodies.assembly().pairs().filter_map(pair).collect()
 }
 
-/// What runs into each other as it is drawn, and what may help.
-fn overlaps(r: &Report) -> Markup {
+/// Returns the number of overlapping pairs, and suggestions for them.
+fn overlaps_section(r: &Report) -> Markup {
     let f = r.f;
     let remaining = f.start.remaining().count();
     html! {
@@ -190,55 +193,58 @@ fn overlaps(r: &Report) -> Markup {
                 }
             }
         }
-        @let said = suggested(r);
-        @if !said.is_empty() {
+        @let items = suggestion_texts(r);
+        @if !items.is_empty() {
             @if remaining > 0 {
-                p { "They may be on purpose; --auto takes all of these for granted:" }
+                p { "They may be intended; --auto applies all of these suggestions:" }
             } @else {
-                h3 { "What may hold" }
-                p { "With --auto all of these are taken for granted:" }
+                h3 { "Suggestions" }
+                p { "--auto applies all of these suggestions:" }
             }
-            ul { @for text in said.iter().take(MOST_SAID) { li { (text) } } }
-            @if said.len() > MOST_SAID { p { (said.len() - MOST_SAID) " more are in assembly.json." } }
+            ul { @for text in items.iter().take(MAX_ITEMS) { li { (text) } } }
+            @if items.len() > MAX_ITEMS { p { (items.len() - MAX_ITEMS) " more are in assembly.json." } }
         }
     }
 }
 
-/// What pairs may be, the largest overlap of like ones first.
-fn suggested(r: &Report) -> Vec<String> {
+/// Returns the suggestions for pairs as texts, equal pairs together, the largest tolerance first.
+fn suggestion_texts(r: &Report) -> Vec<String> {
     let mut all: Vec<&Suggestion> = r.f.suggestions.iter().collect();
     let tolerance = |s: &Suggestion| s.fit.tolerance.unwrap_or(0.0);
     all.sort_by(|a, b| tolerance(b).total_cmp(&tolerance(a)));
-    let said = |s: &Suggestion| {
+    let text = |s: &Suggestion| {
         let what = match s.fit.role {
             Some(Role::Press) => "perhaps a press fit",
             Some(Role::Thread) => "perhaps a thread",
             Some(Role::Soft) => "perhaps soft",
             Some(Role::Snap) => "perhaps a snap",
             Some(Role::Glued) => "perhaps glued",
-            None => "perhaps no more than rounded shapes",
+            None => "perhaps only rounded shapes",
         };
-        let enough =
-            s.fit.tolerance.map(|t| format!("; a tolerance of {} ends that", r.words.length(t)));
-        format!("{what} ({}){}", s.why, enough.unwrap_or_default())
+        let remedy = s
+            .fit
+            .tolerance
+            .map(|t| format!("; a tolerance of {} removes the overlap", r.words.length_text(t)));
+        format!("{what} ({}){}", s.why, remedy.unwrap_or_default())
     };
-    sheet::alike(r, all.into_iter().map(|s| (s.parts, s.fit.role, said(s))))
+    sheet::pair_texts(r, all.into_iter().map(|s| (s.parts, s.fit.role, text(s))))
 }
 
+/// Returns the map of the free directions of a part.
 fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
-    let title = format!("Room of {name} in all directions");
+    let title = format!("Free travel of {name} in all directions");
     html! {
         h3 { (title) }
-        figure { (picture(map::svg(map, &title))) }
+        figure { (picture_markup(map::svg(map, &title))) }
         @match &map.cover {
             Ok(cover) => {
                 p {
-                    (share(cover.free_share())) " of all directions are free, which is proven; of "
-                    (share(cover.undecided_share())) " nothing is known."
+                    (percentage(cover.free_share())) " of all directions are free, which is proven; of "
+                    (percentage(cover.undecided_share())) " the outcome is unknown."
                 }
             }
             Err(why) => {
-                p { (share(map.free_share())) " of the directions sampled are free: " (why) "." }
+                p { (percentage(map.free_share())) " of the directions sampled are free: " (why) "." }
             }
         }
         @for region in map.regions.iter().take(8) {
@@ -251,7 +257,7 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
     }
 }
 
-/// A share as a percentage.
-fn share(share: f64) -> String {
+/// Formats a share as a percentage.
+fn percentage(share: f64) -> String {
     format!("{} %", short(100.0 * share))
 }

@@ -1,4 +1,4 @@
-//! The first page: what it is, all of it in an exploded view, and a list of its parts.
+//! The first page: a summary, an exploded view, and a list of the parts.
 
 use colltrans::Aabb;
 use glam::{DVec2, DVec3};
@@ -7,113 +7,117 @@ use maud::{Markup, html};
 use super::exploded::Exploded;
 use super::kinds::{Kind, kinds};
 use super::scene::{Look, Scene, Shown};
-use super::sheet::step_words;
-use super::words::{sentence, time};
-use super::{Report, hexadecimal, picture};
+use super::sheet::step_list;
+use super::words::{sentence, time_text};
+use super::{Report, html_colour, picture_markup};
 use crate::Fit;
 use crate::plan::Stuck;
 
-/// The width of the picture in pixels, and bounds of its height.
+/// Width of the picture in pixels.
 const WIDTH: f64 = 860.0;
+/// Minimum and maximum height of the picture in pixels.
 const HEIGHTS: [f64; 2] = [380.0, 900.0];
-/// Notes of the source are listed up to so many.
-const MOST_NOTES: usize = 5;
-/// Longer lists stand in columns.
+/// Maximum number of listed notes of the reader.
+const MAX_NOTES: usize = 5;
+/// Maximum number of items in a list without columns.
 const ONE_COLUMN: usize = 8;
 
-pub(super) fn page(r: &Report, title: &str) -> Markup {
+/// Returns the first page.
+pub(super) fn cover_page(r: &Report, title: &str) -> Markup {
     let kinds = kinds(&r.f.plan, r.f.bodies.len());
     html! {
         section.sheet id="cover" {
             h1 { (title) }
-            p { (summary(r, kinds.len())) }
-            (result(r))
-            (notes(r))
+            p { (summary_text(r, kinds.len())) }
+            (result_section(r))
+            (notes_section(r))
             @if !kinds.is_empty() {
-                (exploded(r, &kinds, title))
-                (list(r, &kinds))
+                (exploded_picture(r, &kinds, title))
+                (part_list(r, &kinds))
             }
         }
     }
 }
 
-/// How many parts of how many shapes, how large it is, with which fit, and how long it takes.
-fn summary(r: &Report, kinds: usize) -> String {
+/// Returns the numbers of parts and shapes, the size, the fit, and the time.
+fn summary_text(r: &Report, kinds: usize) -> String {
     let (assembly, words) = (r.f.bodies.assembly(), &r.words);
     let Aabb { low, high } = assembly.bounds();
     let count = assembly.parts().len();
     let shapes = if kinds < count { format!(" of {kinds} shapes") } else { String::new() };
-    let size = words.extent(high - low);
-    let unit = if assembly.unit().is_none() { " The file names no unit of length." } else { "" };
+    let size = words.extent_text(high - low);
+    let unit = if assembly.unit().is_none() { " The file states no unit of length." } else { "" };
     let fit = match r.f.bodies.fit() {
         Fit::Tolerance(length) if length <= 1.001 * Fit::digits(assembly) => String::new(),
-        Fit::Tolerance(length) => format!(" Tolerance {}.", words.length(length)),
+        Fit::Tolerance(length) => format!(" Tolerance {}.", words.length_text(length)),
         Fit::Chords { largest, .. } => {
             format!(
-                " Tolerances by the chord errors of the parts, {} at most.",
-                words.length(largest)
+                " Tolerances from the chord errors of the parts, at most {}.",
+                words.length_text(largest)
             )
         }
-        Fit::Apart(length) => format!(" To be kept apart by {}.", words.length(length)),
+        Fit::Apart(length) => format!(" Minimum gap {}.", words.length_text(length)),
     };
     let seconds: f64 = r.seconds.iter().sum();
     let work = match r.f.plan.steps.len() {
         0 => String::new(),
-        1 => format!(" 1 step, about {} of handling.", time(seconds)),
-        steps => format!(" {steps} steps, about {} of handling.", time(seconds)),
+        1 => format!(" 1 step, about {} of handling.", time_text(seconds)),
+        steps => format!(" {steps} steps, about {} of handling.", time_text(seconds)),
     };
     format!("{count} parts{shapes}, {size} overall.{unit}{fit}{work}")
 }
 
-/// Why parts stay together, a sentence for each group of them.
-fn reasons(r: &Report) -> String {
+/// Returns the reason of each interlocked group, a sentence for each.
+fn interlocking_reasons(r: &Report) -> String {
     let reason = |stuck: &Stuck| {
-        let parts = r.words.group(&stuck.parts);
+        let parts = r.words.group_text(&stuck.parts);
         format!("{parts}: {}", stuck.reason(r.f.bodies))
     };
     r.f.plan.stuck.iter().map(reason).collect::<Vec<_>>().join(" ")
 }
 
-/// How far the plan comes, in a sentence.
-fn result(r: &Report) -> Markup {
+/// Returns the result of the plan, and the number of overlapping pairs.
+fn result_section(r: &Report) -> Markup {
     let (plan, words) = (&r.f.plan, &r.words);
     let whole = plan.left.is_empty() && plan.stuck.is_empty();
     html! {
         @if let Some(wanted) = &plan.wanted {
-            p.partly { "To take out " (wanted.words(r.f.bodies.assembly())) "." }
+            p.partly { "To remove " (wanted.words(r.f.bodies.assembly())) "." }
         } @else if plan.steps.is_empty() && !plan.left.is_empty() {
-            p.warn { "Nothing can be taken out. " (reasons(r)) }
+            p.warn { "No part can be removed. " (interlocking_reasons(r)) }
         } @else if whole && !plan.last.is_empty() {
-            p.proof { "It comes apart wholly. " (words.names(&plan.last)) " stays where it is, the rest is taken off it." }
+            p.proof { "It can be taken apart completely. " (words.name_list(&plan.last)) " stays in place, all other parts are removed from it." }
         } @else if !whole {
-            p.warn { "Not all comes apart. " (reasons(r)) }
+            p.warn { "It cannot be taken apart completely. " (interlocking_reasons(r)) }
         }
         @let remaining = r.f.start.remaining().count();
         @if remaining > 0 {
             p.warn {
                 @let apart = matches!(r.f.bodies.fit(), Fit::Apart(_));
                 @match (apart, remaining) {
-                    (true, 1) => { "One pair of parts is nearer to each other than what is to be kept" }
-                    (true, pairs) => { (pairs) " pairs of parts are nearer to each other than what is to be kept" }
+                    (true, 1) => { "One pair of parts is nearer to each other than the minimum gap" }
+                    (true, pairs) => { (pairs) " pairs of parts are nearer to each other than the minimum gap" }
                     (false, 1) => { "One pair of parts runs into each other as they are drawn" }
                     (false, pairs) => { (pairs) " pairs of parts run into each other as they are drawn" }
                 }
                 @if remaining == 1 { ", and is" } @else { ", and are" }
-                " moved as one; which, and what may help, is said after the steps."
+                " moved as one. The section after the steps lists them with suggestions."
             }
         }
     }
 }
 
-fn notes(r: &Report) -> Markup {
+/// Returns the notes of the reader.
+fn notes_section(r: &Report) -> Markup {
     let notes = r.f.bodies.assembly().notes();
     html! {
-        @for note in notes.iter().take(MOST_NOTES) { p.warn { (sentence(note)) } }
-        @if notes.len() > MOST_NOTES { p.soft { (notes.len() - MOST_NOTES) " more notes are in assembly.json." } }
+        @for note in notes.iter().take(MAX_NOTES) { p.warn { (sentence(note)) } }
+        @if notes.len() > MAX_NOTES { p.soft { (notes.len() - MAX_NOTES) " more notes are in assembly.json." } }
     }
 }
 
-fn exploded(r: &Report, kinds: &[Kind], title: &str) -> Markup {
+/// Returns the exploded view, with the numbers of the list.
+fn exploded_picture(r: &Report, kinds: &[Kind], title: &str) -> Markup {
     let Exploded { by, traces } = Exploded::new(r.f);
     let shown = |(part, &by): (usize, &DVec3)| Shown { part, by, look: Look::Full };
     let numbers = kinds.iter().enumerate().map(|(k, kind)| (k + 1, kind.parts.clone()));
@@ -123,18 +127,19 @@ fn exploded(r: &Report, kinds: &[Kind], title: &str) -> Markup {
         arrows: Vec::new(),
         traces,
         numbers: numbers.collect(),
-        label: format!("{title}, each part moved away along its own way"),
+        label: format!("{title}, each part moved away along its own path"),
     };
-    scene.size.y = r.studio.height(&scene, HEIGHTS).round();
+    scene.size.y = r.studio.picture_height(&scene, HEIGHTS).round();
     html! {
         figure {
-            (picture(r.studio.picture(&scene, r.studio.front())))
-            figcaption { "Every part is drawn where its own way leads it. Numbers are those of the list." }
+            (picture_markup(r.studio.draw_picture(&scene, r.studio.default_viewpoint())))
+            figcaption { "Each part is moved along its own path. Numbers refer to the list." }
         }
     }
 }
 
-fn list(r: &Report, kinds: &[Kind]) -> Markup {
+/// Returns the list of parts, grouped by shape, with sizes and steps.
+fn part_list(r: &Report, kinds: &[Kind]) -> Markup {
     let assembly = r.f.bodies.assembly();
     let fixed = |kind: &Kind| kind.parts.iter().any(|&part| assembly.parts()[part].fixed());
     let class = if kinds.len() > ONE_COLUMN { "list columns" } else { "list" };
@@ -150,12 +155,12 @@ fn list(r: &Report, kinds: &[Kind]) -> Markup {
                     b { (k + 1) }
                     span { (kind.parts.len()) " ×" }
                     span {
-                        span.swatch style=(format!("background:{}", hexadecimal(r.studio.own_colour(kind.parts[0])))) {}
-                        " " (r.words.kind(&kind.parts))
+                        span.swatch style=(format!("background:{}", html_colour(r.studio.own_colour(kind.parts[0])))) {}
+                        " " (r.words.kind_name(&kind.parts))
                         @if fixed(kind) { " (fixed)" }
                     }
-                    span { (r.words.sides(assembly.parts()[kind.parts[0]].bounds().size())) }
-                    span { @if kind.steps.is_empty() { "stays" } @else { (step_words(&kind.steps)) } }
+                    span { (r.words.sides_text(assembly.parts()[kind.parts[0]].bounds().size())) }
+                    span { @if kind.steps.is_empty() { "stays" } @else { (step_list(&kind.steps)) } }
                 }
             }
         }

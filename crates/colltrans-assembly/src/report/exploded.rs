@@ -1,8 +1,9 @@
-//! An exploded view along the plan's own ways: each step's parts stand just beyond what they have to pass.
+//! An exploded view along the moves of the plan: the parts of each step are just beyond the parts that they
+//! must pass.
 //!
-//! The steps are walked backwards. What a step takes away is moved along its direction until, in the frame of that
-//! direction, its box lies beyond the boxes of all that it leaves behind, where those stand by then, as far as they are
-//! beside its way.
+//! The steps are processed backwards. The parts of a step are moved along its direction until their boxes, in
+//! the frame of this direction, are beyond the displaced boxes of all remaining parts that overlap them
+//! laterally.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -10,22 +11,23 @@ use std::ops::Range;
 use colltrans::Aabb;
 use glam::{DMat3, DVec3};
 
-use super::{Findings, aside, there};
+use super::{Findings, displacement_before_last_move, present_parts};
 use crate::matrix::direction_bits;
 use crate::plan::Step;
 
-/// The room between two parts, as a share of the assembly's size.
+/// Distance between two parts, as a share of the assembly's size.
 const GAP: f64 = 0.05;
 
-/// Where everything stands.
+/// Displacements of an exploded view.
 pub(super) struct Exploded {
-    /// By how much each part is displaced.
+    /// For each part, its displacement.
     pub by: Vec<DVec3>,
-    /// The last way of each step, from where its middle would be without it.
+    /// For each step, the line of its last move, through the middle of its parts.
     pub traces: Vec<[DVec3; 2]>,
 }
 
 impl Exploded {
+    /// Computes the displacements.
     pub(super) fn new(f: &Findings) -> Self {
         let Aabb { low, high } = f.bodies.assembly().bounds();
         let gap = GAP * (high - low).length();
@@ -34,17 +36,17 @@ impl Exploded {
         let mut boxes = Boxes { f, known: HashMap::new() };
         for stage in f.plan.stages().into_iter().rev() {
             let steps = &f.plan.steps[stage.clone()];
-            let far = boxes.beyond(&stage, &by, gap);
+            let far = boxes.clearing_distance(&stage, &by, gap);
             for step in steps {
                 let way = step.direction * far;
                 for &part in &step.parts {
-                    by[part] += aside(step, part) + way;
+                    by[part] += displacement_before_last_move(step, part) + way;
                 }
                 own.push((step, way));
             }
         }
         let traces = own.into_iter().map(|(step, way)| {
-            let middle = middle(f, step) + by[step.parts[0]];
+            let middle = step_center(f, step) + by[step.parts[0]];
             [middle - way, middle]
         });
         let traces = traces.collect();
@@ -52,38 +54,41 @@ impl Exploded {
     }
 }
 
-/// The middle of what a step takes away, in its place.
-fn middle(f: &Findings, step: &Step) -> DVec3 {
+/// Returns the centre of the box of the parts of a step, at their places.
+fn step_center(f: &Findings, step: &Step) -> DVec3 {
     let boxes = step.parts.iter().map(|&part| f.bodies.bounds(part));
     boxes.reduce(|a, b| a.join(&b)).map_or(DVec3::ZERO, |all| all.center())
 }
 
-/// Boxes of all parts in frames of directions, which are the third axis.
+/// Boxes of all parts in frames of directions, with the direction as the third axis.
 struct Boxes<'a> {
     f: &'a Findings<'a>,
     known: HashMap<[u64; 3], (DMat3, Vec<Aabb>)>,
 }
 
 impl Boxes<'_> {
-    /// How far the parts of a stage have to go, beside what they do before their last move, to be beyond all that is left.
-    fn beyond(&mut self, stage: &Range<usize>, by: &[DVec3], gap: f64) -> f64 {
+    /// Returns the distance that the parts of a stage must move, after all but their last moves, to be beyond
+    /// all remaining parts.
+    fn clearing_distance(&mut self, stage: &Range<usize>, by: &[DVec3], gap: f64) -> f64 {
         let f = self.f;
         let steps = &f.plan.steps[stage.clone()];
         let moving = |part: usize| steps.iter().any(|step| step.parts.contains(&part));
-        let left: Vec<usize> = there(f, stage.start).filter(|&part| !moving(part)).collect();
+        let left: Vec<usize> =
+            present_parts(f, stage.start).filter(|&part| !moving(part)).collect();
         let mut far = gap;
         for step in steps {
-            let &(to_frame, ref boxes) = self.along(step.direction);
+            let &(to_frame, ref boxes) = self.frame_and_boxes(step.direction);
             let placed = |part: usize, more: DVec3| {
                 let by = to_frame * (by[part] + more);
                 let Aabb { low, high } = boxes[part];
                 Aabb { low: low + by, high: high + by }
             };
             for &a in &step.parts {
-                let own = placed(a, aside(step, a));
+                let own = placed(a, displacement_before_last_move(step, a));
                 for other in left.iter().map(|&b| placed(b, DVec3::ZERO)) {
-                    let beside = (own.low.max(other.low) - own.high.min(other.high)).truncate();
-                    if beside.max_element() < 0.0 {
+                    let lateral_gap =
+                        (own.low.max(other.low) - own.high.min(other.high)).truncate();
+                    if lateral_gap.max_element() < 0.0 {
                         far = far.max(other.high.z - own.low.z + gap);
                     }
                 }
@@ -92,7 +97,8 @@ impl Boxes<'_> {
         far
     }
 
-    fn along(&mut self, d: DVec3) -> &(DMat3, Vec<Aabb>) {
+    /// Returns the frame of a direction and the boxes in it, computed once.
+    fn frame_and_boxes(&mut self, d: DVec3) -> &(DMat3, Vec<Aabb>) {
         let parts = self.f.bodies.assembly().parts();
         self.known.entry(direction_bits(d)).or_insert_with(|| {
             let (u, v) = d.any_orthonormal_pair();

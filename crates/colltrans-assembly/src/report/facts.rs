@@ -1,4 +1,4 @@
-//! All findings as one value of JSON.
+//! All findings as one JSON value.
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -9,21 +9,21 @@ use crate::hints::hints;
 use crate::record;
 use crate::rooms::PartRoom;
 
-/// All findings; `docs/guide/assemblies.md` describes the fields.
+/// Returns all findings as JSON. `docs/guide/assemblies.md` describes the fields.
 pub fn json(f: &Findings) -> Value {
     let assembly = f.bodies.assembly();
     let parts = assembly.parts().iter().enumerate().map(|(k, part)| {
-        let mut told = record::part(part);
+        let mut object = record::part(part);
         if let Some(remark) = f.bodies.remark(k) {
-            told["remark"] = json!(remark);
+            object["remark"] = json!(remark);
         }
-        told
+        object
     });
     let (fit, length) = match f.bodies.fit() {
         Fit::Tolerance(length) | Fit::Chords { largest: length, .. } => ("tolerance", length),
         Fit::Apart(length) => ("keep_apart", length),
     };
-    let mut told = record::plan(f.bodies, &f.plan);
+    let mut object = record::plan(f.bodies, &f.plan);
     let more = json!({
         "parts": parts.collect::<Vec<_>>(),
         "unit": assembly.unit(),
@@ -35,24 +35,26 @@ pub fn json(f: &Findings) -> Value {
         "pairs": record::pairs(f.bodies),
         "liaisons": record::liaisons(assembly, &f.liaisons),
         "seconds": f.times.of(&f.plan),
-        "rooms": rooms(f),
+        "rooms": free_travels(f),
         "notes": assembly.notes(),
     });
-    if let (Value::Object(told), Value::Object(mut more)) = (&mut told, more) {
-        told.append(&mut more);
+    if let (Value::Object(object), Value::Object(mut more)) = (&mut object, more) {
+        object.append(&mut more);
     }
     if !f.maps.is_empty() {
-        told["maps"] = f.maps.iter().map(|(_, map)| record::map(f.bodies, map)).collect();
+        object["maps"] = f.maps.iter().map(|(_, map)| record::map(f.bodies, map)).collect();
     }
-    told
+    object
 }
 
-fn rooms(f: &Findings) -> Value {
-    let asked = |part: usize| {
+/// Returns the free travel of each part along all directions.
+fn free_travels(f: &Findings) -> Value {
+    let travels = |part: usize| {
         let matrix = f.matrix.directions().iter().enumerate();
         let matrix = matrix.map(move |(k, d)| (part, *d, f.matrix.room(k, part)));
         matrix.chain(f.more.iter().map(move |(d, all)| (part, *d, all[part])))
     };
-    let told = |(part, d, room): (usize, DVec3, PartRoom)| record::room(f.bodies, part, d, &room);
-    (0..f.bodies.len()).flat_map(asked).map(told).collect()
+    let to_json =
+        |(part, d, room): (usize, DVec3, PartRoom)| record::room(f.bodies, part, d, &room);
+    (0..f.bodies.len()).flat_map(travels).map(to_json).collect()
 }

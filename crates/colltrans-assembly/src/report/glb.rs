@@ -1,7 +1,8 @@
-//! The plan as an animated glTF binary that any viewer plays: one node for each part, the steps one
-//! after another; what has left stays out.
+//! The plan as an animated binary glTF: one node for each part, the steps one after another. Removed parts
+//! stay removed.
 //!
-//! glTF wants metres and `y` up: the root node turns and scales, so that what came as glTF lies where it was.
+//! glTF uses metres and an upward `y`. The root node rotates and scales the assembly accordingly, so that an
+//! assembly read from glTF keeps its pose.
 
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
@@ -13,34 +14,37 @@ use crate::plan::{Leg, Plan};
 use crate::units;
 use colltrans::Aabb;
 
-/// Seconds of a move, and of the pause before a step.
+/// Duration of a move in seconds.
 const STEP: f64 = 1.6;
+/// Pause before a step in seconds.
 const PAUSE: f64 = 0.4;
-/// Seconds of a turn, at least, and in how many places of it a part is told where it is.
+/// Minimum duration of a turn in seconds.
 const TURN: f64 = 0.5;
-const PLACES: f64 = 64.0;
-/// What has come out is put away so far beyond its travel, as a share of the assembly's size, or
-/// farther: in moves of a tenth of that size, so many at most.
-const NEAREST: f64 = 0.35;
-const MOST_MOVES: usize = 200;
+/// Number of keys of a turn.
+const KEYS_PER_TURN: f64 = 64.0;
+/// Minimum distance of removed parts beyond their travel, as a share of the assembly's size.
+const MIN_PARKED_DISTANCE: f64 = 0.35;
+/// Maximum number of steps, each of a tenth of the assembly's size, by which removed parts are moved farther
+/// away.
+const MAX_PARKING_STEPS: usize = 200;
 
-/// A file's bytes.
+/// Returns the bytes of the file.
 pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     let mut file = File::default();
     let Aabb { low, high } = assembly.bounds();
     let size = (high - low).length();
-    // Where the unit is not known lengths stay the numbers that they are.
+    // Lengths in an unknown unit are written unchanged.
     let per_unit = assembly.unit().and_then(units::metres).unwrap_or(1.0);
     let mut nodes = Vec::new();
-    let colours = kinds::colours(plan, assembly.parts());
+    let colours = kinds::part_colours(plan, assembly.parts());
     for (part, colour) in assembly.parts().iter().zip(colours) {
-        let mesh = file.mesh(part, colour.map(linear));
+        let mesh = file.add_mesh(part, colour.map(linear));
         nodes.push(json!({ "name": part.name(), "mesh": mesh }));
     }
-    let (channels, samplers) = channels(&mut file, assembly, plan, size);
+    let (channels, samplers) = animation_channels(&mut file, assembly, plan, size);
     let root = nodes.len();
     let children: Vec<usize> = (0..root).collect();
-    // What is upwards becomes y; glTF stays as it is.
+    // The upward direction becomes y.
     let turn = DQuat::from_rotation_arc(assembly.up(), DVec3::Y).to_array();
     nodes.push(json!({
         "name": "assembly",
@@ -64,14 +68,15 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     file.finish(document)
 }
 
-/// Translations of every part that moves, and rotations of those that turn.
-fn channels(
+/// Returns the channels and samplers of the animation: a translation for every part that moves, and a
+/// rotation for those that turn.
+fn animation_channels(
     file: &mut File,
     assembly: &Assembly,
     plan: &Plan,
     size: f64,
 ) -> (Vec<Value>, Vec<Value>) {
-    let parked = parked(assembly, plan, size);
+    let parked = parked_distances(assembly, plan, size);
     let (mut channels, mut samplers) = (Vec::new(), Vec::new());
     for part in 0..assembly.parts().len() {
         let (mut at, mut turned) = (DVec3::ZERO, DQuat::IDENTITY);
@@ -84,8 +89,10 @@ fn channels(
                     leg.turn.as_ref().map_or(STEP, |turn| STEP.max(TURN * turn.turns.abs()));
                 if leg.parts.contains(&part) {
                     keys.push((time, at, turned));
-                    let shares =
-                        leg.turn.as_ref().map_or(1.0, |turn| (PLACES * turn.turns.abs()).ceil());
+                    let shares = leg
+                        .turn
+                        .as_ref()
+                        .map_or(1.0, |turn| (KEYS_PER_TURN * turn.turns.abs()).ceil());
                     let before = (at, turned);
                     for share in (1..=shares as usize).map(|n| n as f64 / shares) {
                         (at, turned) = match &leg.turn {
@@ -104,12 +111,12 @@ fn channels(
             continue;
         }
         let times: Vec<[f32; 1]> = keys.iter().map(|key| [key.0 as f32]).collect();
-        let input = file.accessor(&times, "SCALAR", None);
+        let input = file.add_accessor(&times, "SCALAR", None);
         let places: Vec<[f32; 3]> = keys.iter().map(|key| key.1.as_vec3().to_array()).collect();
-        let mut outputs = vec![("translation", file.accessor(&places, "VEC3", None))];
+        let mut outputs = vec![("translation", file.add_accessor(&places, "VEC3", None))];
         if keys.iter().any(|key| key.2 != DQuat::IDENTITY) {
             let turns: Vec<[f32; 4]> = keys.iter().map(|key| key.2.as_quat().to_array()).collect();
-            outputs.push(("rotation", file.accessor(&turns, "VEC4", None)));
+            outputs.push(("rotation", file.add_accessor(&turns, "VEC4", None)));
         }
         for (path, output) in outputs {
             channels.push(json!({
@@ -122,18 +129,19 @@ fn channels(
     (channels, samplers)
 }
 
-/// How far beyond its travel each step's parts are put away: so far that nothing that comes after is put there too.
-fn parked(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
+/// Returns for each step the distance of its parts beyond their travel, such that parts of different steps
+/// are not put in the same place.
+fn parked_distances(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
     let mut distances = vec![0.0; plan.steps.len()];
     let mut taken: Vec<Aabb> = Vec::new();
-    // What comes out last stays nearest, so that nothing passes it.
+    // Parts that are removed last stay nearest, so that no other part passes through them.
     for (k, step) in plan.steps.iter().enumerate().rev() {
-        distances[k] = NEAREST * size;
+        distances[k] = MIN_PARKED_DISTANCE * size;
         let boxes = step.parts.iter().map(|&p| assembly.parts()[p].bounds());
         let Some(group) = boxes.reduce(|a, b| a.join(&b)).filter(|_| step.within.is_none()) else {
             continue;
         };
-        // Where the first part of the group ends, as its others do but for what goes back.
+        // End position of the group's first part. The others end there too, apart from moves back.
         let own = |leg: &&Leg| leg.parts.contains(&step.parts[0]);
         let (last, before) = step.path.split_last().expect("a step has a move");
         let aside: DVec3 = before.iter().filter(own).map(|leg| leg.direction * leg.travel).sum();
@@ -141,7 +149,7 @@ fn parked(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
             let by = aside + last.direction * (last.travel + beyond);
             Aabb { low: group.low + by, high: group.high + by }
         };
-        for _ in 0..MOST_MOVES {
+        for _ in 0..MAX_PARKING_STEPS {
             let wide = at(distances[k]).grown(0.02 * size);
             if !taken.iter().any(|other| other.meets(&wide)) {
                 break;
@@ -153,6 +161,7 @@ fn parked(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
     distances
 }
 
+/// A binary glTF file under construction.
 #[derive(Default)]
 struct File {
     bytes: Vec<u8>,
@@ -162,14 +171,15 @@ struct File {
     materials: Vec<Value>,
 }
 
-/// The target of a buffer view for vertices.
+/// Target `ARRAY_BUFFER` of a buffer view.
 const VERTICES: u32 = 34_962;
-/// Single precision, as a component type.
+/// Component type `FLOAT`, single precision.
 const FLOAT: u32 = 5_126;
 
 impl File {
-    /// Triangles with their own corners and normals: facets are flat.
-    fn mesh(&mut self, part: &Part, color: [f64; 3]) -> usize {
+    /// Adds the mesh and material of a part, and returns the index of the mesh. Each triangle has its own
+    /// vertices and normals, so that facets are flat.
+    fn add_mesh(&mut self, part: &Part, color: [f64; 3]) -> usize {
         let solid = part.solid();
         let (mut places, mut normals) = (Vec::new(), Vec::new());
         for t in solid.triangles() {
@@ -180,8 +190,8 @@ impl File {
                 normals.push(normal);
             }
         }
-        let position = self.accessor(&places, "VEC3", Some(VERTICES));
-        let normal = self.accessor(&normals, "VEC3", Some(VERTICES));
+        let position = self.add_accessor(&places, "VEC3", Some(VERTICES));
+        let normal = self.add_accessor(&normals, "VEC3", Some(VERTICES));
         let [r, g, b] = color;
         self.materials.push(json!({
             "pbrMetallicRoughness": {
@@ -199,7 +209,8 @@ impl File {
         self.meshes.len() - 1
     }
 
-    fn accessor<const N: usize>(
+    /// Adds values to the buffer, and returns the index of their accessor.
+    fn add_accessor<const N: usize>(
         &mut self,
         values: &[[f32; N]],
         kind: &str,
@@ -231,7 +242,7 @@ impl File {
         self.accessors.len() - 1
     }
 
-    /// Header, JSON chunk and binary chunk, each padded to four bytes.
+    /// Returns the bytes of the file: header, JSON chunk and binary chunk, the chunks padded to four bytes.
     fn finish(mut self, mut document: Value) -> Vec<u8> {
         if !self.meshes.is_empty() {
             document["meshes"] = json!(self.meshes);

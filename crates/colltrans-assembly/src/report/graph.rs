@@ -1,5 +1,5 @@
-//! Directional blocking graphs as SVG: parts on a ring, from the top down on either side, an arrow from each to what it meets; groups
-//! of several parts that move as one are ringed in one colour.
+//! Directional blocking graphs as SVG. Parts are on a ring, from top to bottom on both sides. An arrow leads
+//! from each part to the parts that it meets. Groups of several parts that move as one are marked in red.
 
 use std::fmt::Write;
 
@@ -9,13 +9,15 @@ use super::escaped;
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
 
+/// Radius of the ring in pixels.
 const RADIUS: f64 = 175.0;
+/// Centre of the ring in pixels.
 const MIDDLE: DVec2 = DVec2::new(280.0, 200.0);
 
-/// The graph of all parts along one direction.
+/// Draws the blocking graph of all parts along one direction.
 pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
     let n = bodies.len();
-    // At equal heights, so that names stand below each other.
+    // Equal vertical distances keep the names apart.
     let at = |k: usize| {
         let (round, side) = if 2 * k < n { (k, 1.0) } else { (n - 1 - k, -1.0) };
         let height = (4 * round + 2) as f64 / n.max(1) as f64 - 1.0;
@@ -55,13 +57,14 @@ pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
         }
     }
     for (k, &group) in group_of.iter().enumerate() {
-        node(&mut text, at(k), bodies.assembly().parts()[k].name(), free.contains(&k), group);
+        draw_node(&mut text, at(k), bodies.assembly().parts()[k].name(), free.contains(&k), group);
     }
     text.push_str("</svg>\n");
     text
 }
 
-fn node(text: &mut String, at: DVec2, name: &str, free: bool, group: usize) {
+/// Draws a part with its name.
+fn draw_node(text: &mut String, at: DVec2, name: &str, free: bool, group: usize) {
     let fill = if free { "#f6963a" } else { "#dde6f0" };
     let stroke = if group == usize::MAX { "#333" } else { "#c02020" };
     let right = at.x >= MIDDLE.x;

@@ -1,8 +1,8 @@
-//! One HTML file to be printed and looked at: a first page, a page for each step, and what else is known. Offline, its
-//! pictures drawn into it; without scripts only the viewer is missing.
+//! One HTML file for print and screen: a first page, a page for each step, and further sections. The file is
+//! self-contained, with pictures as inline SVG. Without scripts only the viewer is missing.
 //!
-//! Written with `maud`, which escapes every text that is put in. Let through as they are, and marked
-//! [`PreEscaped`], are only what this crate holds (style, script) or draws (pictures, see `picture`).
+//! `maud` escapes every inserted text. Only content of this crate (style, script) and pictures drawn by it
+//! are inserted unescaped, marked by [`PreEscaped`] (see `picture_markup`).
 
 use std::ops::Range;
 
@@ -11,9 +11,10 @@ use rayon::prelude::*;
 
 use super::{Findings, Report, after, cover, sheet, tables, viewer};
 
+/// Style sheet of the report.
 const STYLE: &str = include_str!("../../assets/report.css");
 
-/// The report.
+/// Returns the report as an HTML document.
 pub fn page(f: &Findings, title: &str) -> String {
     let r = Report::new(f);
     let stages = f.plan.stages();
@@ -24,7 +25,7 @@ pub fn page(f: &Findings, title: &str) -> String {
             drawn.push((0..*times).map(|time| &stages[k + time * run.len()]).collect());
         }
     }
-    let sheets: Vec<Markup> = drawn.par_iter().map(|again| sheet::page(&r, again)).collect();
+    let sheets: Vec<Markup> = drawn.par_iter().map(|again| sheet::step_page(&r, again)).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -36,12 +37,12 @@ pub fn page(f: &Findings, title: &str) -> String {
             }
             body {
                 main {
-                    (cover::page(&r, title))
-                    (viewer::section(f))
+                    (cover::cover_page(&r, title))
+                    (viewer::viewer_section(f))
                     @for sheet in sheets { (sheet) }
-                    (after::section(&r))
+                    (after::after_section(&r))
                 }
-                (tables::all(f))
+                (tables::all_tables(f))
             }
         }
     };

@@ -1,20 +1,20 @@
-//! Parts of one shape, for a list of parts: in the order in which the plan takes them away.
+//! Groups of parts of equal shape, in the order in which the plan removes them.
 
 use std::collections::BTreeMap;
 
-use super::tint;
+use super::kind_colour;
 use crate::part::Part;
 use crate::plan::Plan;
 
-/// Parts of one shape.
+/// Parts of equal shape.
 pub(super) struct Kind {
-    /// Their positions, in increasing order.
+    /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// The steps that take them away, in order, each the last one for some part.
+    /// Steps that remove them, in order. Each is the last step of some of the parts.
     pub steps: Vec<usize>,
 }
 
-/// All kinds, those first that leave first, and those last that stay.
+/// Groups the parts by shape, in the order of their first steps. Kinds that stay are last.
 pub(super) fn kinds(plan: &Plan, parts: usize) -> Vec<Kind> {
     let mut step_of = vec![None; parts];
     for (k, step) in plan.steps.iter().enumerate() {
@@ -36,16 +36,16 @@ pub(super) fn kinds(plan: &Plan, parts: usize) -> Vec<Kind> {
     all
 }
 
-/// The colour of each part, as screens have it: its own, if the parts have colours that tell some of them apart; else that of
-/// its kind.
-pub(super) fn colours(plan: &Plan, parts: &[Part]) -> Vec<[f64; 3]> {
+/// Returns the sRGB colour of each part: its own colour if all parts have one and not all are equal,
+/// otherwise the colour of its kind.
+pub(super) fn part_colours(plan: &Plan, parts: &[Part]) -> Vec<[f64; 3]> {
     let own: Option<Vec<[f64; 3]>> = parts.iter().map(Part::colour).collect();
     if let Some(own) = own.filter(|own| own.iter().any(|colour| *colour != own[0])) {
         return own;
     }
-    let mut colours = vec![tint(0); parts.len()];
+    let mut colours = vec![kind_colour(0); parts.len()];
     for (k, kind) in kinds(plan, parts.len()).iter().enumerate() {
-        kind.parts.iter().for_each(|&part| colours[part] = tint(k));
+        kind.parts.iter().for_each(|&part| colours[part] = kind_colour(k));
     }
     colours
 }

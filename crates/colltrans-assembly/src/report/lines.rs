@@ -1,29 +1,37 @@
-//! Edges of a part that a drawing may show, found once for all of its pictures.
+//! Edges of a part that a picture may show, found once for all of its pictures.
 
 use colltrans::Solid;
 use colltrans_picture::{SMOOTH, edges};
 use glam::DVec3;
 
-/// Facets whose normals have a larger cosine lie in one plane: no view shows an edge between them.
-const FLAT: f64 = 1.0 - 1e-9;
+/// Minimum cosine of the normals of coplanar facets, whose common edge no view shows.
+const MIN_COPLANAR_COSINE: f64 = 1.0 - 1e-9;
 
-/// Edges that are not within a plane.
+/// Edges of a solid that are not within a plane.
 pub(super) struct Lines(Vec<Line>);
 
+/// An edge.
 struct Line {
+    /// Vertices of the edge.
     ends: [u32; 2],
-    /// The facets at both sides; of a rim none.
+    /// The facets on both sides; `None` on a boundary.
     faces: Option<[u32; 2]>,
 }
 
 impl Lines {
+    /// Finds the edges of a solid.
     pub(super) fn new(solid: &Solid) -> Self {
         let mut all = Vec::new();
         for (ends, faces) in edges(solid.triangles()) {
-            // Pairs of facets, in their order, as they meet at an edge that several share.
+            // At an edge with more than two facets, these are ordered in pairs.
             for pair in faces.chunks(2) {
                 match *pair {
-                    [f, g] if normal(solid, f).dot(normal(solid, g)) > FLAT => (),
+                    [f, g]
+                        if facet_normal(solid, f).dot(facet_normal(solid, g))
+                            > MIN_COPLANAR_COSINE =>
+                    {
+                        ()
+                    }
                     [f, g] => all.push(Line { ends, faces: Some([f, g]) }),
                     _ => all.push(Line { ends, faces: None }),
                 }
@@ -32,11 +40,11 @@ impl Lines {
         Self(all)
     }
 
-    /// Sharp edges, silhouettes and rims.
-    pub(super) fn seen(&self, solid: &Solid, toward: DVec3) -> Vec<[DVec3; 2]> {
+    /// Returns the edges to draw for a view direction: sharp edges, silhouettes and boundaries.
+    pub(super) fn visible_lines(&self, solid: &Solid, toward: DVec3) -> Vec<[DVec3; 2]> {
         let drawn = |line: &&Line| {
             let Some(faces) = line.faces else { return true };
-            let [m, n] = faces.map(|face| normal(solid, face));
+            let [m, n] = faces.map(|face| facet_normal(solid, face));
             let [x, y] = [m, n].map(|n| n.dot(toward) > 0.0);
             (x || y) && (n.dot(m) < SMOOTH || x != y)
         };
@@ -45,7 +53,8 @@ impl Lines {
     }
 }
 
-fn normal(solid: &Solid, face: u32) -> DVec3 {
+/// Returns the unit normal of a triangle; zero for a triangle without area.
+fn facet_normal(solid: &Solid, face: u32) -> DVec3 {
     let [a, b, c] = solid.triangles()[face as usize].map(|v| solid.vertices()[v as usize]);
     (b - a).cross(c - a).normalize_or_zero()
 }

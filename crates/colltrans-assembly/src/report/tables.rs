@@ -1,24 +1,26 @@
-//! Tables for who wants to know more, folded: only those that are open are printed.
+//! Folded tables with details. Only open ones are printed.
 
 use maud::{Markup, html};
 
-use super::{Findings, arrow, graph, picture, short};
+use super::{Findings, arrow, graph, picture_markup, short};
 use crate::blocking::Blocking;
 use crate::bodies::Fit;
 use crate::part::Part;
 use crate::rooms::PartRoom;
 
-/// Rows are cut off here; the JSON has all.
-const MOST_ROWS: usize = 200;
-const MOST_GRAPHS: usize = 6;
+/// Maximum number of rows. The JSON file contains all.
+const MAX_ROWS: usize = 200;
+/// Maximum number of drawn blocking graphs.
+const MAX_GRAPHS: usize = 6;
 
-pub(super) fn all(f: &Findings) -> Markup {
+/// Returns all tables.
+pub(super) fn all_tables(f: &Findings) -> Markup {
     let contents = [
-        ("All parts", parts(f)),
-        ("Parts that run into each other as they are drawn, or with this fit", overlaps(f)),
-        ("How far each part goes with all others in place", rooms(f)),
-        ("Who meets whom, by direction", graphs(f)),
-        ("Contacts", contacts(f)),
+        ("All parts", parts_table(f)),
+        ("Parts that overlap as drawn, or with this fit", overlaps_table(f)),
+        ("Free travel of each part with all others in place", free_travel_table(f)),
+        ("Blocking graphs, by direction", blocking_graphs(f)),
+        ("Contacts", contacts_table(f)),
     ];
     html! {
         @for (title, content) in contents {
@@ -27,7 +29,8 @@ pub(super) fn all(f: &Findings) -> Markup {
     }
 }
 
-fn overlaps(f: &Findings) -> Markup {
+/// Returns the table of overlapping pairs.
+fn overlaps_table(f: &Findings) -> Markup {
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     html! {
         @if f.start.overlaps.is_empty() {
@@ -36,7 +39,7 @@ fn overlaps(f: &Findings) -> Markup {
             div.wide {
                 table {
                     tr { th { "parts" } th { "depth" } th { "with this fit" } }
-                    @for o in f.start.overlaps.iter().take(MOST_ROWS) {
+                    @for o in f.start.overlaps.iter().take(MAX_ROWS) {
                         tr {
                             td { (name(o.parts[0])) ", " (name(o.parts[1])) }
                             td.n { (o.depth.map_or("more than their size".into(), short)) }
@@ -49,12 +52,13 @@ fn overlaps(f: &Findings) -> Markup {
     }
 }
 
-/// Zero instead of what rounding has left of it.
-fn tidy(x: f64, size: f64) -> f64 {
+/// Returns 0 for values that are only rounding errors at the size of the assembly.
+fn without_rounding(x: f64, size: f64) -> f64 {
     if x.abs() < 1e-9 * size { 0.0 } else { x }
 }
 
-fn rooms(f: &Findings) -> Markup {
+/// Returns the table of free travels by part and direction.
+fn free_travel_table(f: &Findings) -> Markup {
     let size = f.bodies.assembly().extent();
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let directions = f.matrix.directions();
@@ -62,14 +66,14 @@ fn rooms(f: &Findings) -> Markup {
         PartRoom::Free => "free".into(),
         PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(*by)),
         PartRoom::Blocked { by, stop, .. } => {
-            format!("{} {}", short(tidy(stop.distance(), size)), name(*by))
+            format!("{} {}", short(without_rounding(stop.distance(), size)), name(*by))
         }
     };
     html! {
         div.wide {
             table {
                 tr { th { "part" } @for d in directions { th { (arrow(*d)) } } }
-                @for part in 0..f.bodies.len().min(MOST_ROWS) {
+                @for part in 0..f.bodies.len().min(MAX_ROWS) {
                     tr {
                         th { (name(part)) }
                         @for room in (0..directions.len()).map(|k| f.matrix.room(k, part)) {
@@ -82,7 +86,8 @@ fn rooms(f: &Findings) -> Markup {
     }
 }
 
-fn graphs(f: &Findings) -> Markup {
+/// Returns the blocking graphs of the first directions; empty for large assemblies.
+fn blocking_graphs(f: &Findings) -> Markup {
     let most = 60;
     if f.bodies.is_empty() || f.bodies.len() > most {
         return Markup::default();
@@ -92,13 +97,13 @@ fn graphs(f: &Findings) -> Markup {
     let origin = |k: usize| f.candidates.main.get(k).map_or("", |c| c.origin.name());
     html! {
         p {
-            "An arrow from a part to each one that it meets. Orange: comes out as it is, alone or with \
-             its group; red rings and arrows: moves as one."
+            "Arrows point from a part to each part that it meets. Orange: can be removed, alone or with \
+             its group. Red rings and arrows: parts that move as one."
         }
         div.graphs {
-            @for (k, d) in f.matrix.directions().iter().enumerate().take(MOST_GRAPHS) {
+            @for (k, d) in f.matrix.directions().iter().enumerate().take(MAX_GRAPHS) {
                 figure {
-                    (picture(graph(k)))
+                    (picture_markup(graph(k)))
                     figcaption { (arrow(*d)) " (" (origin(k)) ")" }
                 }
             }
@@ -106,7 +111,8 @@ fn graphs(f: &Findings) -> Markup {
     }
 }
 
-fn contacts(f: &Findings) -> Markup {
+/// Returns the table of contacts with their areas and centres.
+fn contacts_table(f: &Findings) -> Markup {
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let size = f.bodies.assembly().size();
     html! {
@@ -115,11 +121,11 @@ fn contacts(f: &Findings) -> Markup {
         } @else {
             div.wide { table {
                 tr { th { "parts" } th { "area" } th { "around" } }
-                @for l in f.liaisons.iter().take(MOST_ROWS) {
+                @for l in f.liaisons.iter().take(MAX_ROWS) {
                     tr {
                         td { (name(l.parts[0])) ", " (name(l.parts[1])) }
                         td.n { (short(l.area())) }
-                        td { (l.center().to_array().map(|x| short(tidy(x, size))).join(", ")) }
+                        td { (l.center().to_array().map(|x| short(without_rounding(x, size))).join(", ")) }
                     }
                 }
             } }
@@ -127,7 +133,8 @@ fn contacts(f: &Findings) -> Markup {
     }
 }
 
-fn parts(f: &Findings) -> Markup {
+/// Returns the table of parts with their facets, volumes and remarks.
+fn parts_table(f: &Findings) -> Markup {
     let remarks = |k: usize, p: &Part| {
         let fixed = p.fixed().then(|| "fixed".to_owned());
         let all: Vec<String> =
@@ -137,7 +144,7 @@ fn parts(f: &Findings) -> Markup {
     html! {
         div.wide { table {
             tr { th { "part" } th { "facets" } th { "volume" } th { "remarks" } }
-            @for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MOST_ROWS) {
+            @for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MAX_ROWS) {
                 tr {
                     td { (p.name()) }
                     td.n { (p.facets()) }

@@ -1,7 +1,7 @@
-//! The plan to look at from all sides, in the report: the parts as JSON and a script that draws them.
+//! An interactive view of the plan in the report: the parts as JSON, and a script that draws them.
 //!
-//! The script, `assets/viewer.js`, is built from `web/src/viewer.ts` (`npm run viewer` in `web/`),
-//! which also checks that it is what its source makes. It reads nothing but the page it is in.
+//! The script `assets/viewer.js` is built from `web/src/viewer.ts` (`npm run viewer` in `web/`). A check
+//! there compares it with its source. It reads only the page that contains it.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -13,18 +13,19 @@ use serde_json::{Value, json};
 use super::{Findings, arrow, kinds};
 use crate::part::Part;
 
+/// Script of the viewer.
 const SCRIPT: &str = include_str!("../../assets/viewer.js");
-/// With more triangles the page would be large; the animation has them all.
-const MOST_TRIANGLES: usize = 400_000;
+/// Maximum number of triangles in the viewer, which bounds the size of the page.
+const MAX_TRIANGLES: usize = 400_000;
 
-/// A section of the report; empty without parts.
-pub(super) fn section(f: &Findings) -> Markup {
+/// Returns the viewer, or a reference to the animation for large assemblies; empty without parts.
+pub(super) fn viewer_section(f: &Findings) -> Markup {
     let parts = f.bodies.assembly().parts();
     if parts.is_empty() {
         return Markup::default();
     }
     let triangles: usize = parts.iter().map(Part::facets).sum();
-    if triangles > MOST_TRIANGLES {
+    if triangles > MAX_TRIANGLES {
         return html! {
             p {
                 "With " (triangles) " triangles the assembly is too large to be turned in this page: \
@@ -34,23 +35,25 @@ pub(super) fn section(f: &Findings) -> Markup {
     }
     html! {
         div id="viewer" {}
-        script type="application/json" id="viewer-data" { (script_data(&data(f))) }
+        script type="application/json" id="viewer-data" { (script_data(&viewer_data(f))) }
         script { (PreEscaped(SCRIPT)) }
     }
 }
 
-/// JSON in which nothing can end the element that holds it, nor begin a comment there.
+/// Returns JSON in which no text can end the surrounding element or begin a comment.
 fn script_data(data: &Value) -> PreEscaped<String> {
     let text = data.to_string();
     PreEscaped(text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026"))
 }
 
-fn data(f: &Findings) -> Value {
+/// Returns the data of the viewer: size, unit, parts and steps.
+fn viewer_data(f: &Findings) -> Value {
     let assembly = f.bodies.assembly();
     let Aabb { low, high } = assembly.bounds();
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
-    let colours = kinds::colours(&f.plan, assembly.parts());
-    let parts = assembly.parts().iter().zip(colours).map(|(p, colour)| part(p, colour, middle));
+    let colours = kinds::part_colours(&f.plan, assembly.parts());
+    let parts =
+        assembly.parts().iter().zip(colours).map(|(p, colour)| part_data(p, colour, middle));
     let parts: Vec<Value> = parts.collect();
     let steps = f.plan.steps.iter().map(|step| {
         let legs = step
@@ -72,8 +75,9 @@ fn data(f: &Findings) -> Value {
     })
 }
 
-/// Vertices relative to the middle of the assembly, in single precision.
-fn part(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
+/// Returns a part: vertices relative to the middle of the assembly in single precision, and triangles, both
+/// in Base64.
+fn part_data(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
     let solid = part.solid();
     let places = solid.vertices().iter().flat_map(|v| (*v - middle).as_vec3().to_array());
     let vertices: Vec<u8> = places.flat_map(f32::to_le_bytes).collect();

@@ -1,57 +1,60 @@
-//! The helix of a thread: how far its crest climbs in a turn, found from the outermost points of the screw.
+//! Detects the helix of a thread: the rise of its crest in a turn, from the outermost points of the screw.
 //!
-//! On a thread of `n` starts whose crests are `p` apart, the radius is a function of `z / p - n a / (2 pi)`, with the
-//! place `z` along the axis and the angle `a` about it. So it is correlated with the wave of that phase, as with that of
-//! no other `p` and `n`: rings do not depend on the angle, and splines not on the place. `n` is negative of a
-//! left-handed thread; the pitch, or lead, is `n p`.
+//! On a thread of `n` starts whose crests are `p` apart, the radius is a function of the phase `z / p - n a /
+//! (2 pi)`, with the coordinate `z` along the axis and the angle `a` about it. Therefore the radius
+//! correlates with the wave of this phase more than with that of any other `p` and `n`. Rings do not depend
+//! on the angle, and splines do not depend on `z`. A left-handed thread has a negative `n`. The pitch (lead)
+//! is `n p`.
 
 use std::f64::consts::TAU;
 
 use colltrans::Solid;
 use glam::{DVec2, DVec3};
 
-use super::surface::{AROUND, About, around};
-use super::{flattened, inverse};
+use super::surface::{AxisFrame, COLUMNS, column_direction};
+use super::{axial_projection, lateral_vector};
 
-/// Starts that are tried, of either hand.
+/// Maximum number of starts, for either hand.
 const STARTS: i32 = 4;
-/// So strong a correlation is a helix (of a triangle 0.8, of narrow ridges 0.55), ...
-const LEAST: f64 = 0.35;
-/// ... and so many times as strong as that with rings and splines.
-const BEYOND: f64 = 1.5;
-/// In a turn a crest climbs by no more than this share of its way around: what is steeper is a spline rather than a thread.
-const STEEPEST: f64 = 1.0;
-/// A thread's crests are no nearer than this many depths of it; of usual ones 1.6.
-const NEAREST: f64 = 0.8;
-/// Frequencies are tried so close: shares of the inverse length.
+/// Minimum correlation of a helix. A triangular profile reaches 0.8, narrow ridges 0.55.
+const MIN_CORRELATION: f64 = 0.35;
+/// Minimum ratio of this correlation and those with rings and splines.
+const MIN_ADVANTAGE: f64 = 1.5;
+/// Maximum rise of a crest in a turn, as a share of its circumference. Steeper shapes are splines.
+const MAX_RISE: f64 = 1.0;
+/// Minimum distance of crests, in multiples of the thread's depth. Usual threads have 1.6.
+const MIN_CREST_DISTANCE: f64 = 0.8;
+/// Number of frequencies tried in the inverse of the length.
 const STEPS: f64 = 8.0;
-/// Waves of rows that are this share as high as the median are those of whole crests.
-const STRONG: f64 = 0.9;
-/// Middles are compared that are so many turns apart at least.
-const APART: f64 = 0.5;
-/// Rows along the axis: so many in a depth, but not more than these.
-const ALONG: f64 = 5.0;
-const MOST_ALONG: usize = 512;
+/// Minimum amplitude of a row with a whole crest, as a share of the median amplitude.
+const MIN_AMPLITUDE: f64 = 0.9;
+/// Minimum distance of two centres that are compared, in turns.
+const MIN_CENTER_DISTANCE: f64 = 0.5;
+/// Number of rows along the axis within a depth of the thread.
+const ROWS_PER_DEPTH: f64 = 5.0;
+/// Maximum number of rows along the axis.
+const MAX_ROWS: usize = 512;
 
-/// How far the crest climbs in a turn; `None` if there is no helix. `radii` are those of the hole and the crest.
-pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<f64> {
+/// Returns the rise of the crest in a turn; `None` if no helix is detected. `radii` are those of the hole and
+/// the crest.
+pub(super) fn pitch(screw: &Solid, about: &AxisFrame, radii: [f64; 2]) -> Option<f64> {
     let [low, high] = about.range;
     let (length, depth) = (high - low, radii[1] - radii[0]);
     if !(length > 0.0 && depth > 0.0) {
         return None;
     }
-    let rows = ((ALONG * length / depth).ceil() as usize).clamp(8, MOST_ALONG);
+    let rows = ((ROWS_PER_DEPTH * length / depth).ceil() as usize).clamp(8, MAX_ROWS);
     let outermost = about.envelope(screw, radii[1], rows, f64::max);
     let known = || outermost.iter().flatten().flatten();
     let mean = known().sum::<f64>() / known().count().max(1) as f64;
-    let whole: f64 = known().map(|r| (r - mean).abs()).sum();
-    if whole == 0.0 {
+    let total: f64 = known().map(|r| (r - mean).abs()).sum();
+    if total == 0.0 {
         return None;
     }
-    // By number of starts, the waves around of each row.
+    // For a number of starts, the wave about the axis of each row.
     let waves = |starts: i32| -> Vec<DVec2> {
-        let turn = |column| around(column).to_angle();
-        let wave_of = |row: &[Option<f64>; AROUND]| {
+        let turn = |column| column_direction(column).to_angle();
+        let wave_of = |row: &[Option<f64>; COLUMNS]| {
             let cells = row.iter().enumerate().filter_map(|(column, r)| Some((column, (*r)?)));
             let wave =
                 |(column, r)| (r - mean) * DVec2::from_angle(-f64::from(starts) * turn(column));
@@ -66,11 +69,11 @@ pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<f64
             sum += at.rotate(*wave);
             at = at.rotate(turn);
         }
-        sum.length() / whole
+        sum.length() / total
     };
     let step = 1.0 / (STEPS * length);
-    // A crest goes half around at least, and has four rows.
-    let last = (length / (NEAREST * depth)).min(rows as f64 / 4.0) * STEPS;
+    // The frequency is limited by the minimum distance of crests and by four rows for each crest.
+    let last = (length / (MIN_CREST_DISTANCE * depth)).min(rows as f64 / 4.0) * STEPS;
     let mut best = (0.0, 0, 0);
     for starts in (-STARTS..=STARTS).filter(|n| *n != 0) {
         let waves = waves(starts);
@@ -83,52 +86,56 @@ pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<f64
     }
     let (_, k, starts) = best;
     let own = waves(starts);
-    // Where a thread ends, a part of a crest is seen, whose middle is not on the helix.
-    let whole_crests = strong(&own);
-    let frequency = peak(f64::from(k) * step, step, |f| strength(&whole_crests, f));
+    // At its ends, a thread shows parts of crests, whose middles are not on the helix.
+    let whole_crests = full_crest_waves(&own);
+    let frequency = maximum_near(f64::from(k) * step, step, |f| strength(&whole_crests, f));
     let found = strength(&own, frequency);
     let others = strength(&waves(0), frequency).max(strength(&own, 0.0));
     let climb = f64::from(starts) / frequency;
-    let steep = climb.abs() > STEEPEST * TAU * radii[1];
-    let sound = k > 0 && found >= LEAST && found >= BEYOND * others && !steep;
-    sound.then_some(climb)
+    let is_steep = climb.abs() > MAX_RISE * TAU * radii[1];
+    let is_helix =
+        k > 0 && found >= MIN_CORRELATION && found >= MIN_ADVANTAGE * others && !is_steep;
+    is_helix.then_some(climb)
 }
 
-/// The waves that are nearly as high as most, and nothing elsewhere.
-fn strong(waves: &[DVec2]) -> Vec<DVec2> {
-    let mut heights: Vec<f64> =
+/// Returns the waves with at least [`MIN_AMPLITUDE`] of the median amplitude, and zero in other rows.
+fn full_crest_waves(waves: &[DVec2]) -> Vec<DVec2> {
+    let mut amplitudes: Vec<f64> =
         waves.iter().map(|wave| wave.length()).filter(|h| *h > 0.0).collect();
-    heights.sort_by(f64::total_cmp);
-    let least = STRONG * heights.get(heights.len() / 2).copied().unwrap_or(0.0);
+    amplitudes.sort_by(f64::total_cmp);
+    let least = MIN_AMPLITUDE * amplitudes.get(amplitudes.len() / 2).copied().unwrap_or(0.0);
     waves.iter().map(|wave| if wave.length() >= least { *wave } else { DVec2::ZERO }).collect()
 }
 
-/// The axis of a screw of that pitch, through a point, more closely than it is known: through its middles in the first turns
-/// and in the last ones. Where a thread ends within these that is no better: see how wide its crest is then.
-pub(super) fn straightened(screw: &Solid, about: &About, pitch: f64, crest: f64) -> [DVec3; 2] {
+/// Returns a refined axis of a screw with this pitch, as a point and a unit direction. The axis passes
+/// through the centres of the first and of the last turns of the range. The result is not better if the
+/// thread ends within these turns; the caller compares the widths of the crests.
+pub(super) fn refined_axis(screw: &Solid, about: &AxisFrame, pitch: f64, crest: f64) -> [DVec3; 2] {
     let mut about = *about;
     let turn = pitch.abs();
     for _ in 0..2 {
         let [low, high] = about.range;
         let turns = ((high - low) / (2.0 * turn)).floor().max(1.0) * turn;
         let apart = high - low - turns;
-        if apart < APART * turn {
+        if apart < MIN_CENTER_DISTANCE * turn {
             break;
         }
-        let center = |range| About { range, ..about }.centered(screw, crest, f64::max);
+        let center = |range| AxisFrame { range, ..about }.fitted_center(screw, crest, f64::max);
         let [first, last] = [[low, low + turns], [high - turns, high]].map(center);
-        let point = about.axis * low.midpoint(high) + inverse(about.axis, (first + last) * 0.5);
-        let axis = (about.axis + inverse(about.axis, last - first) / apart).normalize();
+        let point =
+            about.axis * low.midpoint(high) + lateral_vector(about.axis, (first + last) * 0.5);
+        let axis = (about.axis + lateral_vector(about.axis, last - first) / apart).normalize();
         let half = (high - low) / 2.0;
         let z = point.dot(axis);
-        about = About { axis, middle: flattened(axis)(point), range: [z - half, z + half] };
+        about =
+            AxisFrame { axis, middle: axial_projection(axis)(point), range: [z - half, z + half] };
     }
-    let middle = about.whole(pitch).centered(screw, crest, f64::max);
-    [about.axis * about.range[0] + inverse(about.axis, middle), about.axis]
+    let middle = about.whole_turns(pitch).fitted_center(screw, crest, f64::max);
+    [about.axis * about.range[0] + lateral_vector(about.axis, middle), about.axis]
 }
 
-/// The peak near a place, by halving.
-fn peak(mut at: f64, mut by: f64, strength: impl Fn(f64) -> f64) -> f64 {
+/// Returns a local maximum of `strength` near a frequency, by steps that are halved.
+fn maximum_near(mut at: f64, mut by: f64, strength: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..48 {
         let [left, middle, right] = [at - by, at, at + by].map(&strength);
         if left > middle && left >= right {

@@ -471,7 +471,7 @@ fn minimum_gap_decides_overlap_and_travel() {
     assert!(found.suggestions.is_empty(), "{:?}", found.suggestions);
     let page = html::page(&found, "peg");
     assert!(
-        page.contains("One pair of parts is nearer to each other than what is to be kept, and is")
+        page.contains("One pair of parts is nearer to each other than the minimum gap, and is")
     );
     assert!(
         !page.contains("run into each other, and") && !page.contains("runs into each other as")

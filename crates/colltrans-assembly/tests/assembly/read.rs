@@ -97,15 +97,18 @@ fn faults_of_manifests_are_named_with_their_place() {
         ("[[part]]\nfile = 'c.off'\nrotation = [0, 0, 0, 2]\n", "has length 2, not 1"),
         ("[[part]]\nfile = 'c.off'\nrotation = [[2,0,0],[0,1,0],[0,0,1]]\n", "is not a rotation"),
         ("[[part]]\nfile = 'gone.off'\n", "gone.off"),
-        ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "no part is named d"),
-        ("[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n", "two parts are named c"),
-        ("before = [['c', 'c']]\n[[part]]\nfile = 'c.off'\n", "nothing can leave before itself"),
-        ("subassembly = [{ name = ' ', parts = ['c'] }]\n[[part]]\nfile = 'c.off'\n", "no name"),
-        ("pair = [{ parts = ['c', 'c'], role = 'press' }]\n[[part]]\nfile = 'c.off'\n", "no pair"),
+        ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "unknown part d"),
+        ("[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n", "duplicate part name c"),
+        ("before = [['c', 'c']]\n[[part]]\nfile = 'c.off'\n", "cyclic order constraints: c"),
+        ("subassembly = [{ name = ' ', parts = ['c'] }]\n[[part]]\nfile = 'c.off'\n", "empty name"),
+        (
+            "pair = [{ parts = ['c', 'c'], role = 'press' }]\n[[part]]\nfile = 'c.off'\n",
+            "pair c,c names the same part twice",
+        ),
         (
             "pair = [{ parts = ['c', 'd'] }]\n[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n\
              name = 'd'\n",
-            "give a role or a tolerance",
+            "neither a role nor a tolerance",
         ),
         // What is beyond a list of so many is not dropped.
         ("before = [['c', 'd', 'e']]\n", "found a list of 3, expected a list of 2"),

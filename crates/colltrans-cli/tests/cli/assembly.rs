@@ -240,9 +240,9 @@ fn sources_that_are_wrong_are_named() {
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = { matrix = [[1, 0], [0, 1]] }\n");
     refused(place, &["bad.toml"], 3, &["bad.toml: line 3", "three rows of three numbers"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nname = ' '\n");
-    refused(place, &["bad.toml"], 3, &["bad.toml: a part or a subassembly has no name"]);
+    refused(place, &["bad.toml"], 3, &["bad.toml: a part or subassembly has an empty name"]);
     write("bad.toml", "ignore = [['a', 'a']]\n[[part]]\nfile = 'cube.off'\nname = 'a'\n");
-    refused(place, &["bad.toml"], 3, &["bad.toml: a and a are no pair"]);
+    refused(place, &["bad.toml"], 3, &["bad.toml: pair a,a names the same part twice"]);
     write("bad.json", "{\"parts\": [\n{\"file\": \"cube.off\", \"turned\": 3}]}");
     refused(place, &["bad.json"], 3, &["bad.json: line 2", "turned"]);
     write("bad.json", "{\"parts\": [{\"file\": \"gone.off\"}, {\"file\": \"cube.off\"}]}");
@@ -304,11 +304,11 @@ fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
         (&["--tolerance", "wide"], &["--tolerance", "wide"]),
         (&["--tolerance", "1", "--keep-apart", "1"], &["--tolerance", "--keep-apart"]),
         (&["--direction", "0,0"], &["--direction"]),
-        (&["--map", "hig"], &["no part is named hig; is it high?"]),
-        (&["--map", "q*"], &["no part is named q*"]),
-        (&["--fixed", "lo"], &["no part is named lo; is it low?"]),
+        (&["--map", "hig"], &["unknown part hig; did you mean high?"]),
+        (&["--map", "q*"], &["unknown part q*"]),
+        (&["--fixed", "lo"], &["unknown part lo; did you mean low?"]),
         (&["--ignore", "low"], &["--ignore low: not two names"]),
-        (&["--ignore", "low,low"], &["low and low are no pair"]),
+        (&["--ignore", "low,low"], &["pair low,low names the same part twice"]),
         (&["--joint", "elbow"], &["--joint elbow: not NAME=VALUE"]),
         (&["--joint", "elbow=nan"], &["--joint elbow=nan: not NAME=VALUE"]),
         (&["--samples", "-3"], &["--samples", "from 0 to 655362"]),
@@ -527,7 +527,7 @@ fn what_is_asked_of_a_plan_is_kept_to() {
     assert!(facts(&data(), &upright)["stuck"][0]["constrained"] == true);
     let wrong: [(&[&str], &[&str]); 5] = [
         (&["--before", "bolt_0,cover", "--after", "bolt_0,cover"], &["bolt_0, cover"]),
-        (&["--together", "cover"], &["takes more parts than 1"]),
+        (&["--together", "cover"], &["needs at least two parts; 1 given"]),
         (&["--never", "cover"], &["not PART=X,Y,Z"]),
         (&["--never", "cover=z@200"], &["200 degrees"]),
         (&["--remove", "*"], &["16 of 16 parts"]),

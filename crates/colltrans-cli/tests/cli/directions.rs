@@ -110,7 +110,7 @@ fn parts_of_an_assembly_are_told_with_what_blocks_them() {
     let proof = Path::new(output).join("free-cover.json");
     let text = answered(&data(), &["verify", proof.to_str().unwrap()]);
     assert!(text.contains("the moving body cannot leave along any direction"), "{text}");
-    refused(&data(), &["assembly", "gearbox_small", "--free", "x"], 2, &["no part is named x"]);
+    refused(&data(), &["assembly", "gearbox_small", "--free", "x"], 2, &["unknown part x"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Real assemblies, where the collection of meshes is beside the checkout.
+//! Tests real assemblies, if the collection of meshes is next to the checkout.
 
 use colltrans_testkit::TemporaryFolder;
 use std::path::{Path, PathBuf};
@@ -13,23 +13,25 @@ use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, Fit, Room, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read};
 
-fn collection() -> Option<PathBuf> {
+/// Returns the folder of the collection; `None` if it is missing.
+fn collection_folder() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     folder.is_dir().then(|| folder.canonicalize().unwrap())
 }
 
-/// For manifests that name files by absolute paths.
-fn elsewhere() -> ReadOptions {
+/// Returns options for manifests that name files by absolute paths.
+fn outside_allowed() -> ReadOptions {
     ReadOptions::default().with_allow_outside(true)
 }
 
+/// Computes the plan with default options.
 fn planned(bodies: &Bodies) -> Plan {
     crate::common::planned(bodies, PlanOptions::default())
 }
 
 #[test]
-fn the_gearbox_comes_apart_with_its_bearings_as_groups() {
-    let Some(folder) = collection() else { return };
+fn gearbox_plan_removes_bearings_as_groups() {
+    let Some(folder) = collection_folder() else { return };
     let assembly = read(folder.join("gearbox"), &ReadOptions::default()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::Tolerance(0.06)).unwrap();
     let plan = planned(&bodies);
@@ -58,8 +60,8 @@ fn the_gearbox_comes_apart_with_its_bearings_as_groups() {
 }
 
 #[test]
-fn the_suggested_tolerance_takes_the_gearbox_apart() {
-    let Some(folder) = collection() else { return };
+fn suggested_tolerance_of_gearbox_permits_full_plan() {
+    let Some(folder) = collection_folder() else { return };
     let assembly = read(folder.join("gearbox"), &ReadOptions::default()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let start = Start::new(&bodies, Watch::default()).unwrap();
@@ -74,10 +76,10 @@ fn the_suggested_tolerance_takes_the_gearbox_apart() {
     assert_eq!(sizes, [&[1; 8][..], &[2, 9, 9]].concat());
 }
 
-/// Four legs, drawn anyhow into their threads, which end within them.
+/// Four legs overlap the ends of their threads at arbitrary phases.
 #[test]
-fn the_legs_of_the_table_are_unscrewed() {
-    let Some(folder) = collection() else { return };
+fn legs_of_table_are_unscrewed() {
+    let Some(folder) = collection_folder() else { return };
     let file = folder.join("assemblies/square_table/assembly.toml");
     let assembly = read(file, &ReadOptions::default()).unwrap();
     let thread = PairFit { role: Some(Role::Thread), tolerance: None };
@@ -86,7 +88,7 @@ fn the_legs_of_the_table_are_unscrewed() {
     let plan = planned(&bodies);
     assert!(plan.stuck.is_empty() && plan.steps.len() == 4, "{:?}", plan.stuck);
     assert_eq!(assembly.names(&plan.last), ["top"]);
-    // One is drawn by so much into the top.
+    // Overlap of each leg with the top.
     let drawn: [f64; 4] = [0.0, 2.7e-4, 0.0, 0.0];
     for step in &plan.steps {
         let turn = step.turn().unwrap();
@@ -97,17 +99,17 @@ fn the_legs_of_the_table_are_unscrewed() {
     }
 }
 
-/// 24 overlapping pieces of a car, each a part: rooms where overlaps are ignored.
+/// 24 overlapping pieces of a car as parts: free travels with ignored overlaps.
 #[test]
-fn rooms_of_overlapping_pieces_are_those_of_all_pairs() {
-    let Some(folder) = collection() else { return };
+fn free_travel_of_overlapping_pieces_is_minimum_over_pairs() {
+    let Some(folder) = collection_folder() else { return };
     let piece = |k: usize| folder.join(format!("car_seat/car_{k}.stl"));
     let parts: Vec<PathBuf> = (1..=24).map(piece).collect();
     let list: Vec<_> = parts.iter().map(|p| serde_json::json!({ "file": p })).collect();
     let place = TemporaryFolder::new();
     let file = place.path().join("car.json");
     std::fs::write(&file, serde_json::json!({ "parts": list }).to_string()).unwrap();
-    let assembly = read(&file, &elsewhere()).unwrap();
+    let assembly = read(&file, &outside_allowed()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     assert!(bodies.overlapping().len() > 50);
     let start = StartOverlap::Ignore;
@@ -131,7 +133,7 @@ fn rooms_of_overlapping_pieces_are_those_of_all_pairs() {
     }
 }
 
-/// The seat where somebody sits with the back to the bonnet, 0.3 aside.
+/// Returns a seat in a car, displaced by 0.3, facing the rear.
 fn seat_in_car(folder: &Path) -> Assembly {
     let files = |name: &str, count: usize| -> Vec<PathBuf> {
         (1..=count).map(|k| folder.join(format!("car_seat/{name}_{k}.stl"))).collect()
@@ -144,12 +146,12 @@ fn seat_in_car(folder: &Path) -> Assembly {
     let place = TemporaryFolder::new();
     let file = place.path().join("seat.json");
     std::fs::write(&file, manifest.to_string()).unwrap();
-    read(&file, &elsewhere()).unwrap()
+    read(&file, &outside_allowed()).unwrap()
 }
 
 #[test]
-fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
-    let Some(folder) = collection() else { return };
+fn seat_leaves_car_along_narrow_region() {
+    let Some(folder) = collection_folder() else { return };
     let assembly = seat_in_car(&folder);
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     assert!(!bodies.overlaps(0, 1));
@@ -159,7 +161,7 @@ fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
     let map = RemovalMap::new(&bodies, &[1], &[], options, Watch::default()).unwrap();
     assert!((0.002..0.008).contains(&map.free_share()), "{}", map.free_share());
     assert_eq!(map.regions.len(), 1);
-    // Long and thin: much longer than a disc of its size is wide.
+    // The region is elongated: its extent exceeds that of a disc of the same area.
     let region = &map.regions[0];
     let far = |d: &glam::DVec3| d.angle_between(region.center);
     let reach = region.border.iter().map(far).fold(0.0, f64::max);
@@ -168,16 +170,16 @@ fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
 }
 
 #[test]
-fn the_arm_is_read_with_its_package_in_its_own_folder() {
-    let Some(folder) = collection() else { return };
+fn urdf_package_in_folder_of_file_is_read() {
+    let Some(folder) = collection_folder() else { return };
     let panda = folder.join("panda");
     let options = ReadOptions::default().with_packages(vec![panda.clone()]);
     assert_eq!(read(panda.join("panda.urdf"), &options).unwrap().parts().len(), 11);
 }
 
 #[test]
-fn a_3mf_package_and_a_glb_file_of_others_are_read() {
-    let Some(folder) = collection() else { return };
+fn external_3mf_and_glb_files_are_read() {
+    let Some(folder) = collection_folder() else { return };
     let open = |name: &str| read(folder.join("assemblies").join(name), &ReadOptions::default());
     assert_eq!(open("heartgears.3mf").unwrap().parts().len(), 1);
     assert!(open("ReciprocatingSaw.glb").unwrap().parts().len() > 10);

@@ -1,16 +1,16 @@
-//! The corpora of the fuzz targets of readers as ordinary tests. A finding becomes one more file.
+//! Runs the corpora of the fuzz targets of readers as ordinary tests. Each finding is added as a file.
 
 use colltrans_testkit::oracle::fuzz::corpus;
 
 #[path = "../../../../fuzz/readers.rs"]
-#[allow(dead_code, reason = "documents in JSON are those of other targets")]
+#[allow(dead_code, reason = "the JSON documents belong to other targets")]
 mod readers;
 
-/// Numbers that are too large, too small, none.
+/// Numbers that are too large, negative, or out of range of a double.
 const NUMBERS: [&[u8]; 4] = [b"18446744073709551615", b"4294967295", b"-1", b"1e999"];
 
-/// The file, cut and changed in one place after another, and each of its numbers replaced.
-fn changed(seed: &[u8], mut target: impl FnMut(&[u8])) {
+/// Calls the target with the file truncated or changed at each byte, and with each of its numbers replaced.
+fn run_on_mutations(seed: &[u8], mut target: impl FnMut(&[u8])) {
     for at in 0..seed.len() {
         target(&seed[..at]);
         for byte in [seed[at] ^ 0x80, seed[at] ^ 1, b'9', b'<', b'"'] {
@@ -28,29 +28,29 @@ fn changed(seed: &[u8], mut target: impl FnMut(&[u8])) {
     }
 }
 
-/// Runs a target over every file of its corpus, as it is and changed.
-fn replay(name: &str, target: fn(&[u8]), at_least: usize) {
+/// Runs a target over every file of its corpus; small files are also mutated.
+fn run_on_corpus(name: &str, target: fn(&[u8]), at_least: usize) {
     for seed in corpus(name, at_least) {
         target(&seed);
         if seed.len() < 4_096 {
-            changed(&seed, target);
+            run_on_mutations(&seed, target);
         }
     }
 }
 
 #[test]
-fn corpora_of_readers() {
-    replay("threemf", readers::threemf, 4);
-    replay("gltf", readers::gltf, 4);
-    replay("urdf", readers::urdf, 3);
-    replay("manifest", readers::manifest, 3);
+fn readers_handle_corpora_and_mutations() {
+    run_on_corpus("threemf", readers::threemf, 4);
+    run_on_corpus("gltf", readers::gltf, 4);
+    run_on_corpus("urdf", readers::urdf, 3);
+    run_on_corpus("manifest", readers::manifest, 3);
 }
 
 type Target = fn(&[u8]);
 
-/// Files that each generator writes from arbitrary bytes, and those that once broke a reader.
+/// Runs generated files from pseudo-random bytes, and files that once broke a reader.
 #[test]
-fn generated_files_of_each_format_are_read_or_refused() {
+fn generated_files_are_read_or_rejected() {
     let targets: [(&str, Target); 7] = [
         ("stl", readers::stl),
         ("obj", readers::obj),

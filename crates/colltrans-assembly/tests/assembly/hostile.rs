@@ -1,4 +1,4 @@
-//! Names that want to be more than names: in every field of every source, to every output.
+//! Tests that hostile names in every field of every source stay text in every output.
 
 #![allow(
     clippy::format_push_string,
@@ -18,7 +18,8 @@ use colltrans_assembly_io::read::{ReadOptions, read_from};
 use quick_xml::events::Event;
 use serde_json::{Value, json};
 
-/// Out of a text, an attribute, a script, a comment; a formula; codes for a terminal.
+/// Texts that try to break out of text, attributes, scripts and comments, formulas, and terminal control
+/// codes.
 const HOSTILE: [&str; 6] = [
     "</td></text></title></script><script>window.hit=1</script><img src=x onerror=window.hit=1>",
     "\"><svg onload=window.hit=1>' onmouseover='window.hit=1",
@@ -28,7 +29,7 @@ const HOSTILE: [&str; 6] = [
     "\t-1,\"\n",
 ];
 
-/// What each kind of output says, made of an assembly of cubes that partly overlap.
+/// The outputs for an assembly.
 struct Outputs {
     page: String,
     table: String,
@@ -37,7 +38,8 @@ struct Outputs {
     facts: Value,
 }
 
-fn outputs(assembly: &Assembly, title: &str) -> Outputs {
+/// Computes all outputs.
+fn all_outputs(assembly: &Assembly, title: &str) -> Outputs {
     let watch = Watch::default();
     let bodies = Bodies::new(assembly, Fit::Tolerance(1e-6)).unwrap();
     let question = Question::default().with_options(PlanOptions::default().with_samples(12));
@@ -55,8 +57,8 @@ fn outputs(assembly: &Assembly, title: &str) -> Outputs {
     }
 }
 
-/// Every element of a page is one that this program writes, and has no attribute that it does not.
-fn only_own_elements(page: &str) {
+/// Asserts that a page contains only elements and attributes that this program writes.
+fn assert_own_elements(page: &str) {
     let text = page.split("<script>").next().unwrap();
     let (mut rest, mut scripts) = (text, 0);
     while let Some(at) = rest.find('<') {
@@ -65,28 +67,29 @@ fn only_own_elements(page: &str) {
         let tag = rest[..end].trim_start_matches('/');
         let name = tag.split([' ', '/']).next().unwrap();
         assert!(!matches!(name, "img" | "iframe" | "a") && !name.starts_with("!--"), "{tag}");
-        // Outside of what is quoted, attributes have names.
+        // Text outside of quotes contains attribute names.
         for (k, outside) in tag.split('"').enumerate() {
             let handler = outside.split_whitespace().any(|word| word.starts_with("on"));
             assert!(k % 2 == 1 || !handler, "{tag}");
         }
         scripts += usize::from(name == "script" && !rest.starts_with('/'));
     }
-    assert!(scripts <= 1, "the data of the viewer");
-    // Behind the pictures only the viewer's own program begins, and ends once.
+    assert!(scripts <= 1, "only the data of the viewer");
+    // After the pictures there is only the script of the viewer.
     assert_eq!(page.matches("<script>").count(), 1);
 }
 
-fn check(assembly: &Assembly, title: &str) {
-    let Outputs { page, table, pictures, animation, facts } = outputs(assembly, title);
-    only_own_elements(&page);
+/// Asserts that the names of the parts are text in all outputs.
+fn assert_names_stay_text(assembly: &Assembly, title: &str) {
+    let Outputs { page, table, pictures, animation, facts } = all_outputs(assembly, title);
+    assert_own_elements(&page);
     for part in assembly.parts() {
         let name = part.name();
         assert!(facts.to_string().contains(&json!(name).to_string()));
         let escaped = name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        assert!(page.contains(&escaped.replace('"', "&quot;")), "{name:?} as it is");
+        assert!(page.contains(&escaped.replace('"', "&quot;")), "{name:?} is not in the page");
     }
-    // The animation is glTF, whose names are JSON.
+    // The names in the animation are JSON texts.
     let size = u32::from_le_bytes(animation[12..16].try_into().unwrap()) as usize;
     let document: Value = serde_json::from_slice(&animation[20..20 + size]).unwrap();
     for (node, part) in document["nodes"].as_array().unwrap().iter().zip(assembly.parts()) {
@@ -106,11 +109,11 @@ fn check(assembly: &Assembly, title: &str) {
         }
         assert!(!elements.contains_key("script") && !elements.contains_key("img"), "{elements:?}");
     }
-    cells_are_texts(&table);
+    assert_cells_are_texts(&table);
 }
 
-/// Seven cells a row, none of which is a formula.
-fn cells_are_texts(table: &str) {
+/// Asserts that each row has seven cells and that no text cell is a formula.
+fn assert_cells_are_texts(table: &str) {
     let (mut cells, mut cell, mut quoted) = (Vec::new(), String::new(), false);
     for c in table.chars() {
         match c {
@@ -131,27 +134,28 @@ fn cells_are_texts(table: &str) {
     assert!(!quoted && cells.is_empty() && cell.is_empty());
 }
 
+/// Reads an assembly from memory.
 fn open(name: &str, files: &[(&str, Vec<u8>)]) -> Assembly {
     let files: BTreeMap<PathBuf, Vec<u8>> =
         files.iter().map(|(name, bytes)| (name.into(), bytes.clone())).collect();
     read_from(name, &files, &ReadOptions::default().with_skip_missing(true)).unwrap()
 }
 
-/// As XML writes it.
-fn xml(text: &str) -> String {
+/// Escapes a text for XML.
+fn xml_escaped(text: &str) -> String {
     let plain: String = text.chars().filter(|c| !c.is_control()).collect();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;").replace('\'', "&apos;")
 }
 
 #[test]
-fn manifests() {
+fn hostile_names_in_manifests_stay_text() {
     let parts: Vec<Value> = HOSTILE
         .iter()
         .enumerate()
         .map(|(k, name)| {
             json!({"file": "c.off", "name": name, "translation": [0.0, 0.9 * k as f64, 0.0]})
         })
-        // Missing: the name becomes a note.
+        // A missing mesh, whose name becomes a note.
         .chain([json!({"file": HOSTILE[0].replace('/', "")})])
         .collect();
     for (k, unit) in HOSTILE.iter().enumerate() {
@@ -161,9 +165,9 @@ fn manifests() {
         let assembly = open("m.json", &files);
         assert_eq!((assembly.parts().len(), assembly.unit()), (6, Some(*unit)));
         assert_eq!(assembly.notes().len(), 1);
-        check(&assembly, HOSTILE[k]);
+        assert_names_stay_text(&assembly, HOSTILE[k]);
     }
-    // TOML writes strings as JSON does, but for the line separator.
+    // TOML and JSON strings have the same syntax, except for the control character U+009B.
     let quoted = |text: &str| serde_json::to_string(text).unwrap();
     let toml: String = HOSTILE
         .iter()
@@ -172,11 +176,14 @@ fn manifests() {
         })
         .collect();
     let toml = format!("unit = {}\n{toml}", quoted(HOSTILE[0]));
-    check(&open("m.toml", &[("m.toml", toml.into_bytes()), ("c.off", CUBE.into())]), HOSTILE[0]);
+    assert_names_stay_text(
+        &open("m.toml", &[("m.toml", toml.into_bytes()), ("c.off", CUBE.into())]),
+        HOSTILE[0],
+    );
 }
 
 #[test]
-fn names_of_files() {
+fn hostile_file_names_stay_text() {
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     for name in HOSTILE {
         let name = name.replace(['/', '\0'], "");
@@ -184,57 +191,57 @@ fn names_of_files() {
             let file = format!("{name}.{extension}");
             let assembly = open(&file, &[(&file, text.into())]);
             assert_eq!(assembly.parts()[0].name(), name);
-            check(&assembly, &name);
+            assert_names_stay_text(&assembly, &name);
         }
     }
 }
 
 #[test]
-fn robots() {
+fn hostile_names_in_robots_stay_text() {
     let links: String = HOSTILE
         .iter()
         .map(|name| {
             let shape = "<collision><geometry><box size='1 1 1'/></geometry></collision>";
-            format!("<link name=\"{}\">{shape}</link>", xml(name))
+            format!("<link name=\"{}\">{shape}</link>", xml_escaped(name))
         })
         .collect();
     let lost = format!(
         "<link name='l'><collision><geometry><mesh filename=\"{}\"/></geometry></collision></link>",
-        xml(HOSTILE[1])
+        xml_escaped(HOSTILE[1])
     );
-    let text = format!("<robot name=\"{}\">{links}{lost}</robot>", xml(HOSTILE[0]));
+    let text = format!("<robot name=\"{}\">{links}{lost}</robot>", xml_escaped(HOSTILE[0]));
     let assembly = open("r.urdf", &[("r.urdf", text.into_bytes())]);
     assert_eq!((assembly.parts().len(), assembly.notes().len()), (6, 1));
-    check(&assembly, HOSTILE[1]);
+    assert_names_stay_text(&assembly, HOSTILE[1]);
 }
 
 #[test]
-fn packages() {
+fn hostile_names_in_3mf_packages_stay_text() {
     let mesh = mesh_of_3mf([1.0; 3]);
     let (mut objects, mut items) = (String::new(), String::new());
     for (k, name) in HOSTILE.iter().enumerate() {
-        objects += &format!("<object id=\"{k}\" name=\"{}\">{mesh}</object>", xml(name));
+        objects += &format!("<object id=\"{k}\" name=\"{}\">{mesh}</object>", xml_escaped(name));
         items += &format!("<item objectid=\"{k}\"/>");
     }
     let model = format!("<model><resources>{objects}</resources><build>{items}</build></model>");
     let assembly = open("p.3mf", &[("p.3mf", package(&[("3D/3dmodel.model", &model)]))]);
     assert_eq!(assembly.parts().len(), 6);
-    check(&assembly, HOSTILE[2]);
+    assert_names_stay_text(&assembly, HOSTILE[2]);
 }
 
 #[test]
-fn nodes() {
+fn hostile_node_names_in_gltf_stay_text() {
     let names = HOSTILE.map(str::to_owned);
     let manifest = json!({"parts": names.iter().map(|name| {
         json!({"file": "c.off", "name": name})
     }).collect::<Vec<_>>()});
     let files = [("m.json", manifest.to_string().into_bytes()), ("c.off", CUBE.into())];
-    // Its own animation, read back.
-    let animation = outputs(&open("m.json", &files), "t").animation;
+    // Reads the animation of the program itself.
+    let animation = all_outputs(&open("m.json", &files), "t").animation;
     let assembly = open("a.glb", &[("a.glb", animation)]);
     let found: Vec<&str> = assembly.parts().iter().map(colltrans_assembly::Part::name).collect();
     assert_eq!(found, names);
-    check(&assembly, HOSTILE[3]);
+    assert_names_stay_text(&assembly, HOSTILE[3]);
     let errors = read_from(Path::new(HOSTILE[0]), &BTreeMap::new(), &ReadOptions::default());
     assert!(errors.is_err());
 }

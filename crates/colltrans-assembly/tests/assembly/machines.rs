@@ -1,4 +1,4 @@
-//! Machines whose right order is known: plans without options come to it.
+//! Tests machines with a known order of disassembly: default plans find it.
 
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
@@ -11,6 +11,7 @@ use colltrans_testkit::machines::{
 };
 use glam::DAffine3;
 
+/// Builds an assembly.
 fn assembled(parts: Vec<NamedPart>) -> Assembly {
     let piece = |mesh: colltrans_testkit::shapes::Mesh| Piece {
         mesh: Mesh::new(mesh.vertices, mesh.faces),
@@ -22,45 +23,47 @@ fn assembled(parts: Vec<NamedPart>) -> Assembly {
     Assembly::new(parts.into_iter().map(part).collect::<Vec<Part>>()).unwrap()
 }
 
-/// What is told of a plan, and that it is whole.
-fn told(assembly: &Assembly, plan: &Plan, last: &str) -> Vec<String> {
+/// Returns the parts that each stage removes, and asserts that the plan is complete and that only `last`
+/// remains.
+fn stage_texts(assembly: &Assembly, plan: &Plan, last: &str) -> Vec<String> {
     assert!(plan.left.is_empty() && plan.stuck.is_empty(), "{:?}", plan.stuck);
     assert_eq!(assembly.names(&plan.last), [last]);
     plan.stages().iter().map(|stage| plan.takes(assembly, stage)).collect()
 }
 
 #[test]
-fn flanges_come_apart_as_a_mechanic_does_it() {
+fn flange_plan_removes_bolts_first_and_nuts_last() {
     for bolts in [4, 12] {
         let assembly = assembled(flange(bolts, 16));
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         let plan = crate::common::planned(&bodies, PlanOptions::default());
         let all = |what: &str| format!("{bolts} x {what}");
         let known = [all("bolt"), all("washer"), "upper".into(), "gasket".into(), all("nut")];
-        assert_eq!(told(&assembly, &plan, "lower"), known);
+        assert_eq!(stage_texts(&assembly, &plan, "lower"), known);
         let nut = plan.steps.last().unwrap();
         assert!(nut.direction.z < -0.999 && nut.travel.value < 9.0, "{nut:?}");
     }
 }
 
 #[test]
-fn a_radial_engine_comes_apart_cylinder_by_cylinder() {
+fn radial_engine_plan_finishes_each_cylinder() {
     let assembly = assembled(radial_engine(5));
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let plan = crate::common::planned(&bodies, PlanOptions::default());
-    let told = told(&assembly, &plan, "case");
+    let stage_texts = stage_texts(&assembly, &plan, "case");
     let at = |name: &str| {
-        let found = told.iter().position(|step| step == name);
-        found.unwrap_or_else(|| panic!("no {name} in {told:?}"))
+        let found = stage_texts.iter().position(|step| step == name);
+        found.unwrap_or_else(|| panic!("no {name} in {stage_texts:?}"))
     };
-    // All heads first; then one cylinder after another: what its barrel held is taken care of at once.
-    assert!(at("5 x screw") < at("cover") && at("cover") < at("shaft"), "{told:?}");
+    // All heads are removed first, then one cylinder after another. The parts freed by a barrel are removed
+    // at once.
+    assert!(at("5 x screw") < at("cover") && at("cover") < at("shaft"), "{stage_texts:?}");
     for k in 0..5 {
         let chain = ["barrel", "pin", "piston", "rod"].map(|name| at(&format!("{name}_{k}")));
-        assert!(at("5 x head") < chain[0], "{told:?}");
-        assert!(chain.windows(2).all(|pair| pair[1] == pair[0] + 1), "{told:?}");
+        assert!(at("5 x head") < chain[0], "{stage_texts:?}");
+        assert!(chain.windows(2).all(|pair| pair[1] == pair[0] + 1), "{stage_texts:?}");
     }
-    assert_eq!(told.len(), 4 + 5 * 4, "{told:?}");
+    assert_eq!(stage_texts.len(), 4 + 5 * 4, "{stage_texts:?}");
     let repeats = plan.repeats(&plan.stages());
     assert_eq!(repeats.last(), Some(&(4..8, 5)), "{repeats:?}");
     assert_eq!(repeats.len(), 5);
@@ -70,8 +73,8 @@ fn a_radial_engine_comes_apart_cylinder_by_cylinder() {
     assert!(page.contains("barrel_4") && page.contains("rod_3"));
 }
 
-/// Steps that unscrew parts: proven, and looked at against what is left.
-fn unscrewed(assembly: &Assembly, plan: &Plan, turns: std::ops::Range<f64>) {
+/// Asserts that steps that unscrew parts are proven and free of the remaining parts.
+fn assert_unscrewing_is_free(assembly: &Assembly, plan: &Plan, turns: std::ops::Range<f64>) {
     let mut left: Vec<usize> = (0..assembly.parts().len()).collect();
     for step in &plan.steps {
         left.retain(|part| !step.parts.contains(part));
@@ -82,10 +85,10 @@ fn unscrewed(assembly: &Assembly, plan: &Plan, turns: std::ops::Range<f64>) {
     }
 }
 
-/// Threads with play, which do not overlap: found where they hold, and taken as suggested.
+/// Threads with clearance, which do not overlap, are suggested, and the plan unscrews them.
 #[test]
 #[ignore = "long: threads of many facets"]
-fn screws_in_modelled_threads_are_found_and_unscrewed() {
+fn threads_with_clearance_are_suggested_and_unscrewed() {
     let drawn = assembled(threaded_block());
     let fit = Fit::default_for(&drawn);
     let found = crate::common::suggested(&Bodies::new(&drawn, fit).unwrap());
@@ -95,14 +98,14 @@ fn screws_in_modelled_threads_are_found_and_unscrewed() {
     let assembly = applied(drawn.clone(), &found).unwrap();
     let bodies = Bodies::new(&assembly, fit).unwrap();
     let plan = crate::common::planned(&bodies, PlanOptions::default());
-    assert_eq!(told(&assembly, &plan, "base"), ["2 x screw", "cap", "shaft"]);
+    assert_eq!(stage_texts(&assembly, &plan, "base"), ["2 x screw", "cap", "shaft"]);
     assert!(plan.steps[..2].iter().all(|step| step.turn().is_some()), "{plan:?}");
-    unscrewed(&assembly, &plan, 1.8..2.3);
+    assert_unscrewing_is_free(&assembly, &plan, 1.8..2.3);
 }
 
 #[test]
 #[ignore = "long: threads of many facets"]
-fn legs_that_run_into_their_threads_are_turned_to_where_they_fit_and_unscrewed() {
+fn legs_overlapping_their_threads_are_rotated_and_unscrewed() {
     let drawn = assembled(screwed_table());
     let fit = Fit::default_for(&drawn);
     let found = crate::common::suggested(&Bodies::new(&drawn, fit).unwrap());
@@ -110,7 +113,7 @@ fn legs_that_run_into_their_threads_are_turned_to_where_they_fit_and_unscrewed()
     let assembly = applied(drawn.clone(), &found).unwrap();
     let bodies = Bodies::new(&assembly, fit).unwrap();
     let plan = crate::common::planned(&bodies, PlanOptions::default());
-    assert_eq!(told(&assembly, &plan, "top"), ["4 x leg"]);
+    assert_eq!(stage_texts(&assembly, &plan, "top"), ["4 x leg"]);
     for step in &plan.steps {
         let (by, aside) = TABLE_LEGS[step.parts[0] - 1];
         let turn = step.turn().unwrap();
@@ -119,9 +122,9 @@ fn legs_that_run_into_their_threads_are_turned_to_where_they_fit_and_unscrewed()
             turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == fit.tolerance()),
             "{turn:?}"
         );
-        // The leg goes down: it is turned back, as seen from there.
+        // The leg moves down, therefore the rotation is reversed in its direction.
         assert!((turn.phase - by).abs() < 0.1, "{by} {turn:?}");
         assert!((turn.aside.length() - known).abs() < 0.02, "{aside:?} {turn:?}");
     }
-    unscrewed(&assembly, &plan, 1.95..2.1);
+    assert_unscrewing_is_free(&assembly, &plan, 1.95..2.1);
 }

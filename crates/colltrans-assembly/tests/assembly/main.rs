@@ -1,4 +1,4 @@
-//! Assemblies and robots, in one program: each is linked for itself.
+//! Tests of assemblies and robots as one program, because each program is linked separately.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! Every kind of source, in small files that the tests write.
+//! Tests every kind of source with small files that the tests write.
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
@@ -15,6 +15,7 @@ use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{Geometry, ReadOptions, read};
 use glam::DVec3;
 
+/// Creates a folder with files.
 fn folder(files: &[(&str, &str)]) -> TemporaryFolder {
     let folder = TemporaryFolder::new();
     for (name, text) in files {
@@ -25,22 +26,25 @@ fn folder(files: &[(&str, &str)]) -> TemporaryFolder {
     folder
 }
 
+/// Reads a source with default options.
 fn open(path: impl AsRef<Path>) -> Result<Assembly, ReadError> {
     read(path, &ReadOptions::default())
 }
 
+/// Returns the corners of a part's box.
 fn bounds(assembly: &Assembly, name: &str) -> [DVec3; 2] {
     let bounds = assembly.parts()[assembly.index(name).unwrap()].solid().bounds();
     [bounds.low, bounds.high]
 }
 
-fn near(found: [DVec3; 2], low: [f64; 3], high: [f64; 3]) {
+/// Asserts that a box has these corners, up to `1e-6`.
+fn assert_bounds(found: [DVec3; 2], low: [f64; 3], high: [f64; 3]) {
     let off = (found[0] - DVec3::from(low)).abs().max((found[1] - DVec3::from(high)).abs());
     assert!(off.max_element() < 1e-6, "{found:?} is not {low:?} to {high:?}");
 }
 
 #[test]
-fn a_folder_is_read_in_natural_order() {
+fn folder_is_read_in_natural_order() {
     let folder = folder(&[("p10.off", CUBE), ("p9.off", CUBE), ("notes.txt", "no mesh")]);
     let assembly = open(folder.path()).unwrap();
     assert_eq!(assembly.names(&[0, 1]), ["p9", "p10"]);
@@ -50,18 +54,18 @@ fn a_folder_is_read_in_natural_order() {
 }
 
 #[test]
-fn a_manifest_beside_the_meshes_of_a_folder_is_said_not_to_be_read() {
+fn unused_manifest_in_folder_is_noted() {
     let toml = "[[part]]\nfile = 'p.off'\ntranslation = [5, 0, 0]\n";
     let folder = folder(&[("p.off", CUBE), ("assembly.toml", toml), ("answer.json", "{}")]);
     let assembly = open(folder.path()).unwrap();
-    near(bounds(&assembly, "p"), [0.0; 3], [1.0; 3]);
+    assert_bounds(bounds(&assembly, "p"), [0.0; 3], [1.0; 3]);
     let [note] = assembly.notes() else { panic!("{:?}", assembly.notes()) };
     assert!(note.starts_with("not read: assembly.toml; "), "{note}");
     assert!(open(folder.path().join("assembly.toml")).unwrap().notes().is_empty());
 }
 
 #[test]
-fn manifests_place_parts_in_toml_and_json() {
+fn manifests_in_toml_and_json_place_parts() {
     let toml = "unit = 'mm'\nignore = [['a', 'b']]\nignore_always = [['c', 'b']]\n\
         [[part]]\nfile = 'c.off'\nname = 'a'\n\
         translation = [5, 0, 0]\nrotation = { rpy_degrees = [0, 0, 90] }\nscale = 2\nfixed = true\n\
@@ -82,15 +86,15 @@ fn manifests_place_parts_in_toml_and_json() {
         assert_eq!(assembly.ignored(1, 2), Some(Ignored::Always));
         assert_eq!(assembly.ignored(0, 2), None);
         assert!(assembly.parts()[0].fixed());
-        near(bounds(&assembly, "a"), [3.0, 0.0, 0.0], [5.0, 2.0, 2.0]);
-        near(bounds(&assembly, "b"), [-1.0, -1.0, 0.0], [0.0, 0.0, 3.0]);
-        near(bounds(&assembly, "c"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
+        assert_bounds(bounds(&assembly, "a"), [3.0, 0.0, 0.0], [5.0, 2.0, 2.0]);
+        assert_bounds(bounds(&assembly, "b"), [-1.0, -1.0, 0.0], [0.0, 0.0, 3.0]);
+        assert_bounds(bounds(&assembly, "c"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
         assert_eq!(assembly.parts()[1].facets(), 12);
     }
 }
 
 #[test]
-fn faults_of_manifests_are_named_with_their_place() {
+fn manifest_errors_state_file_and_place() {
     let cases = [
         ("[[part]]\nfile = 'c.off'\nturned = 3\n", "line 3"),
         ("[[part]]\nfile = 'c.off'\nscale = 0\n", "part 1 (c): scale"),
@@ -110,7 +114,7 @@ fn faults_of_manifests_are_named_with_their_place() {
              name = 'd'\n",
             "neither a role nor a tolerance",
         ),
-        // What is beyond a list of so many is not dropped.
+        // Lists that are too long or too short are rejected.
         ("before = [['c', 'd', 'e']]\n", "found a list of 3, expected a list of 2"),
         ("ignore = [['c']]\n", "found a list of 1, expected a list of 2"),
         ("pair = [{ parts = ['c', 'd', 'e'], role = 'press' }]\n", "expected a list of 2"),
@@ -143,7 +147,7 @@ const URDF: &str = r#"<robot name="r">
 </robot>"#;
 
 #[test]
-fn links_of_a_robot_are_placed_by_its_joints() {
+fn joint_values_place_links_of_robot() {
     let folder = folder(&[("robot.urdf", URDF), ("kit/meshes/c.off", CUBE)]);
     let file = folder.path().join("robot.urdf");
     let mut options = ReadOptions::default().with_packages(vec![folder.path().into()]);
@@ -154,17 +158,21 @@ fn links_of_a_robot_are_placed_by_its_joints() {
     let assembly = read(&file, &options).unwrap();
     assert_eq!(assembly.names(&[0, 1]), ["base", "arm"]);
     assert_eq!(assembly.notes().len(), 1);
-    // From 1 to 3 along x, turned to y, one up.
-    near(bounds(&assembly, "arm"), [-1.0, 1.0, 1.0], [0.0, 3.0, 2.0]);
+    // From x = 1 to 3, rotated to y, and raised by 1.
+    assert_bounds(bounds(&assembly, "arm"), [-1.0, 1.0, 1.0], [0.0, 3.0, 2.0]);
     options.geometry = Geometry::Visual;
-    near(bounds(&read(&file, &options).unwrap(), "arm"), [-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
+    assert_bounds(
+        bounds(&read(&file, &options).unwrap(), "arm"),
+        [-1.0, -1.0, 0.0],
+        [1.0, 1.0, 2.0],
+    );
     options.joints.insert("elbow".into(), 1.0);
     let message = read(&file, &options).unwrap_err().to_string();
     assert!(message.contains("unknown joint elbow"), "{message}");
 }
 
 #[test]
-fn what_is_said_of_parts_that_are_left_out_is_dropped_and_that_is_said() {
+fn entries_of_missing_parts_are_dropped_with_notes() {
     let manifest = r#"
         ignore = [["a", "gone"]]
         before = [["a", "gone"]]
@@ -199,7 +207,7 @@ fn what_is_said_of_parts_that_are_left_out_is_dropped_and_that_is_said() {
     ];
     assert_eq!(assembly.notes(), wanted);
     assert_eq!(assembly.constraints().units()[0].parts, [0, 1]);
-    // A name that no part has is an error as before.
+    // An unknown name is still an error.
     let wrong = manifest.replace("[[\"a\", \"b\", \"gone\"]]", "[[\"a\", \"bb\"]]");
     let files = [("m.toml", &wrong[..]), ("a.off", CUBE), ("b.off", CUBE)];
     let file = folder(&files);
@@ -208,7 +216,7 @@ fn what_is_said_of_parts_that_are_left_out_is_dropped_and_that_is_said() {
 }
 
 #[test]
-fn parts_in_another_unit_are_scaled_where_that_is_asked_for() {
+fn scale_option_scales_matching_parts() {
     let file = folder(&[("bolt_1.off", CUBE), ("bolt_2.off", CUBE), ("lid.off", CUBE)]);
     let scales = BTreeMap::from([("bolt_*".to_owned(), 25.4)]);
     let options = ReadOptions::default().with_scales(scales.clone());
@@ -222,7 +230,7 @@ fn parts_in_another_unit_are_scaled_where_that_is_asked_for() {
 }
 
 #[test]
-fn what_is_written_as_glb_is_read_back() {
+fn written_glb_is_read_back() {
     let parts = vec![
         part("well", &well([0.0; 3], [2.0; 3], 1.0)),
         part("cube", &[cuboid([0.0; 3], [1.0, 2.0, 3.0])]),
@@ -234,14 +242,14 @@ fn what_is_written_as_glb_is_read_back() {
     let back = open(&file).unwrap();
     assert_eq!(back.names(&[0, 1]), ["well", "cube"]);
     assert_eq!(back.unit(), Some("m"));
-    // z has become y.
-    near(bounds(&back, "cube"), [0.0, 0.0, -2.0], [1.0, 3.0, 0.0]);
+    // The z axis became the y axis.
+    assert_bounds(bounds(&back, "cube"), [0.0, 0.0, -2.0], [1.0, 3.0, 0.0]);
     std::fs::write(&file, b"glTF but not really").unwrap();
     assert!(open(&file).unwrap_err().to_string().contains("a.glb"));
 }
 
 #[test]
-fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
+fn items_of_3mf_package_are_placed_with_unit() {
     let mut model = String::from(
         r#"<?xml version="1.0"?><model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
         <resources><object id="1" name="cube" type="model">"#,
@@ -257,8 +265,8 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
     let assembly = open(&file).unwrap();
     assert_eq!(assembly.unit(), Some("inch"));
     assert_eq!(assembly.names(&[0, 1]), ["cube", "cube_2"]);
-    near(bounds(&assembly, "cube"), [10.0, 0.0, 0.0], [12.0, 2.0, 2.0]);
-    near(bounds(&assembly, "cube_2"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
+    assert_bounds(bounds(&assembly, "cube"), [10.0, 0.0, 0.0], [12.0, 2.0, 2.0]);
+    assert_bounds(bounds(&assembly, "cube_2"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
     std::fs::write(&file, package(&model.replace("objectid=\"2\"", "objectid=\"7\""))).unwrap();
     let message = open(&file).unwrap_err().to_string();
     assert!(message.contains("build item 2: unknown object id 7"), "{message}");
@@ -268,7 +276,7 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
         assert!(message.contains(words), "{message}");
     };
     refused(&model.replace("inch", "league"), "unknown unit league; accepted: micron");
-    // Each holds the one before ten times: 10^12 cubes in a few lines.
+    // Each object contains the previous one ten times, which yields 10^12 cubes.
     let ten = |k: usize| {
         let below = format!("<component objectid=\"{}\"/>", k - 1).repeat(10);
         format!("<object id=\"{k}\"><components>{below}</components></object>")
@@ -286,8 +294,8 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
 }
 
 #[test]
-fn gltf_files_whose_numbers_do_not_fit_are_refused() {
-    // A triangle three times over, 36 bytes of positions and 18 of indices.
+fn gltf_accessors_beyond_buffers_are_rejected() {
+    // A triangle repeated three times: 36 bytes of positions and 18 of indices.
     let file = |positions: usize, indices: usize| {
         let mut bytes = Vec::new();
         for x in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
@@ -406,7 +414,7 @@ fn meshes_that_the_build_or_the_scene_does_not_place_are_named_in_a_note() {
 }
 
 #[test]
-fn rotations_of_few_digits_are_normalised_with_a_note_and_shears_are_refused() {
+fn rounded_rotations_are_normalised_and_shears_rejected() {
     let manifest = |rotation: &str| {
         let toml = format!("[[part]]\nfile = 'c.off'\nrotation = {rotation}\n");
         let folder = folder(&[("c.off", CUBE), ("m.toml", &toml)]);
@@ -425,14 +433,14 @@ fn rotations_of_few_digits_are_normalised_with_a_note_and_shears_are_refused() {
         let assembly = manifest(few).unwrap();
         let [note] = assembly.notes() else { panic!("{:?}", assembly.notes()) };
         assert!(note.starts_with("the rotation of c is ") && note.contains("normalised"), "{note}");
-        // A shear keeps the volume but not the lengths of the sides.
+        // A shear would keep the volume, but not the lengths of the edges.
         let solid = assembly.parts()[0].solid();
         let corner = |k: usize| solid.vertices()[k];
         for (a, b) in [(0, 1), (0, 2), (0, 4)] {
             assert!((corner(a).distance(corner(b)) - 1.0).abs() < 1e-12);
         }
     }
-    // As of poses: the same limit of 0.02.
+    // Poses have the same limit of 0.02.
     let sheared = "[[1, 0.025, 0], [0, 1, 0], [0, 0, 1]]";
     let mirrored = "[[-1, 0, 0], [0, 1, 0], [0, 0, 1]]";
     for sheared in [sheared, mirrored, "[0, 0, 0.3, 0.9]"] {

@@ -1,4 +1,4 @@
-//! The file that is printed for the workshop: its pages, what its pictures show, how it is printed and looks on a phone.
+//! Tests of the printed report: pages, pictures, print, and width on a phone.
 
 use colltrans_testkit::TemporaryFolder;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,8 @@ use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
 use colltrans_assembly::{Assembly, Bodies, Fit, Question, Watch};
 
-/// A plan, and its report.
-fn reported(assembly: &Assembly, title: &str) -> (Plan, String) {
+/// Computes a plan and its report.
+fn plan_and_report(assembly: &Assembly, title: &str) -> (Plan, String) {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
     let options = PlanOptions::default().with_legs(4);
     let question = Question::default().with_options(options);
@@ -19,7 +19,7 @@ fn reported(assembly: &Assembly, title: &str) -> (Plan, String) {
     (findings.plan, page)
 }
 
-/// A core in a box with a lid, and four pegs on that.
+/// Returns a core in a box with a lid, and four pegs on the lid.
 fn boxed() -> Assembly {
     let mut parts = vec![
         part("box", &well([0.0; 3], [20.0, 20.0, 10.0], 2.0)),
@@ -33,7 +33,7 @@ fn boxed() -> Assembly {
     Assembly::new(parts).unwrap().with_unit("mm")
 }
 
-/// A bar deep in a long tunnel that hides it from all sides.
+/// Returns a bar in a long tunnel that hides it from all sides.
 fn tunnel() -> Assembly {
     let wall = |low, high| cuboid(low, high);
     let tunnel = [
@@ -46,25 +46,26 @@ fn tunnel() -> Assembly {
     Assembly::new(vec![part("tunnel", &tunnel), bar]).unwrap()
 }
 
-/// The section of a page with an id.
+/// Returns the section of a page with an id.
 fn section<'a>(page: &'a str, id: &str) -> &'a str {
     let at = page.find(&format!("id=\"{id}\"")).unwrap_or_else(|| panic!("no {id}"));
     &page[at..at + page[at..].find("</section>").unwrap()]
 }
 
-/// The pictures of a section.
+/// Returns the pictures of a section.
 fn pictures(section: &str) -> Vec<&str> {
     let from = section.match_indices("<svg").map(|(at, _)| &section[at..]);
     from.map(|text| &text[..text.find("</svg>").unwrap()]).collect()
 }
 
-/// Pixels of a part that are drawn in a look: its tiles are rectangles, `M x y h width v height h -width z`.
-fn area(picture: &str, look: &str, part: usize) -> f64 {
+/// Returns the area in pixels of a part drawn in a style. Its tiles are rectangles `M x y h width v height h
+/// -width z`.
+fn drawn_area(picture: &str, look: &str, part: usize) -> f64 {
     let mut area = 0.0;
     let head = format!("<g class=\"{look}\" data-part=\"{part}\">");
     for (at, _) in picture.match_indices(&head) {
         let group = &picture[at..at + picture[at..].find("</g>").unwrap()];
-        // Of lines nothing is filled.
+        // Lines are not filled.
         for path in group.split("<path ").skip(1).filter(|path| !path.contains("fill=\"none\"")) {
             let data = path.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
             for tile in data.split('h').skip(1).filter(|tile| tile.contains('v')) {
@@ -76,8 +77,8 @@ fn area(picture: &str, look: &str, part: usize) -> f64 {
     area
 }
 
-/// What is left of a page for who reads it: without styles, scripts and pictures.
-fn read_aloud(page: &str) -> String {
+/// Returns the text of a page without styles, scripts and pictures, with the labels of the pictures.
+fn page_text(page: &str) -> String {
     let mut text = page.to_owned();
     for [from, to] in [["<style>", "</style>"], ["<script", "</script>"], ["<svg", "</svg>"]] {
         while let Some(at) = text.find(from) {
@@ -108,9 +109,9 @@ fn read_aloud(page: &str) -> String {
 }
 
 #[test]
-fn every_step_has_its_page_and_shows_what_moves() {
+fn each_stage_has_page_with_visible_moving_parts() {
     for (assembly, stages) in [(boxed(), 3), (tunnel(), 1), (stud(), 1)] {
-        let (plan, page) = reported(&assembly, "small");
+        let (plan, page) = plan_and_report(&assembly, "small");
         assert_eq!(plan.stages().len(), stages, "{:?}", plan.steps);
         assert_eq!(page.matches("class=\"sheet step\"").count(), stages);
         for stage in plan.stages() {
@@ -124,7 +125,8 @@ fn every_step_has_its_page_and_shows_what_moves() {
             assert_eq!(drawn.len(), if several { legs.len() } else { 1 });
             for (k, moving) in legs.into_iter().enumerate() {
                 let picture = drawn[if several { k } else { 0 }];
-                let seen: f64 = moving.iter().map(|&part| area(picture, "moving", part)).sum();
+                let seen: f64 =
+                    moving.iter().map(|&part| drawn_area(picture, "moving", part)).sum();
                 assert!(seen > 100.0, "{moving:?} of {stage:?}: {seen}");
             }
         }
@@ -132,43 +134,43 @@ fn every_step_has_its_page_and_shows_what_moves() {
 }
 
 #[test]
-fn what_hides_what_moves_is_glass_and_nothing_else_is() {
-    let (_, page) = reported(&tunnel(), "tunnel");
+fn only_parts_that_hide_moving_parts_are_glass() {
+    let (_, page) = plan_and_report(&tunnel(), "tunnel");
     let [picture] = pictures(section(&page, "step-1"))[..] else { panic!("one picture") };
-    assert!(area(picture, "glass", 0) > 1000.0 && area(picture, "pale", 0) == 0.0);
+    assert!(drawn_area(picture, "glass", 0) > 1000.0 && drawn_area(picture, "pale", 0) == 0.0);
     assert!(section(&page, "step-1").contains("Drawn as glass: tunnel."));
-    let (_, page) = reported(&boxed(), "box");
+    let (_, page) = plan_and_report(&boxed(), "box");
     assert!(!page.contains("class=\"glass\""));
 }
 
 #[test]
-fn the_first_page_shows_and_counts_all_parts() {
-    let (_, page) = reported(&boxed(), "box");
+fn first_page_shows_all_parts_and_lists_shapes() {
+    let (_, page) = plan_and_report(&boxed(), "box");
     let cover = section(&page, "cover");
     let [picture] = pictures(cover)[..] else { panic!("one picture") };
     for part in 0..7 {
-        assert!(area(picture, "full", part) > 50.0, "{part}");
+        assert!(drawn_area(picture, "full", part) > 50.0, "{part}");
     }
     assert_eq!(cover.matches("<li>").count(), 4, "four shapes");
 }
 
-/// If it has changed, look at the page before the new text is kept.
+/// Compares the text with a golden file. Inspect the page before updating the file.
 #[test]
-fn what_is_read_of_a_small_assembly() {
-    let mut told = read_aloud(&reported(&boxed(), "box").1);
-    told += &read_aloud(&reported(&stud(), "stud").1);
-    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/report.txt");
+fn report_text_matches_golden_file() {
+    let mut text = page_text(&plan_and_report(&boxed(), "box").1);
+    text += &page_text(&plan_and_report(&stud(), "stud").1);
+    let golden_path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/report.txt");
     if std::env::var_os("WRITE_GOLDEN").is_some() {
-        std::fs::write(&kept, &told).unwrap();
+        std::fs::write(&golden_path, &text).unwrap();
     }
-    let known = std::fs::read_to_string(kept).unwrap();
-    for (k, (told, known)) in told.lines().zip(known.lines()).enumerate() {
-        assert_eq!(told, known, "line {}", k + 1);
+    let known = std::fs::read_to_string(golden_path).unwrap();
+    for (k, (found, known)) in text.lines().zip(known.lines()).enumerate() {
+        assert_eq!(found, known, "line {}", k + 1);
     }
-    assert_eq!(told.lines().count(), known.lines().count());
+    assert_eq!(text.lines().count(), known.lines().count());
 }
 
-/// A browser that prints, if there is one.
+/// Runs an installed Chromium on a page; `None` if there is none.
 fn chromium(folder: &Path, arguments: &[&str], page: &Path) -> Option<std::process::Output> {
     let known = ["chromium", "chromium-browser", "google-chrome"];
     let paths = std::env::var_os("PATH").unwrap_or_default();
@@ -181,10 +183,10 @@ fn chromium(folder: &Path, arguments: &[&str], page: &Path) -> Option<std::proce
 }
 
 #[test]
-fn the_browser_prints_a_page_a_step() {
+fn printed_report_has_one_page_for_each_stage() {
     let folder = TemporaryFolder::new();
     for (name, assembly) in [("box", boxed()), ("stud", stud())] {
-        let (plan, page) = reported(&assembly, name);
+        let (plan, page) = plan_and_report(&assembly, name);
         let (html, pdf) = (folder.path().join("report.html"), folder.path().join("report.pdf"));
         std::fs::write(&html, page).unwrap();
         let print = format!("--print-to-pdf={}", pdf.display());
@@ -194,15 +196,15 @@ fn the_browser_prints_a_page_a_step() {
         };
         let bytes = std::fs::read(&pdf).unwrap_or_else(|e| panic!("{e}: {said:?}"));
         let pages = bytes.windows(12).filter(|w| w.starts_with(b"/Type /Page") && w[11] != b's');
-        // The first one, and one for what follows the steps.
+        // The first page, one for each stage, and one for the sections after them.
         assert_eq!(pages.count(), 1 + plan.stages().len() + 1, "{name}");
     }
 }
 
 #[test]
-fn nothing_is_wider_than_a_phone() {
+fn report_fits_width_of_phone() {
     let folder = TemporaryFolder::new();
-    let page = reported(&boxed(), "box").1;
+    let page = plan_and_report(&boxed(), "box").1;
     let measure = "<script>document.documentElement.style.width = '390px';
         for (const d of document.querySelectorAll('details')) d.open = true;
         const wide = [...document.querySelectorAll('body, main, section, details, figure, svg, p, ol, li, dl, div, h1, h2, h3')]
@@ -211,7 +213,7 @@ fn nothing_is_wider_than_a_phone() {
     let html = folder.path().join("report.html");
     std::fs::write(&html, page.replace("</body>", &format!("{measure}</body>"))).unwrap();
     if let Some(said) = chromium(folder.path(), &["--dump-dom"], &html) {
-        let told = String::from_utf8_lossy(&said.stdout);
-        assert!(told.contains("<title>too wide: </title>"), "{:?}", told.get(..600));
+        let document = String::from_utf8_lossy(&said.stdout);
+        assert!(document.contains("<title>too wide: </title>"), "{:?}", document.get(..600));
     }
 }

@@ -1,4 +1,5 @@
-//! What no longer stands once a step is done, held against rectangles and all sides they are seen from.
+//! Tests which parts fall or tip over after a step, against a computation with rectangles and sampled
+//! directions.
 
 use std::f64::consts::TAU;
 
@@ -11,10 +12,10 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use crate::common::{cuboid, turned};
 
-/// Low and high corner of a box.
+/// Low and high corners of a box.
 type Box = [DVec3; 2];
 
-/// A floor, and boxes on it in layers that lie across each other.
+/// Returns a floor and boxes on it, in layers that cross each other.
 fn stack(random: &mut Random) -> Vec<Box> {
     let mut boxes = vec![[DVec3::new(-2.0, -2.0, -1.0), DVec3::new(14.0, 14.0, 0.0)]];
     for layer in 0..3 {
@@ -35,27 +36,29 @@ fn stack(random: &mut Random) -> Vec<Box> {
     boxes
 }
 
-/// Where a box lies on another one, seen from above: corners.
-fn common(above: Box, below: Box) -> Option<[DVec2; 4]> {
+/// Returns the corners of the rectangle in which a box rests on another one; `None` if it does not.
+fn contact_rectangle(above: Box, below: Box) -> Option<[DVec2; 4]> {
     let low = above[0].truncate().max(below[0].truncate());
     let high = above[1].truncate().min(below[1].truncate());
     let lies = above[0].z == below[1].z && low.x < high.x && low.y < high.y;
     lies.then(|| [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)])
 }
 
-/// How far a box's middle lies inside of what those that are left carry it with; `None` if none do.
-fn margin(boxes: &[Box], part: usize, left: &[usize]) -> Option<f64> {
+/// Returns the distance of a box's centre from the boundary of its support, negative outside; `None` if no
+/// remaining box supports it.
+fn support_margin(boxes: &[Box], part: usize, left: &[usize]) -> Option<f64> {
     let under = left.iter().filter(|&&k| k != part);
     let corners: Vec<DVec2> =
-        under.filter_map(|&k| common(boxes[part], boxes[k])).flatten().collect();
+        under.filter_map(|&k| contact_rectangle(boxes[part], boxes[k])).flatten().collect();
     let middle = ((boxes[part][0] + boxes[part][1]) * 0.5).truncate();
-    let seen = (0..7_200).map(|k| {
+    let extents = (0..7_200).map(|k| {
         let side = DVec2::from_angle(TAU * f64::from(k) / 7_200.0);
         corners.iter().map(|p| (*p - middle).dot(side)).fold(f64::NEG_INFINITY, f64::max)
     });
-    (!corners.is_empty()).then(|| seen.fold(f64::INFINITY, f64::min))
+    (!corners.is_empty()).then(|| extents.fold(f64::INFINITY, f64::min))
 }
 
+/// Computes the plan along the axes of the stack.
 fn planned(assembly: &Assembly, up: DVec3) -> Plan {
     let bodies = Bodies::new(assembly, Fit::Tolerance(1e-6)).unwrap();
     let (u, v) = up.any_orthonormal_pair();
@@ -67,6 +70,7 @@ fn planned(assembly: &Assembly, up: DVec3) -> Plan {
     disassemble(&bodies, &matrix, &[], options, watch).unwrap()
 }
 
+/// Builds the assembly of the boxes in a pose; the floor is fixed.
 fn assembled(boxes: &[Box], place: DAffine3) -> Assembly {
     let part = |(k, [low, high]): (usize, &Box)| {
         let piece = cuboid(low.to_array(), high.to_array());
@@ -76,7 +80,7 @@ fn assembled(boxes: &[Box], place: DAffine3) -> Assembly {
 }
 
 #[test]
-fn what_falls_and_what_is_off_balance_is_what_rectangles_say() {
+fn falling_and_tipping_parts_match_rectangles() {
     let mut random = Random::new(9);
     let (mut falls, mut tips, mut steps, mut near) = (0, 0, 0, 0);
     for round in 0..150 {
@@ -90,7 +94,7 @@ fn what_falls_and_what_is_off_balance_is_what_rectangles_say() {
         let all = 1..boxes.len();
         let pairs = all.clone().flat_map(|a| all.clone().map(move |b| [a, b]));
         let carrying: Vec<[usize; 2]> =
-            pairs.filter(|&[a, b]| common(boxes[b], boxes[a]).is_some()).collect();
+            pairs.filter(|&[a, b]| contact_rectangle(boxes[b], boxes[a]).is_some()).collect();
         for _ in 0..(round % 6).min(carrying.len()) {
             let pair = carrying[random.index(carrying.len())].map(|k| k.to_string());
             if let Ok(next) = assembly.clone().with_before(&pair[..1], &pair[1..]) {
@@ -103,13 +107,13 @@ fn what_falls_and_what_is_off_balance_is_what_rectangles_say() {
             let before = left.clone();
             left.retain(|part| !step.parts.contains(part));
             let carried = |part: &&usize| {
-                let on = |k: &usize| common(boxes[**part], boxes[*k]).is_some();
+                let on = |k: &usize| contact_rectangle(boxes[**part], boxes[*k]).is_some();
                 step.parts.iter().any(on)
             };
             let (mut fall, mut tip) = (Vec::new(), Vec::new());
             for &part in left.iter().filter(carried) {
-                let was = margin(&boxes, part, &before).expect("it rests on something");
-                match margin(&boxes, part, &left) {
+                let was = support_margin(&boxes, part, &before).expect("the box is supported");
+                match support_margin(&boxes, part, &left) {
                     None => fall.push(part),
                     Some(now) if was.abs() < 1e-4 || now.abs() < 1e-4 => {
                         near += usize::from(step.off_balance.contains(&part));
@@ -118,16 +122,16 @@ fn what_falls_and_what_is_off_balance_is_what_rectangles_say() {
                     Some(_) => (),
                 }
             }
-            let told: Vec<usize> = step.off_balance.clone();
+            let reported: Vec<usize> = step.off_balance.clone();
             let sure = |part: &usize| {
                 [&before, &left]
                     .into_iter()
-                    .all(|left| margin(&boxes, *part, left).is_none_or(|m| m.abs() >= 1e-4))
+                    .all(|left| support_margin(&boxes, *part, left).is_none_or(|m| m.abs() >= 1e-4))
             };
-            let told: Vec<usize> = told.into_iter().filter(sure).collect();
-            assert_eq!((&step.falls, &told), (&fall, &tip), "round {round}, {:?}", step.parts);
+            let reported: Vec<usize> = reported.into_iter().filter(sure).collect();
+            assert_eq!((&step.falls, &reported), (&fall, &tip), "round {round}, {:?}", step.parts);
             if assembly.constraints().before().is_empty() {
-                assert!(fall.is_empty() && tip.is_empty(), "all can be taken from above");
+                assert!(fall.is_empty() && tip.is_empty(), "all boxes can be removed upwards");
             }
             falls += fall.len();
             tips += tip.len();

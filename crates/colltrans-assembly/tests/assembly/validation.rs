@@ -1,4 +1,5 @@
-//! Files that lie, and files that ask for others: what is refused, with how much memory.
+//! Tests of malicious files and of files that reference others: what is rejected, and how much memory that
+//! needs.
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
@@ -18,24 +19,26 @@ use colltrans_testkit::shapes::block;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// The source, and files beside it, from memory.
+/// Reads a source with its other files from memory.
 fn from_memory(name: &str, files: &[(&str, Vec<u8>)]) -> Result<Assembly, ReadError> {
     let files: BTreeMap<PathBuf, Vec<u8>> =
         files.iter().map(|(name, bytes)| (name.into(), bytes.clone())).collect();
     read_from(name, &files, &ReadOptions::default())
 }
 
+/// Returns the error of a source that must be rejected.
 fn refusal(name: &str, files: &[(&str, Vec<u8>)]) -> String {
     from_memory(name, files).unwrap_err().to_string()
 }
 
+/// Asserts that a message contains all words.
 fn says(message: &str, words: &[&str]) {
     for word in words {
         assert!(message.contains(word), "{word:?} is not in {message}");
     }
 }
 
-/// A cube in glTF: 96 bytes of positions, 72 of indices.
+/// Returns the buffer of a cube in glTF: 96 bytes of positions, 72 of indices.
 fn cube_bytes() -> Vec<u8> {
     let mesh = block(DVec3::ZERO, DVec3::ONE);
     let positions = mesh.vertices.iter().flat_map(DVec3::to_array);
@@ -44,6 +47,7 @@ fn cube_bytes() -> Vec<u8> {
     bytes
 }
 
+/// Returns a cube as a glTF document.
 fn cube_gltf() -> Value {
     let data = base64::engine::general_purpose::STANDARD.encode(cube_bytes());
     json!({
@@ -59,13 +63,14 @@ fn cube_gltf() -> Value {
     })
 }
 
+/// Returns the bytes of a changed cube document.
 fn gltf(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     let mut file = cube_gltf();
     change(&mut file);
     file.to_string().into_bytes()
 }
 
-/// Two cubes, the first of two primitives, each of some material.
+/// Reads two cubes, the first with two primitives, with given materials.
 fn coloured(materials: &Value, [large, small, other]: [Value; 3]) -> Assembly {
     let file = gltf(|file| {
         let shape = |material: Value, indices: usize| {
@@ -89,9 +94,9 @@ fn coloured(materials: &Value, [large, small, other]: [Value; 3]) -> Assembly {
     from_memory("a.gltf", &[("a.gltf", file)]).unwrap()
 }
 
-/// Linear in the file, as screens have it in parts; and so again where a plan is written and read.
+/// Colours are linear in the file and sRGB in parts, also after a plan is written and read.
 #[test]
-fn parts_have_the_colour_of_their_largest_primitive() {
+fn part_has_colour_of_its_largest_primitive() {
     let of = |colour: [f64; 4]| json!({"pbrMetallicRoughness": {"baseColorFactor": colour}});
     let materials = json!([
         of([1.0, 0.0, 0.214_041, 1.0]),
@@ -108,7 +113,7 @@ fn parts_have_the_colour_of_their_largest_primitive() {
         near(assembly.parts()[0].colour(), [1.0, 0.0, 0.5]);
         near(assembly.parts()[1].colour(), [0.0, 1.0, 0.0]);
     }
-    // A picture, no material, and one that is not there are no colour.
+    // A texture, a missing material and an unknown material yield no colour.
     for none in [json!(2), Value::Null, json!(7)] {
         let read = coloured(&materials, [json!(0), json!(1), none]);
         near(read.parts()[0].colour(), [1.0, 0.0, 0.5]);
@@ -116,11 +121,11 @@ fn parts_have_the_colour_of_their_largest_primitive() {
     }
 }
 
-/// Something that is changed in a file.
+/// A change of a document.
 type Change = Box<dyn FnOnce(&mut Value)>;
 
 #[test]
-fn numbers_of_gltf_that_lie_are_refused_before_memory_is_taken() {
+fn gltf_with_false_counts_is_rejected_without_allocation() {
     let cube = from_memory("a.gltf", &[("a.gltf", gltf(|_| ()))]).unwrap();
     assert!((cube.parts()[0].solid().volume() - 1.0).abs() < 1e-12);
     let most = u64::MAX;
@@ -171,9 +176,9 @@ fn numbers_of_gltf_that_lie_are_refused_before_memory_is_taken() {
 }
 
 #[test]
-fn sparse_positions_and_whole_numbers_are_read() {
+fn sparse_gltf_accessors_are_read() {
     let bytes = gltf(|file| {
-        // The last corner moves to where the first one is, and so the cube collapses a little.
+        // Moves the last corner to (2, 2, 2).
         file["accessors"][0]["sparse"] = json!({"count": 1,
             "indices": {"bufferView": 2, "componentType": 5121},
             "values": {"bufferView": 3}});
@@ -190,7 +195,7 @@ fn sparse_positions_and_whole_numbers_are_read() {
 }
 
 #[test]
-fn names_of_gltf_are_decoded_and_stay_inside() {
+fn gltf_uris_are_decoded_and_confined_to_folder() {
     let with = |uri: &str| gltf(|file| file["buffers"][0]["uri"] = json!(uri));
     let files = |uri: &str, name: &'static str| [("s/a.gltf", with(uri)), (name, cube_bytes())];
     let read = from_memory("s/a.gltf", &files("my%20cube%2B.bin", "s/my cube+.bin"));
@@ -210,7 +215,7 @@ fn names_of_gltf_are_decoded_and_stay_inside() {
 }
 
 #[test]
-fn glb_files_that_are_cut_are_refused() {
+fn truncated_glb_files_are_rejected() {
     let json = gltf(|file| {
         file["buffers"][0].as_object_mut().unwrap().remove("uri");
     });
@@ -230,7 +235,7 @@ fn glb_files_that_are_cut_are_refused() {
     for end in 0..glb.len() {
         let mut cut = glb[..end].to_vec();
         assert!(from_memory("a.glb", &[("a.glb", cut.clone())]).is_err(), "{end} bytes");
-        // Also where the header agrees.
+        // Truncated files are rejected also if the length in the header agrees.
         if let Some(size) = cut.get_mut(8..12) {
             size.copy_from_slice(&(end as u32).to_le_bytes());
             assert!(from_memory("a.glb", &[("a.glb", cut)]).is_err(), "{end} bytes");
@@ -239,7 +244,7 @@ fn glb_files_that_are_cut_are_refused() {
 }
 
 #[test]
-fn shapes_are_not_placed_without_end() {
+fn numbers_of_placed_shapes_and_pairs_are_limited() {
     let nodes = |count: usize| {
         gltf(|file| {
             file["nodes"] = (0..count).map(|_| json!({"mesh": 0})).collect();
@@ -247,7 +252,7 @@ fn shapes_are_not_placed_without_end() {
         })
     };
     says(&refusal("a.gltf", &[("a.gltf", nodes(70_000))]), &["more than 65536 nodes"]);
-    // Many primitives of one shape: each needs 40 bytes, and is 12 facets.
+    // Many primitives of one shape, each with 40 bytes and 12 facets.
     let many = gltf(|file| {
         let one = file["meshes"][0]["primitives"][0].clone();
         file["meshes"][0]["primitives"] = vec![one; 100].into();
@@ -255,7 +260,7 @@ fn shapes_are_not_placed_without_end() {
         file["scenes"][0]["nodes"] = vec![0; 60_000].into();
     });
     says(&refusal("a.gltf", &[("a.gltf", many)]), &["facets are placed", "accepted: one per byte"]);
-    // Coincident parts: pairs are counted before they are kept.
+    // Coincident parts: pairs are counted before they are stored.
     let same = from_memory("a.gltf", &[("a.gltf", nodes(3_000))]).unwrap();
     let mut message = String::new();
     let memory = measure(|| {
@@ -266,7 +271,7 @@ fn shapes_are_not_placed_without_end() {
     assert!(memory.bytes_max < 400 << 20, "{}", memory.bytes_max);
 }
 
-/// A box of these sides, as an object of a 3MF model.
+/// Returns a box of these sides as an object of a 3MF model.
 fn object(id: u32, size: [f64; 3]) -> String {
     format!("<object id=\"{id}\" type=\"model\">{}</object>", mesh_of_3mf(size))
 }
@@ -275,6 +280,7 @@ const CORE: &str = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/20
 const PRODUCTION: &str =
     "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"";
 
+/// Returns a 3MF model document.
 fn model(attributes: &str, resources: &str, build: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?><model unit=\"millimeter\" {CORE} {attributes}><resources>\
@@ -282,7 +288,7 @@ fn model(attributes: &str, resources: &str, build: &str) -> String {
     )
 }
 
-/// As slicers write it: an object of components, each in a file of its own.
+/// Returns a package as slicers write it: an object of components, each in its own file.
 fn slicer(target: &str) -> Vec<u8> {
     let assembly = "<object id=\"3\" type=\"model\"><components>\
         <component p:path=\"/3D/Objects/object_1.model\" objectid=\"1\"/>\
@@ -297,10 +303,10 @@ fn slicer(target: &str) -> Vec<u8> {
                 "<Relationships><Relationship Target=\"{target}\" Id=\"r\" Type=\"{start}\"/></Relationships>"
             ),
         ),
-        // The same number in each file.
+        // Both files use the same object id.
         ("3D/Objects/object_1.model", model("", &object(1, [1.0, 2.0, 3.0]), "")),
         ("3D/Objects/object_2.model", model("", &object(1, [4.0, 5.0, 6.0]), "")),
-        // In the way of whoever takes the model that is not deepest.
+        // A model that is found first if the relationship is ignored.
         ("a.model", model("", &object(3, [9.0, 9.0, 9.0]), "<item objectid=\"3\"/>")),
         (
             "3D/3dmodel.model",
@@ -314,7 +320,7 @@ fn slicer(target: &str) -> Vec<u8> {
 }
 
 #[test]
-fn objects_in_other_files_of_a_3mf_package_are_read() {
+fn objects_in_several_files_of_3mf_package_are_read() {
     let read = from_memory("a.3mf", &[("a.3mf", slicer("/3D/3dmodel.model"))]).unwrap();
     let boxes: Vec<_> = read
         .parts()
@@ -329,7 +335,7 @@ fn objects_in_other_files_of_a_3mf_package_are_read() {
     says(&gone, &["a.3mf: /3D/other.model: the package has no such file"]);
 }
 
-/// Names and notes of what is read of a package with what a slicer says of it.
+/// Returns the names and notes of a package with metadata of a slicer.
 fn as_sliced(files: &[(&str, String)], options: &ReadOptions) -> (Vec<String>, Vec<String>) {
     let files = BTreeMap::from([(PathBuf::from("a.3mf"), package(files))]);
     let read = read_from("a.3mf", &files, options).unwrap();
@@ -338,7 +344,7 @@ fn as_sliced(files: &[(&str, String)], options: &ReadOptions) -> (Vec<String>, V
 }
 
 #[test]
-fn names_of_parts_are_those_that_slicers_show() {
+fn slicer_metadata_names_parts() {
     let part = |id: u32, kind: &str, name: &str| {
         format!(
             "<part id=\"{id}\" subtype=\"{kind}\"><metadata key=\"name\" value=\"{name}\"/></part>"
@@ -361,11 +367,11 @@ fn names_of_parts_are_those_that_slicers_show() {
         as_sliced(&files, &ReadOptions::default().with_split(split))
     };
     let (names, notes) = read(settings(3), Split::Auto);
-    // Of a component of which nothing is said, the name of the whole.
+    // A component without metadata takes the name of the whole object.
     assert_eq!(names, ["lid & knob", "tin"]);
     assert_eq!(notes, ["left out because they are not parts of the model: denser (modifier)"]);
     assert_eq!(read(settings(3), Split::Never).0, ["tin"]);
-    // Of another object, or of none.
+    // Metadata of another object, or invalid metadata, is ignored.
     for config in [settings(1), "<config".into(), "no xml".into()] {
         let (names, notes) = read(config, Split::Auto);
         assert!(names.len() == 3 && names[0] == "of the core" && notes.is_empty(), "{names:?}");
@@ -400,7 +406,7 @@ fn names_of_parts_are_those_that_slicers_show() {
     assert_eq!(sliced(&[small.clone(), large], Split::Auto), ["small", "large"]);
     let negative = volume([12, 23], "NegativeVolume", "hole");
     assert_eq!(sliced(&[small.clone(), negative], Split::Auto), ["small"]);
-    // Runs that are not all triangles are not believed.
+    // Volumes that do not cover all triangles are ignored.
     for wrong in [[12, 22], [11, 23], [12, 24], [13, 23]] {
         let names = sliced(&[small.clone(), volume(wrong, "ModelPart", "large")], Split::Never);
         assert_eq!(names, ["object_1"], "{wrong:?}");
@@ -408,7 +414,7 @@ fn names_of_parts_are_those_that_slicers_show() {
 }
 
 #[test]
-fn paths_of_a_3mf_package_may_have_blanks() {
+fn paths_in_3mf_package_may_be_percent_encoded() {
     let start = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
     let rels = |target: &str| {
         let relation = format!("<Relationship Target=\"{target}\" Id=\"r\" Type=\"{start}\"/>");
@@ -420,7 +426,7 @@ fn paths_of_a_3mf_package_may_have_blanks() {
         model(PRODUCTION, &object, "<item objectid=\"3\"/>")
     };
     let cube = || model("", &object(1, [1.0, 2.0, 3.0]), "");
-    // Written out in neither, either or both; `%C3%A9` is one letter.
+    // Either name, both or none may be encoded; `%C3%A9` is one letter.
     for (target, root) in [
         ("/3D/my%20model.model", "3D/my model.model"),
         ("/3D/my%20model.model", "3D/my%20model.model"),
@@ -440,14 +446,14 @@ fn paths_of_a_3mf_package_may_have_blanks() {
 }
 
 #[test]
-fn what_is_no_part_of_a_3mf_model_is_left_out_and_said() {
+fn non_part_objects_of_3mf_are_left_out_with_notes() {
     let of = |kind: &str, id: u32| {
         object(id, [f64::from(id), 1.0, 1.0])
             .replace("type=\"model\"", &format!("type=\"{kind}\" name=\"{kind}\""))
     };
     let kinds = ["model", "surface", "support", "solidsupport", "other"];
     let mut resources: String = (1..).zip(kinds).map(|(id, kind)| of(kind, id)).collect();
-    // Of components, too, and with all that is below.
+    // Components are left out too, with all objects below.
     resources += "<object id=\"6\" type=\"support\" name=\"tree\"><components>\
         <component objectid=\"1\"/></components></object>";
     resources += "<object id=\"7\"><components><component objectid=\"1\"/><component objectid=\"6\"/>\
@@ -480,7 +486,7 @@ fn what_is_no_part_of_a_3mf_model_is_left_out_and_said() {
 }
 
 #[test]
-fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
+fn invalid_3mf_files_and_unknown_extensions_are_rejected() {
     let refused = |files: &[(&str, String)]| refusal("a.3mf", &[("a.3mf", package(files))]);
     let of = |text: String| refused(&[("3D/3dmodel.model", text)]);
     says(&refusal("a.3mf", &[("a.3mf", b"no zip".to_vec())]), &["not a 3MF file"]);
@@ -505,11 +511,11 @@ fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
     says(&of(model("", &deep, item)), &["nested deeper than the accepted 64"]);
     let ring = "<object id=\"1\"><components><component objectid=\"1\"/></components></object>";
     says(&of(model("", ring, item)), &["in a cycle"]);
-    // Unpacks to much more than it is.
     let bomb = package(&[("3D/3dmodel.model", " ".repeat(100 << 20))]);
     assert!(bomb.len() < 1 << 20);
     says(&refusal("a.3mf", &[("a.3mf", bomb)]), &["unpacks to more than the accepted 256 times its size"]);
-    // Elements of extensions are not taken for those of the core.
+    // A package that unpacks to far more than its size.
+    // Elements of extensions are not elements of the core.
     let other = "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"";
     let sliced = cube.replace("</mesh>", "</mesh><s:vertex x=\"9\" y=\"9\" z=\"9\"/>");
     let read = from_memory(
@@ -520,7 +526,7 @@ fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
 }
 
 #[test]
-fn urdf_files_that_are_none_are_refused() {
+fn invalid_urdf_files_are_rejected() {
     let refused = |text: String| refusal("a.urdf", &[("a.urdf", text.into_bytes())]);
     says(
         &refused("<html><body/></html>".into()),
@@ -556,9 +562,9 @@ fn urdf_files_that_are_none_are_refused() {
     says(&refused(ring.into()), &["its joints form a cycle"]);
 }
 
-/// Each link hangs on the one before.
+/// Each link is attached to the previous one.
 #[test]
-fn a_long_chain_of_links_is_placed() {
+fn chain_of_3000_links_is_placed() {
     let mut text = String::from("<robot name='r'>");
     for k in 0..3_000 {
         text += &format!("<link name='l{k}'>");
@@ -579,7 +585,7 @@ fn a_long_chain_of_links_is_placed() {
 }
 
 #[test]
-fn manifests_speak_of_the_file_and_not_of_the_program() {
+fn manifest_errors_contain_no_names_of_the_program() {
     let refused = |name: &str, text: &str| {
         let files = [(name, text.as_bytes().to_vec()), ("c.off", CUBE.as_bytes().to_vec())];
         let message = refusal(name, &files);
@@ -614,10 +620,10 @@ fn manifests_speak_of_the_file_and_not_of_the_program() {
     says(&refusal("a.json", &[("a.json", wide.to_vec())]), &["UTF-16"]);
 }
 
-/// On a disk: links, pipes and folders.
+/// Links, pipes and folders on a disk.
 #[cfg(unix)]
 #[test]
-fn what_a_source_names_lies_inside_of_its_folder() {
+fn referenced_files_are_confined_to_folder_of_source() {
     use std::os::unix::fs::symlink;
 
     let place = TemporaryFolder::new();
@@ -654,11 +660,11 @@ fn what_a_source_names_lies_inside_of_its_folder() {
         let name = if special == "../in" { "meshes" } else { special };
         says(&manifest(name, options).unwrap_err(), &["not a regular file"]);
     }
-    // Given directly, too, and in a folder.
+    // Special files are rejected also as the source, and within a folder.
+    // A symbolic link to the source itself is followed.
     says(&read(at("in/pipe.off"), &open).unwrap_err().to_string(), &["not a regular file"]);
     says(&colltrans_mesh::read(at("in/pipe.off")).unwrap_err().to_string(), &["not a regular"]);
     says(&read(at("in"), &closed).unwrap_err().to_string(), &["rejected reference", "link.off"]);
-    // A link to the source is meant.
     write("in/n.json", &json!({"parts": [{"file": "k.off"}]}).to_string());
     symlink(at("in/n.json"), at("kit/n.json")).unwrap();
     assert_eq!(read(Path::new(&at("kit/n.json")), &closed).unwrap().parts().len(), 1);

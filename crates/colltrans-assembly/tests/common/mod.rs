@@ -1,6 +1,6 @@
-//! Parts of boxes.
+//! Shared test bodies, plans and checks.
 
-#![allow(dead_code, unreachable_pub, reason = "each test program uses a part of it")]
+#![allow(dead_code, unreachable_pub, reason = "each test program uses only some of the items")]
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
 use std::io::Write;
@@ -16,17 +16,18 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::block;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// The unit cube, as a file.
+/// The unit cube as an OFF file.
 pub const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
     4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
+/// Returns a box as a piece.
 pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Piece {
     let mesh = block(low, high);
     let mesh = Mesh::new(mesh.vertices, mesh.faces);
     Piece { mesh, world_from_piece: DAffine3::IDENTITY }
 }
 
-/// The box from the origin to a corner, as a mesh of a 3MF package.
+/// Returns the box from the origin to a corner as a mesh element of a 3MF model.
 pub fn mesh_of_3mf(corner: [f64; 3]) -> String {
     let mesh = block(DVec3::ZERO, corner);
     let mut text = String::from("<mesh><vertices>");
@@ -40,21 +41,21 @@ pub fn mesh_of_3mf(corner: [f64; 3]) -> String {
     text + "</triangles></mesh>"
 }
 
-/// The plan, along directions that are found.
+/// Computes the plan along directions that are found automatically.
 pub fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
     let question = Question::default().with_options(options);
     question.ask(bodies, Watch::default()).unwrap().plan
 }
 
-/// What is suggested of parts as they are.
+/// Returns the suggestions for overlapping parts.
 pub fn suggested(bodies: &Bodies) -> Vec<Suggestion> {
     let options = PlanOptions::default().with_proofs(false).with_legs(1);
     let question = Question::default().with_options(options);
     question.ask(bodies, Watch::default()).unwrap().suggestions
 }
 
-/// The motion of a step that unscrews has a certificate against these parts, which is checked, and in places all along both
-/// moves bodies that are shrunk by half of the tolerance each do not overlap.
+/// Asserts that a step that unscrews parts is free of `others`: the motion has a certificate that verifies,
+/// and at samples along both moves the bodies, each shrunk by half of the tolerance, do not overlap.
 pub fn turns_freely(assembly: &Assembly, step: &Step, others: &[usize]) {
     let leg = &step.path[0];
     let turn = leg.turn.as_ref().unwrap();
@@ -81,7 +82,7 @@ pub fn turns_freely(assembly: &Assembly, step: &Step, others: &[usize]) {
     }
 }
 
-/// A package of files, zipped.
+/// Returns files as a ZIP package.
 pub fn package<T: AsRef<str>>(files: &[(&str, T)]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let mut zip = zip::ZipWriter::new(&mut bytes);
@@ -93,7 +94,7 @@ pub fn package<T: AsRef<str>>(files: &[(&str, T)]) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// Four walls and a floor around a hole, open at the top.
+/// Returns four walls and a floor around a hole that is open at the top.
 pub fn well(low: [f64; 3], high: [f64; 3], wall: f64) -> Vec<Piece> {
     let ([a, b, c], [x, y, z]) = (low, high);
     vec![
@@ -105,16 +106,19 @@ pub fn well(low: [f64; 3], high: [f64; 3], wall: f64) -> Vec<Piece> {
     ]
 }
 
+/// Builds a part in its own frame.
 pub fn part(name: &str, pieces: &[Piece]) -> Part {
     Part::new(name, pieces).unwrap()
 }
 
+/// Builds a part with a pose.
 pub fn turned(name: &str, pieces: &[Piece], world: DAffine3) -> Part {
     let turned = |p: &Piece| Piece { world_from_piece: world, ..p.clone() };
     Part::new(name, &pieces.iter().map(turned).collect::<Vec<_>>()).unwrap()
 }
 
-/// A stud that goes along a slot before it comes out: a head below a plate with an L of two slots, wide at its end.
+/// Returns an assembly in which a stud must slide before it comes out: its head is below a plate with an L of
+/// two slots that is wide at its end.
 pub fn stud() -> Assembly {
     let plate = [
         cuboid([-2.0, -6.0, 0.0], [14.0, -1.0, 2.0]),
@@ -130,7 +134,7 @@ pub fn stud() -> Assembly {
     Assembly::new(vec![part("plate", &plate), part("stud", &stud)]).unwrap()
 }
 
-/// Two links of a chain.
+/// Returns two links of a chain.
 pub fn links() -> [Part; 2] {
     let a = [
         cuboid([-2.0, -2.0, -0.5], [-1.0, 2.0, 0.5]),
@@ -147,7 +151,7 @@ pub fn links() -> [Part; 2] {
     [part("a", &a), part("b", &b)]
 }
 
-/// A core in a box with a lid on it, without any play.
+/// Returns a core in a box with a lid, without clearance.
 pub fn boxed() -> Assembly {
     let parts = vec![
         part("box", &well([0.0; 3], [3.0; 3], 1.0)),
@@ -160,7 +164,7 @@ pub fn boxed() -> Assembly {
     Assembly::new(parts).unwrap()
 }
 
-/// Boxes here and there, some of which overlap; with equal coordinates if snapped.
+/// Returns boxes at random places, some of which overlap; with integer coordinates if `snapped`.
 pub fn scattered(random: &mut Random, count: usize, snapped: bool) -> Assembly {
     let mut point = |scale: f64| {
         let p = DVec3::from_array([0; 3].map(|_| scale * (random.unit() - 0.5)));

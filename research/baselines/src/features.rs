@@ -1,14 +1,14 @@
-//! Vertices, edges and faces with their neighbours.
+//! Vertices, edges and faces of a convex polyhedron with their neighbours.
 //!
-//! Notation. The half-edges of a face lie one after the other, counter-clockwise as seen from
-//! outside; half-edge `h` runs from `origin` to `target` with `face` on its left, `twin` is the
-//! other way. An *edge* is known by the smaller of its two half-edges.
+//! - Half-edges of a face are stored consecutively, counter-clockwise as seen from outside.
+//! - Half-edge `h` leads from `origin` to `target` with `face` on its left; `twin` is its opposite.
+//! - An *edge* is identified by the smaller of its two half-edges.
 //!
-//! Voronoi planes (Mirtich 1998), never stored, because two points and a normal are
-//! at hand: between a vertex `v` and an edge `vw` the plane through `v` normal to `w - v`
-//! ([`Shell::beyond_vertex`]), between a face of normal `n` and its edge `ab` the plane through `a`
-//! normal to `n x (b - a)` ([`Shell::inside_edge`]). Both features that a plane parts ask the same
-//! function, so that rounding cannot make each of them send a walk to the other.
+//! Voronoi planes (Mirtich 1998) are computed on demand from two points and a normal. The plane between a
+//! vertex `v` and an edge `vw` is through `v`, normal to `w - v` ([`Shell::beyond_vertex`]). The plane
+//! between a face with normal `n` and its edge `ab` is through `a`, normal to `n x (b - a)`
+//! ([`Shell::inside_edge`]). Both features at a plane call the same function, so that rounding cannot make
+//! each of them direct a walk to the other.
 
 use std::fmt;
 
@@ -25,12 +25,13 @@ pub(crate) struct HalfEdge {
 }
 
 impl HalfEdge {
+    /// Returns origin and target.
     pub(crate) fn both_ends(self) -> [u32; 2] {
         [self.origin, self.target]
     }
 }
 
-/// A vertex, an edge (its smaller half-edge) or a face.
+/// A vertex, an edge (as its smaller half-edge) or a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Feature {
     Vertex(u32),
@@ -38,8 +39,8 @@ pub(crate) enum Feature {
     Face(u32),
 }
 
-/// The surface of a solid, ready for walks over its features: vertices, edges, faces and who is
-/// next to whom, in `O(n)` space.
+/// The surface of a solid for walks over its features: vertices, edges, faces and their adjacency, in `O(n)`
+/// space.
 ///
 /// ```
 /// use colltrans::ConvexPolyhedron;
@@ -68,7 +69,7 @@ pub struct Shell {
     reach: f64,
 }
 
-/// A body of lower dimension, which the published algorithm is not for.
+/// A body of lower dimension, which the published algorithm does not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotSolid {
     /// The dimension of the body.
@@ -84,10 +85,10 @@ impl fmt::Display for NotSolid {
 impl std::error::Error for NotSolid {}
 
 impl Shell {
-    /// The features of a body, in its frame. Takes `O(n)`.
+    /// Extracts the features of a body, in its frame, in `O(n)` time.
     ///
     /// # Errors
-    /// The body is a polygon, a segment or a point.
+    /// [`NotSolid`] for a polygon, a segment or a point.
     pub fn new(body: &ConvexPolyhedron) -> Result<Self, NotSolid> {
         if body.dimension() < 3 {
             return Err(NotSolid { dimension: body.dimension() });
@@ -117,22 +118,22 @@ impl Shell {
         })
     }
 
-    /// Number of vertices.
+    /// Returns the number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.vertices.len()
     }
 
-    /// Number of edges.
+    /// Returns the number of edges.
     pub fn edge_count(&self) -> usize {
         self.half_edges.len() / 2
     }
 
-    /// Number of faces.
+    /// Returns the number of faces.
     pub fn face_count(&self) -> usize {
         self.normals.len()
     }
 
-    /// Bytes of memory that the shell occupies, on the heap and in itself.
+    /// Returns the number of bytes that the shell occupies, including the heap.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()
             + size_of::<DVec3>() * (self.vertices.capacity() + self.normals.capacity())
@@ -143,51 +144,56 @@ impl Shell {
                     + self.outgoing.capacity())
     }
 
+    /// Returns the position of a vertex.
     pub(crate) fn vertex(&self, v: u32) -> DVec3 {
         self.vertices[v as usize]
     }
 
+    /// Returns a half-edge.
     pub(crate) fn half_edge(&self, h: u32) -> HalfEdge {
         self.half_edges[h as usize]
     }
 
-    /// The ends of a half-edge.
+    /// Returns the positions of origin and target of a half-edge.
     pub(crate) fn ends(&self, h: u32) -> [DVec3; 2] {
         let HalfEdge { origin, target, .. } = self.half_edge(h);
         [self.vertex(origin), self.vertex(target)]
     }
 
+    /// Returns the length of a half-edge.
     pub(crate) fn length(&self, h: u32) -> f64 {
         let [a, b] = self.ends(h);
         a.distance(b)
     }
 
+    /// Returns the unit outward normal of a face.
     pub(crate) fn normal(&self, face: u32) -> DVec3 {
         self.normals[face as usize]
     }
 
-    /// The half-edges that leave a vertex.
+    /// Returns the half-edges that leave a vertex.
     pub(crate) fn outgoing(&self, v: u32) -> &[u32] {
         let v = v as usize;
         &self.outgoing[self.vertex_start[v] as usize..self.vertex_start[v + 1] as usize]
     }
 
-    /// The half-edges around a face.
+    /// Returns the half-edges of a face.
     pub(crate) fn boundary(&self, face: u32) -> std::ops::Range<u32> {
         let f = face as usize;
         self.face_start[f]..self.face_start[f + 1]
     }
 
-    /// The edge that a half-edge belongs to.
+    /// Returns the edge of a half-edge.
     pub(crate) fn edge(&self, h: u32) -> Feature {
         Feature::Edge(h.min(self.half_edge(h).twin))
     }
 
+    /// Returns the largest distance of a vertex from the origin.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// A vertex of the feature.
+    /// Returns a vertex of the feature.
     pub(crate) fn some_vertex(&self, feature: Feature) -> u32 {
         match feature {
             Feature::Vertex(v) => v,
@@ -196,31 +202,31 @@ impl Shell {
         }
     }
 
-    /// Positive where `x` is on the edge's side of the plane between the half-edge's origin and its
-    /// edge; the height above that plane times the edge's length.
+    /// Returns the signed distance of `x` from the Voronoi plane between the half-edge's origin and its edge,
+    /// multiplied by the edge's length. It is positive on the side of the edge.
     pub(crate) fn beyond_vertex(&self, h: u32, x: DVec3) -> f64 {
         let [v, w] = self.ends(h);
         (x - v).dot(w - v)
     }
 
-    /// Positive where `x` is on the face's side of the plane between the half-edge's face and its
-    /// edge; the height above that plane times the edge's length.
+    /// Returns the signed distance of `x` from the Voronoi plane between the half-edge's face and its edge,
+    /// multiplied by the edge's length. It is positive on the side of the face.
     pub(crate) fn inside_edge(&self, h: u32, x: DVec3) -> f64 {
         let [a, b] = self.ends(h);
         self.normal(self.half_edge(h).face).cross(b - a).dot(x - a)
     }
 
-    /// The signed distance of `x` from the plane of a face, positive outside.
+    /// Returns the signed distance of `x` from the plane of a face, positive outside.
     pub(crate) fn height(&self, face: u32, x: DVec3) -> f64 {
         let origin = self.half_edge(self.face_start[face as usize]).origin;
         self.normal(face).dot(x - self.vertex(origin))
     }
 
-    /// The vertex farthest along `direction`, by a walk along edges from `near`: a local maximum on
-    /// a convex body is the global one, up to rounding.
+    /// Returns a support vertex along `direction`, by hill climbing along edges from `near`. On a convex body
+    /// a local maximum is the global one, up to rounding.
     pub(crate) fn support(&self, direction: DVec3, near: u32) -> u32 {
         let (mut best, mut height) = (near, direction.dot(self.vertex(near)));
-        // Strictly ascending, so it ends.
+        // The height strictly increases, so the loop ends.
         loop {
             let start = best;
             for &h in self.outgoing(start) {
@@ -243,7 +249,7 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     #[test]
-    fn every_link_leads_where_the_coordinates_say() {
+    fn links_match_coordinates_and_support_is_maximal() {
         let mut rng = Random::new(1);
         for n in [4, 8, 20, 300] {
             let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();

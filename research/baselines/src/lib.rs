@@ -1,5 +1,4 @@
-//! The algorithms that `colltrans` is measured against, each as it was published, on the same
-//! bodies.
+//! Implementations of published algorithms with which `colltrans` is compared, on the same bodies.
 //!
 //! | module | algorithm | question |
 //! |---|---|---|
@@ -9,8 +8,8 @@
 //! | [`vclip`] | V-Clip (Mirtich 1998) | distance |
 //! | [`raycast`] | GJK ray cast (van den Bergen 2004) | collision translation |
 //!
-//! Frames and units are those of `colltrans`: bodies are placed by a [`Pose`](colltrans::Pose),
-//! points of answers are in the world.
+//! Frames and units are those of `colltrans`: a [`Pose`](colltrans::Pose) places each body, and points of
+//! answers are in the world.
 
 pub mod egjk;
 mod features;

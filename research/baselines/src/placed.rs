@@ -1,12 +1,12 @@
-//! One body in the other's frame.
+//! The pose of one body in the frame of the other.
 
 use colltrans::Pose;
 use glam::{DMat3, DVec3};
 
 /// The pose of the moving body in the fixed body's frame: `x_fixed = R x_moving + t`.
 ///
-/// Only the difference of the two translations enters, so a common displacement of both bodies
-/// costs no accuracy.
+/// Only the difference of both translations is used. Therefore a common displacement of both bodies costs no
+/// accuracy.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Relative {
     pub(crate) rotation: DMat3,
@@ -14,6 +14,7 @@ pub(crate) struct Relative {
 }
 
 impl Relative {
+    /// Computes the relative pose.
     pub(crate) fn new(moving_pose: &Pose, fixed_pose: &Pose) -> Self {
         let to_fixed = fixed_pose.matrix().transpose();
         Self {
@@ -22,12 +23,12 @@ impl Relative {
         }
     }
 
-    /// A point of the moving body in the fixed body's frame.
+    /// Transforms a point of the moving body to the fixed body's frame.
     pub(crate) fn point(&self, in_moving: DVec3) -> DVec3 {
         self.rotation * in_moving + self.translation
     }
 
-    /// A direction of the fixed body's frame in the moving body's.
+    /// Transforms a direction of the fixed body's frame to the moving body's frame.
     pub(crate) fn to_moving(self, in_fixed: DVec3) -> DVec3 {
         self.rotation.transpose() * in_fixed
     }

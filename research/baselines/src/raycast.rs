@@ -1,30 +1,19 @@
-//! GJK ray cast: van den Bergen, "Ray casting against general convex objects with application to
-//! continuous collision detection", 2004. The linear cast that physics engines ship.
+//! GJK ray cast: van den Bergen, "Ray casting against general convex objects with application to continuous
+//! collision detection", 2004. Physics engines use this linear cast.
 //!
-//! Notation. In the fixed body's frame, `M = {q - p}` is the Minkowski difference, `d` the
-//! direction, and `x = t d` the tip of the ray, which starts at the origin: the moving body, moved
-//! by `t d`, touches the fixed one when `x` enters `M`. `v` is the shortest vector from `x` to the
-//! simplex (the paper has `-v`), `w` the lowest point of `M` along `v`, and `S` the size: the reach
-//! of both bodies plus the distance of their frames.
+//! - `M = {q - p}` is the Minkowski difference in the fixed body's frame, `d` the direction. `S` is the size,
+//!   as in [`egjk`](crate::egjk).
+//! - `x = t d` is the tip of the ray from the origin. The moved bodies touch when `x` enters `M`.
+//! - `v` is the shortest vector from `x` to the simplex (the paper uses `-v`); `w` is the lowest point of `M`
+//!   along `v`.
 //!
-//! Invariant. `t` is a lower bound of the collision translation: it is raised only as far as a
-//! plane below all of `M`, through `w` with normal `v`, which `x` has not yet crossed. A *hit* is
-//! declared when `|v|` is no larger than the tolerance `e`. As `x` is then within `e` of `M`, which
-//! lies beyond its contact plane, `t` lacks at most `e / n . d`; but the contact normal `n` is not
-//! known. A ray that misses `M` ends with a plane that it moves away from.
+//! Invariant: `t` is a lower bound of the collision translation. It is raised only to planes below `M`,
+//! through `w` with normal `v`, that `x` has not crossed. A *hit* is declared if `|v|` is at most the
+//! tolerance `e`. Then `x` is within `e` of `M`, and `t` is too small by at most `e / n . d` with the unknown
+//! contact normal `n`. A ray that misses `M` ends at a plane from which it moves away. One addition: `t |d| >
+//! S` is a proven miss, because all of `M` is within `S` of the origin.
 //!
-//! Where that fails, as published:
-//!
-//! - *Rays that graze.* A ray that passes `M` by less than `e` is a hit, or a miss. One that comes
-//!   in at a small angle hits early by a multiple of `e`.
-//! - *A start within `e` of `M`* is a contact even if the motion leads away.
-//! - *The normal* is that of the last plane that raised `t`, not of the face that is hit: off by
-//!   up to `1.5e-3` rad in the tests between bodies of 2,000 vertices.
-//! - *Rounding.* No proof bounds the iterations, so running out of them is an answer of its own;
-//!   64 have been enough in all tests. With `e` near `1e-12 S`, rounding may hit early by more than
-//!   that.
-//!
-//! One thing is added: as all of `M` is within `S` of the origin, `t |d| > S` is a miss, proven.
+//! Known failures of the published algorithm: see [`RayCast`].
 
 use colltrans::{ConvexPolyhedron, Pose};
 use glam::DVec3;
@@ -32,14 +21,13 @@ use glam::DVec3;
 use crate::egjk::{Difference, Simplex};
 use crate::placed::Relative;
 
-/// When a ray cast stops.
+/// Limits of a ray cast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The distance at which the bodies count as touching, in units of the size `S`; no less than
-    /// the rounding error, `32 u`. The default is `1e-6`.
+    /// Distance at which the bodies count as touching, in units of the size `S`; at least the rounding error
+    /// `32 u`. The default is `1e-6`.
     pub tolerance: f64,
-    /// Iterations after which the cast gives up. The default is 64, which is what Bullet allows in
-    /// double precision.
+    /// Maximum number of iterations. The default is 64, the limit of Bullet in double precision.
     pub max_iterations: u32,
 }
 
@@ -49,56 +37,64 @@ impl Default for Options {
     }
 }
 
-/// Work done by one cast.
+/// Work of a cast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Steps {
-    /// Simplices whose nearest point was computed.
+    /// Number of simplices whose nearest point was computed.
     pub iterations: u32,
-    /// How often the ray's tip was moved on.
+    /// Number of advances of the ray's tip.
     pub advances: u32,
-    /// Vertices whose neighbours were looked at while climbing to support points.
+    /// Number of vertices whose neighbours were examined while climbing to support points.
     pub climbed: u32,
 }
 
-/// What a ray cast answers.
+/// Answer of a ray cast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RayCastAnswer {
-    /// After this translation the bodies are within the tolerance of each other.
+    /// The bodies are within the tolerance of each other after this translation.
     Hit {
-        /// In multiples of the direction, from 0. Up to rounding it is not beyond the collision
-        /// translation, if there is one.
+        /// Translation in multiples of the direction, at least 0. Up to rounding it does not exceed the
+        /// collision translation, if there is one.
         translation: f64,
-        /// Unit normal of the last plane that kept the bodies apart, from the moving body to the
-        /// fixed one, in the world.
+        /// Unit normal of the last separating plane, from the moving body to the fixed one, in the world.
         normal: DVec3,
-        /// A point of the fixed body, in the world, within the tolerance of the moving one then.
+        /// A point of the fixed body, in the world, within the tolerance of the moved body.
         on_fixed: DVec3,
-        /// Work done.
+        /// Work of the cast.
         steps: Steps,
     },
-    /// The bodies are within the tolerance of each other where they are, or overlap. (The published
-    /// algorithm calls that a hit at 0 without a normal.)
+    /// The bodies are within the tolerance of each other at the start, or overlap. The published algorithm
+    /// reports a hit at 0 without a normal.
     InContact {
-        /// A point of the fixed body, in the world, within the tolerance of the moving one.
+        /// A point of the fixed body, in the world, within the tolerance of the moving body.
         on_fixed: DVec3,
-        /// Work done.
+        /// Work of the cast.
         steps: Steps,
     },
-    /// They do not meet ahead.
+    /// The bodies do not meet ahead.
     Miss {
-        /// Work done.
+        /// Work of the cast.
         steps: Steps,
     },
-    /// The iterations ran out.
+    /// The maximum number of iterations was reached.
     Exhausted {
-        /// They do not meet before this, in multiples of the direction, up to rounding.
+        /// Lower bound of the collision translation, in multiples of the direction, up to rounding.
         lower_bound: f64,
-        /// Work done.
+        /// Work of the cast.
         steps: Steps,
     },
 }
 
-/// Ray casts between two bodies. Climbing starts where the last cast's ended.
+/// Solver for ray casts between two bodies. Climbing starts at the last support points.
+///
+/// Known failures of the published algorithm:
+/// - *Grazing rays*: a ray that passes `M` at less than `e` is a hit or a miss. A ray at a small angle to the
+///   surface hits early by a multiple of `e`.
+/// - *Start within `e` of `M`*: this is a contact, even if the motion leads away.
+/// - *Normal*: it belongs to the last plane that raised `t`, not to the face in contact. Its error is up to
+///   `1.5e-3` rad in tests between bodies of 2,000 vertices.
+/// - *Rounding*: the number of iterations has no proven bound, so [`RayCastAnswer::Exhausted`] exists. 64
+///   iterations suffice in all tests. For `e` near `1e-12 S`, rounding may make a hit earlier than stated.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -119,7 +115,7 @@ pub struct RayCast<'a> {
     options: Options,
 }
 
-/// The tip of the ray and what was last known about it.
+/// The tip of the ray, with the last separating plane.
 #[derive(Debug, Clone, Copy)]
 struct Tip {
     translation: f64,
@@ -129,12 +125,12 @@ struct Tip {
 }
 
 impl<'a> RayCast<'a> {
-    /// Two bodies, with default options and seeds at their first vertices. Takes `O(n)`.
+    /// Creates a solver with default options that starts at the first vertices, in `O(n)` time.
     pub fn new(moving: &'a ConvexPolyhedron, fixed: &'a ConvexPolyhedron) -> Self {
         Self::with_options(moving, fixed, Options::default())
     }
 
-    /// Two bodies, with these options.
+    /// Creates a solver with options that starts at the first vertices, in `O(n)` time.
     pub fn with_options(
         moving: &'a ConvexPolyhedron,
         fixed: &'a ConvexPolyhedron,
@@ -143,13 +139,13 @@ impl<'a> RayCast<'a> {
         Self { difference: Difference::new(moving, fixed), options }
     }
 
-    /// Forgets where the last support points were found.
+    /// Discards the last support points.
     pub fn reset(&mut self) {
         self.difference.reset();
     }
 
-    /// How far the moving body can move along `direction` (world, any length but 0) from where it
-    /// is until it touches the fixed one.
+    /// Computes the translation of the moving body along `direction` (in the world, of any length but 0)
+    /// until it touches the fixed body.
     pub fn cast(
         &mut self,
         moving_pose: &Pose,
@@ -160,17 +156,19 @@ impl<'a> RayCast<'a> {
         let ray = fixed_pose.matrix().transpose() * direction;
         let size = self.difference.size(&relative);
         let tolerance = self.options.tolerance.max(Difference::NOISE) * size;
-        let mut simplex = Simplex::new(self.difference.last(&relative));
+        let mut simplex = Simplex::new(self.difference.last_support(&relative));
         let mut tip = Tip { translation: 0.0, normal: DVec3::ZERO, steps: Steps::default() };
         while tip.steps.iterations < self.options.max_iterations {
             tip.steps.iterations += 1;
             let towards = simplex.reduce(ray * tip.translation);
             if towards.length() <= tolerance {
                 let [_, on_fixed] = self.difference.nearest_points(&simplex);
-                return tip.arrived(fixed_pose, fixed_pose.transform_point(on_fixed));
+                return tip.contact_answer(fixed_pose, fixed_pose.transform_point(on_fixed));
             }
-            let lowest = self.difference.lowest(&relative, towards, &mut tip.steps.climbed);
-            if !tip.advance(ray, towards, lowest.point) || tip.translation * ray.length() > size {
+            let lowest = self.difference.lowest_point(&relative, towards, &mut tip.steps.climbed);
+            if !tip.advance_to_plane(ray, towards, lowest.point)
+                || tip.translation * ray.length() > size
+            {
                 return RayCastAnswer::Miss { steps: tip.steps };
             }
             if !simplex.contains(lowest.pair) {
@@ -182,9 +180,9 @@ impl<'a> RayCast<'a> {
 }
 
 impl Tip {
-    /// Moves on to the plane through `lowest` with normal `towards`, if that is ahead; `false` if
-    /// it is, and the ray never gets there.
-    fn advance(&mut self, ray: DVec3, towards: DVec3, lowest: DVec3) -> bool {
+    /// Advances to the plane through `lowest` with normal `towards` if the plane is ahead. Returns `false` if
+    /// it is ahead and the ray never reaches it.
+    fn advance_to_plane(&mut self, ray: DVec3, towards: DVec3, lowest: DVec3) -> bool {
         let ahead = towards.dot(lowest - ray * self.translation);
         if ahead > 0.0 {
             let speed = towards.dot(ray);
@@ -198,7 +196,8 @@ impl Tip {
         true
     }
 
-    fn arrived(self, fixed_pose: &Pose, on_fixed: DVec3) -> RayCastAnswer {
+    /// Returns the answer for a tip within the tolerance of `M`.
+    fn contact_answer(self, fixed_pose: &Pose, on_fixed: DVec3) -> RayCastAnswer {
         let Self { translation, normal, steps } = self;
         if normal == DVec3::ZERO {
             return RayCastAnswer::InContact { on_fixed, steps };

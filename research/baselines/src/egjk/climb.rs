@@ -1,30 +1,29 @@
 //! Support points by hill climbing over the edges (Cameron 1997).
 //!
-//! Notation. `d` is the direction, `x_v` the position of vertex `v`; climbing goes from a vertex to
-//! the neighbour with the largest gain `d . (x_w - x_v)` as long as there is one.
+//! `d` is the direction and `x_v` the position of vertex `v`. Climbing moves to the neighbour with the
+//! largest gain `d . (x_w - x_v)` until no gain is positive. A convex polyhedron is inside the cone of the
+//! edges of each vertex, therefore such a vertex is a support point.
 //!
-//! On a convex polyhedron a vertex without a better neighbour is a farthest one: all the body lies
-//! in the cone of its edges. What that leaves when rounded depends on what is compared. Two
-//! rounded heights `d . x` differ by some `u |d| |x|` for nothing, which over a short edge is a
-//! steep slope that a long way then multiplies. The gain of the edge vector errs by `4 u sum |d_i|
-//! |e_i|` only, a slope of some `u` however short the edge is, and the height missed at the end is
-//! some `u |d|` times the width of the body. Only a neighbour that gains more than that error is
-//! climbed to; so the true height increases with every step, and no plateau is walked in circles.
+//! Rounding: two rounded heights `d . x` differ by about `u |d| |x|` without a true difference. On a short
+//! edge this error is a steep slope, which a long body amplifies. The gain of the edge vector has an error of
+//! only `4 u sum |d_i| |e_i|`, a slope of a few `u` for any edge length. Therefore the missed height is a few
+//! `u |d|` times the width of the body. Climbing requires a gain above this error, so that the true height
+//! increases with every step and plateaus cause no cycle.
 //!
-//! Amplified is that error only at a vertex whose edges almost cancel each other, in the middle of
-//! what is almost a longer edge or a larger face: less than `64 u` of the size off it, and the hull
-//! would not have kept it. But where the corners of a larger face are themselves that far off a plane,
-//! next to edges as short, a climb may stick lower: the library looks around where it ends, this does not.
+//! The error is amplified only at vertices whose edges almost cancel, inside a longer edge or a larger face
+//! up to `64 u` of the size; the hull removes such vertices. If the corners of a larger face deviate as much
+//! from a plane, next to short edges, climbing may end too low. The library searches the surroundings there;
+//! this implementation does not.
 
 use colltrans::ConvexPolyhedron;
 use glam::DVec3;
 
-/// Rounding error of a gain in units of `sum |d_i| |e_i|`: subtraction, product and two sums.
+/// Rounding error of a gain in units of `sum |d_i| |e_i|`: a subtraction, a product and two sums.
 const GAIN_ERROR: f64 = 2.0 * f64::EPSILON;
 
-/// A vertex of `body` farthest along `direction` (its own frame), climbing up from vertex `from`;
-/// `climbed` counts the vertices whose neighbours were looked at.
-pub(crate) fn climb(
+/// Returns a support vertex of `body` along `direction` (in its own frame), climbing from vertex `from`. Adds
+/// the number of vertices whose neighbours were examined to `climbed`.
+pub(crate) fn climb_to_support(
     body: &ConvexPolyhedron,
     direction: DVec3,
     from: u32,
@@ -34,10 +33,10 @@ pub(crate) fn climb(
     let mut at = from;
     loop {
         *climbed += 1;
-        let here = vertices[at as usize];
+        let position = vertices[at as usize];
         let (mut next, mut most) = (at, 0.0);
         for &neighbour in body.neighbours(at) {
-            let products = direction * (vertices[neighbour as usize] - here);
+            let products = direction * (vertices[neighbour as usize] - position);
             let gain = products.element_sum();
             if gain > most && gain > GAIN_ERROR * products.abs().element_sum() {
                 (next, most) = (neighbour, gain);
@@ -50,10 +49,15 @@ pub(crate) fn climb(
     }
 }
 
-/// A vertex of `body` farthest along `direction`, the first of several; `looked_at` counts all.
-pub(crate) fn scan(body: &ConvexPolyhedron, direction: DVec3, looked_at: &mut u32) -> u32 {
+/// Returns the first support vertex of `body` along `direction`, by a scan. Adds the number of vertices to
+/// `visited`.
+pub(crate) fn scan_for_support(
+    body: &ConvexPolyhedron,
+    direction: DVec3,
+    visited: &mut u32,
+) -> u32 {
     let vertices = body.vertices();
-    *looked_at += vertices.len() as u32;
+    *visited += vertices.len() as u32;
     let (mut best, mut highest) = (0, f64::NEG_INFINITY);
     for (vertex, at) in (0..).zip(vertices) {
         let height = direction.dot(*at);
@@ -70,14 +74,14 @@ mod tests {
     use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
     use colltrans_testkit::random::Random;
 
-    /// Whether faces are flat only nearly.
+    /// Checks whether faces of the family are only nearly flat.
     fn is_uneven(family: &str) -> bool {
         family == "narrow-rings" || NEARLY_FLAT.contains(&family)
     }
 
-    /// Against a scan of all vertices, along random directions, the axes and the face normals.
+    /// Compares with a scan of all vertices, along random directions, the axes and the face normals.
     #[test]
-    fn no_vertex_is_farther() {
+    fn climbing_finds_highest_vertex() {
         for (family, _) in FAMILIES.iter().filter(|family| !is_uneven(family.0)) {
             for seed in 0..20 {
                 let setting = setting(family, seed);
@@ -90,7 +94,7 @@ mod tests {
                     let highest = heights.fold(f64::NEG_INFINITY, f64::max);
                     let reach = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
                     for from in 0..body.vertices().len() as u32 {
-                        let found = climb(&body, d, from, &mut 0);
+                        let found = climb_to_support(&body, d, from, &mut 0);
                         let height = d.dot(body.vertices()[found as usize]);
                         let missed = highest - height;
                         assert!(missed <= 8.0 * f64::EPSILON * reach, "{setting}: {missed:e}");

@@ -1,21 +1,21 @@
-//! The Minkowski difference of two bodies, by its support points only.
+//! The Minkowski difference of two bodies, evaluated by its support points only.
 
 use colltrans::{ConvexPolyhedron, VertexId, VertexPair};
 use glam::DVec3;
 
 use super::SupportSearch;
-use super::climb::{climb, scan};
+use super::climb::{climb_to_support, scan_for_support};
 use super::simplex::{Corner, Simplex};
 use crate::placed::Relative;
 
-/// `M = {q - p}` in the fixed body's frame.
+/// The Minkowski difference `M = {q - p}` in the fixed body's frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Difference<'a> {
     moving: &'a ConvexPolyhedron,
     fixed: &'a ConvexPolyhedron,
-    /// Reach of the moving body plus that of the fixed one.
+    /// Sum of the largest distances of vertices from the origin, of both bodies.
     reach: f64,
-    /// Where the last support points were found.
+    /// The last support vertices.
     seed: VertexPair,
     pub(super) search: SupportSearch,
 }
@@ -24,6 +24,7 @@ impl<'a> Difference<'a> {
     /// Rounding error of a point of `M` in units of the size: `32 u`, as in `colltrans`.
     pub(crate) const NOISE: f64 = 16.0 * f64::EPSILON;
 
+    /// Creates the difference of two bodies.
     pub(crate) fn new(moving: &'a ConvexPolyhedron, fixed: &'a ConvexPolyhedron) -> Self {
         let reach = |body: &ConvexPolyhedron| {
             body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
@@ -33,29 +34,29 @@ impl<'a> Difference<'a> {
         Self { moving, fixed, reach, seed, search }
     }
 
-    /// Climbing starts from the first vertices again.
+    /// Resets the start of climbing to the first vertices.
     pub(crate) fn reset(&mut self) {
         self.seed = VertexPair::default();
     }
 
-    /// The size `S`: no point of `M` is farther from the origin.
+    /// Returns the size `S`, a bound on the distance of points of `M` from the origin.
     pub(crate) fn size(&self, relative: &Relative) -> f64 {
         self.reach + relative.translation.length()
     }
 
-    /// The corner of the vertices where the last climb ended.
-    pub(crate) fn last(&self, relative: &Relative) -> Corner {
+    /// Returns the point of `M` of the last support vertices.
+    pub(crate) fn last_support(&self, relative: &Relative) -> Corner {
         self.corner(relative, self.seed)
     }
 
-    /// The corner of a vertex pair.
+    /// Returns the point of `M` of a vertex pair.
     pub(crate) fn corner(&self, relative: &Relative, pair: VertexPair) -> Corner {
         let p = relative.point(self.moving.vertices()[pair.moving.index()]);
         Corner { pair, point: self.fixed.vertices()[pair.fixed.index()] - p }
     }
 
-    /// The lowest point of `M` along `direction`; `climbed` counts as in [`climb`].
-    pub(crate) fn lowest(
+    /// Returns the lowest point of `M` along `direction`; `climbed` counts as in [`climb_to_support`].
+    pub(crate) fn lowest_point(
         &mut self,
         relative: &Relative,
         direction: DVec3,
@@ -64,19 +65,19 @@ impl<'a> Difference<'a> {
         let in_moving = relative.to_moving(direction);
         let mut find = |body: &ConvexPolyhedron, along: DVec3, from: VertexId| {
             VertexId(match self.search {
-                SupportSearch::Climbing => climb(body, along, from.0, climbed),
-                SupportSearch::Linear => scan(body, along, climbed),
+                SupportSearch::Climbing => climb_to_support(body, along, from.0, climbed),
+                SupportSearch::Linear => scan_for_support(body, along, climbed),
             })
         };
         self.seed = VertexPair {
             moving: find(self.moving, in_moving, self.seed.moving),
             fixed: find(self.fixed, -direction, self.seed.fixed),
         };
-        self.last(relative)
+        self.last_support(relative)
     }
 
-    /// The points of the moving and the fixed body, each in its own frame, that the weights of a
-    /// simplex stand for.
+    /// Returns the points of the moving and the fixed body, each in its own frame, for the weights of a
+    /// simplex.
     pub(crate) fn nearest_points(&self, simplex: &Simplex) -> [DVec3; 2] {
         let mut points = [DVec3::ZERO; 2];
         for (pair, weight) in simplex.weighted_pairs() {

@@ -1,22 +1,21 @@
-//! Enhanced GJK: Cameron, "Enhancing GJK: computing minimum and penetration distances between
-//! convex polyhedra", ICRA 1997.
+//! Enhanced GJK: Cameron, "Enhancing GJK: computing minimum and penetration distances between convex
+//! polyhedra", ICRA 1997.
 //!
-//! Notation. In the fixed body's frame, `M = {q - p}` is the Minkowski difference, and `v` the
-//! point of the simplex of GJK (Gilbert, Johnson, Keerthi 1988) nearest to the origin; `w` is the
-//! lowest point of `M` along `v`, and `S` the size: the reach of both bodies from their frames'
-//! origins plus the distance of these.
+//! - `M = {q - p}` is the Minkowski difference in the fixed body's frame.
+//! - `v` is the point of the simplex of GJK (Gilbert, Johnson, Keerthi 1988) nearest to the origin; `w` is
+//!   the lowest point of `M` along `v`.
+//! - `S` is the size: the largest distance of a vertex from its frame's origin for both bodies, plus the
+//!   distance of the origins.
 //!
-//! Invariant. `v` belongs to `M`, so `|v|` is an upper bound of the distance; all of `M` lies
-//! beyond the plane through `w` with normal `v`, so `v . w / |v|` is a lower one. The *gap* between
-//! the best of both bounds the error of the answer, whatever rounding did to `v` itself.
+//! Invariant: `|v|` is an upper bound of the distance, because `v` is a point of `M`. `v . w / |v|` is a
+//! lower bound, because `M` lies beyond the plane through `w` with normal `v`. The *gap* between the best
+//! bounds limits the error of the answer, whatever the rounding of `v`. The search ends if the gap is at most
+//! the rounding error of a point of `M`, or if rounding stalls it. On more than 200,000 tied, touching, thin
+//! and coherent settings it stalled 9 times, on bodies at least a thousand times longer than thick, with gaps
+//! up to `2.9e-13 S`.
 //!
-//! The search ends when the gap is a rounding error of a point of `M`, or when rounding stalls it.
-//! Measured on more than 200,000 tied, touching, thin and coherent settings: stalled 9 times, on
-//! bodies a thousand times as long as thick or more, with gaps up to `2.9e-13 S`.
-//!
-//! Cameron's enhancement: a support point is found by climbing from vertex to vertex (`climb`),
-//! starting where the last one was found, and the simplex is carried over from query to query.
-//! The nearest point of the simplex is found by signed volumes (`simplex`).
+//! Cameron's enhancement: hill climbing (`climb`) starts at the last support point, and the simplex is kept
+//! between queries. Signed volumes yield the nearest point of the simplex (`simplex`).
 
 mod climb;
 mod difference;
@@ -30,44 +29,45 @@ use crate::proximity::Proximity;
 pub(crate) use difference::Difference;
 pub(crate) use simplex::{Corner, Simplex};
 
-/// Iterations after which a query returns what it has; some tens are usual.
+/// Maximum number of iterations; some tens are usual.
 const MAX_ITERATIONS: u32 = 1000;
 
-/// For how many iterations neither bound may become better. Where almost parallel faces or edges
-/// meet, `v` first turns by a small angle, which shortens it by the square of that angle: nothing
-/// that an `f64` shows, but the next support points need it. So `|v|` must be allowed to stay as it
-/// is for a while: as long as it takes to walk over a face.
-const PATIENCE: u32 = 30;
+/// Maximum number of iterations without an improved bound.
+///
+/// Where almost parallel faces or edges meet, `v` first turns by a small angle, which shortens it by the
+/// square of that angle. An `f64` does not show this change, but the next support points depend on it. The
+/// limit covers a walk over a face.
+const MAX_IDLE_ITERATIONS: u32 = 30;
 
-/// How a support point of a body is found.
+/// Method by which support points of a body are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SupportSearch {
-    /// From vertex to vertex along edges, from where the last one was found: Cameron's enhancement.
+    /// Hill climbing along edges from the last support point: Cameron's enhancement.
     #[default]
     Climbing,
-    /// Over all vertices, as in GJK before it was enhanced: the time grows linearly.
+    /// Scan of all vertices, as in the original GJK, in linear time.
     Linear,
 }
 
-/// Work done by one query, and what it proved.
+/// Work of a query, and its bound on the error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Steps {
-    /// Simplices whose nearest point was computed.
+    /// Number of simplices whose nearest point was computed.
     pub iterations: u32,
-    /// Support points of `M`, each made of one of either body.
+    /// Number of support points of `M`, each from one of either body.
     pub supports: u32,
-    /// Vertices whose neighbours were looked at while climbing; all vertices of both bodies for each
-    /// support point if the search is linear.
+    /// Number of vertices whose neighbours were examined while climbing. With linear search, all vertices of
+    /// both bodies for each support point.
     pub climbed: u32,
-    /// Upper minus lower bound of the distance, in world units: the answer's error is at most this
-    /// plus twice the rounding error of a point, `32 u S`.
+    /// Upper minus lower bound of the distance, in world units. The error of the answer is at most the gap
+    /// plus twice the rounding error `32 u S` of a point.
     ///
-    /// Nearly always no larger than one such error, and often 0; larger where the simplex is so
-    /// thin that rounding stalls the search.
+    /// The gap is usually at most one such error, and often 0. It is larger if the simplex is so thin that
+    /// rounding stalls the search.
     pub gap: f64,
 }
 
-/// Distance queries between two bodies, coherent from one to the next.
+/// Solver for a sequence of distance queries between two bodies, with temporal coherence.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -91,8 +91,7 @@ pub struct Egjk<'a> {
     simplex: Simplex,
 }
 
-/// The best bounds so far, the simplex of the upper one, and for how many iterations neither has
-/// become better.
+/// The best bounds, the simplex of the upper one, and the number of iterations since the last improvement.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     upper: f64,
@@ -102,11 +101,13 @@ struct Bounds {
 }
 
 impl Bounds {
+    /// Returns upper minus lower bound.
     fn gap(&self) -> f64 {
         self.upper - self.lower
     }
 
-    /// Of simplices that are equally near up to rounding the last has the best direction.
+    /// Updates the upper bound. Among simplices that are equally near up to rounding, the last one has the
+    /// best direction.
     fn take_upper(&mut self, upper: f64, simplex: &Simplex, noise: f64) {
         self.idle = if upper < self.upper { 0 } else { self.idle + 1 };
         if upper <= self.upper + noise {
@@ -115,6 +116,7 @@ impl Bounds {
         self.upper = self.upper.min(upper);
     }
 
+    /// Updates the lower bound.
     fn take_lower(&mut self, lower: f64) {
         if lower > self.lower {
             (self.lower, self.idle) = (lower, 0);
@@ -123,30 +125,30 @@ impl Bounds {
 }
 
 impl<'a> Egjk<'a> {
-    /// Two bodies, seeds at their first vertices. Takes `O(n)`.
+    /// Creates a solver for two bodies that starts at their first vertices, in `O(n)` time.
     pub fn new(moving: &'a ConvexPolyhedron, fixed: &'a ConvexPolyhedron) -> Self {
         let simplex = Simplex::new(Corner::default());
         Self { difference: Difference::new(moving, fixed), simplex }
     }
 
-    /// With another way to find support points; unless said, it is [`SupportSearch::Climbing`].
+    /// Returns the solver with another search for support points; the default is [`SupportSearch::Climbing`].
     #[must_use]
     pub fn with_support_search(mut self, search: SupportSearch) -> Self {
         self.difference.search = search;
         self
     }
 
-    /// Forgets what the last query left behind: the next one starts from scratch.
+    /// Discards the simplex and support points of the last query.
     pub fn reset(&mut self) {
         self.difference.reset();
         self.simplex = Simplex::new(Corner::default());
     }
 
-    /// Distance and nearest points of the placed bodies, to within [`Steps::gap`].
+    /// Computes the distance and nearest points of the placed bodies, to within [`Steps::gap`].
     ///
-    /// A distance below the rounding error `32 u S` is returned as 0. If the bodies overlap, both
-    /// nearest points are one point of both, up to rounding. Where almost parallel faces or edges
-    /// are nearest, many pairs of points have the same distance up to rounding; the answer is one.
+    /// A distance below the rounding error `32 u S` is returned as 0. If the bodies overlap, both nearest
+    /// points are a common point, up to rounding. Between almost parallel faces or edges many pairs of points
+    /// have the same distance up to rounding, and the answer is one of them.
     pub fn distance(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> Proximity<Steps> {
         let relative = Relative::new(moving_pose, fixed_pose);
         let noise = Difference::NOISE * self.difference.size(&relative);
@@ -165,9 +167,12 @@ impl<'a> Egjk<'a> {
                 break;
             }
             steps.supports += 1;
-            let lowest = self.difference.lowest(&relative, nearest, &mut steps.climbed);
+            let lowest = self.difference.lowest_point(&relative, nearest, &mut steps.climbed);
             best.take_lower(nearest.dot(lowest.point) / upper);
-            if best.gap() <= noise || best.idle > PATIENCE || simplex.contains(lowest.pair) {
+            if best.gap() <= noise
+                || best.idle > MAX_IDLE_ITERATIONS
+                || simplex.contains(lowest.pair)
+            {
                 break;
             }
             simplex.push(lowest);

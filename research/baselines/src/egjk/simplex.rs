@@ -1,38 +1,33 @@
-//! The simplex of GJK and its point nearest to a given one, by signed volumes (Montanari,
-//! Petrinic, Barbieri, "Improving the GJK algorithm for faster and more reliable distance queries
-//! between convex objects", ACM Transactions on Graphics 36(3), 2017).
+//! The simplex of GJK and its point nearest to the origin, by signed volumes (Montanari, Petrinic, Barbieri,
+//! "Improving the GJK algorithm for faster and more reliable distance queries between convex objects", ACM
+//! Transactions on Graphics 36(3), 2017).
 //!
-//! Notation. `a, b, c, d` are corners, relative to the given point, which is thus the origin; its
-//! *foot* is its projection onto the plane or the line of some of them. The weights of the foot are
-//! quotients of signed volumes, areas or lengths: of the simplex with one corner exchanged for the
-//! foot, over the whole. Areas and lengths are measured in the coordinate plane or axis in which
-//! the whole is largest.
+//! `a, b, c, d` are corners relative to the given point, which becomes the origin. Its *foot* is the
+//! projection onto the plane or line of some corners. The weights of the foot are quotients of signed
+//! volumes, areas or lengths: the simplex with a corner replaced by the foot, over the whole simplex,
+//! measured in the coordinate plane or axis in which the whole is largest. If all weights are positive, the
+//! foot is the nearest point. If a weight has the wrong sign, the origin is beyond the face without its
+//! corner; the nearest point is then that of the nearest such face.
 //!
-//! - All weights positive: the foot is the nearest point.
-//! - A weight of the wrong sign: the origin lies beyond the face without that corner. The nearest
-//!   point is the nearest of those faces' nearest points, each found in the same way.
-//!
-//! Three things are added, for accuracy:
-//!
-//! - Where rounding leaves the sign of a weight open, the face is looked at; where it leaves that
-//!   of the whole open, all faces are: a simplex that is flat up to rounding is covered by them.
-//! - In thin simplices the weights are corrected by Newton's method.
-//! - Directions matter more than lengths: a nearest point of length `|v|`, off by `u S`, has a
-//!   direction off by `u S / |v|`, and so would be the bound of GJK that rests on it. The foot on a
-//!   plane is therefore a multiple of the normal, and that on a line is made orthogonal to it
-//!   twice.
+//! Additions for accuracy:
+//! - If rounding leaves the sign of a weight open, its face is examined too; if it leaves that of the whole
+//!   open, all faces are. They cover a flat simplex.
+//! - Newton steps correct the weights of thin simplices.
+//! - A nearest point of length `|v|` with error `u S` has a direction with error `u S / |v|`, which enters
+//!   the bound of GJK. Therefore the foot on a plane is a multiple of the normal, and the foot on a line is
+//!   made orthogonal to it twice.
 
 use colltrans::VertexPair;
 use glam::DVec3;
 
-/// A point `q - p` of the Minkowski difference, for one vertex of each body.
+/// A point `q - p` of the Minkowski difference with its vertices.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Corner {
     pub(crate) pair: VertexPair,
     pub(crate) point: DVec3,
 }
 
-/// Up to four corners, and weights whose sum is 1.
+/// Up to four corners, and their weights with sum 1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Simplex {
     corners: [Corner; 4],
@@ -41,45 +36,48 @@ pub(crate) struct Simplex {
 }
 
 impl Simplex {
-    /// One corner.
+    /// Creates a simplex of one corner.
     pub(crate) fn new(corner: Corner) -> Self {
         Self { corners: [corner; 4], weights: [1.0, 0.0, 0.0, 0.0], len: 1 }
     }
 
+    /// Returns the corners.
     pub(crate) fn corners(&self) -> &[Corner] {
         &self.corners[..self.len]
     }
 
+    /// Returns the corners for modification.
     pub(crate) fn corners_mut(&mut self) -> &mut [Corner] {
         &mut self.corners[..self.len]
     }
 
-    /// The vertex pairs of the corners with their weights.
+    /// Iterates over the vertex pairs of the corners with their weights.
     pub(crate) fn weighted_pairs(&self) -> impl Iterator<Item = (VertexPair, f64)> + '_ {
         self.corners().iter().map(|c| c.pair).zip(self.weights)
     }
 
+    /// Checks whether a vertex pair is a corner.
     pub(crate) fn contains(&self, pair: VertexPair) -> bool {
         self.corners().iter().any(|c| c.pair == pair)
     }
 
-    /// Adds a corner of weight 0. A full simplex contains its nearest point and needs no more.
+    /// Adds a corner of weight 0. The simplex must not be full; a full simplex contains its nearest point.
     pub(crate) fn push(&mut self, corner: Corner) {
-        debug_assert!(self.len < 4, "reduced before");
+        debug_assert!(self.len < 4, "a full simplex cannot grow");
         self.corners[self.len] = corner;
         self.weights[self.len] = 0.0;
         self.len += 1;
     }
 
-    /// The shortest vector from `origin` to the simplex. Keeps the corners that it needs, and their
+    /// Returns the shortest vector from `origin` to the simplex. Keeps only the corners with positive
     /// weights.
     pub(crate) fn reduce(&mut self, origin: DVec3) -> DVec3 {
         let points = self.corners.map(|c| c.point - origin);
         let nearest = match self.len {
-            1 => Nearest::vertex(&points, 0),
-            2 => segment(&points, [0, 1]),
-            3 => triangle(&points, [0, 1, 2]),
-            _ => tetrahedron(&points),
+            1 => Nearest::at_vertex(&points, 0),
+            2 => nearest_on_segment(&points, [0, 1]),
+            3 => nearest_on_triangle(&points, [0, 1, 2]),
+            _ => nearest_in_tetrahedron(&points),
         };
         let mut kept = 0;
         for i in 0..self.len {
@@ -103,13 +101,19 @@ struct Nearest {
 }
 
 impl Nearest {
-    fn vertex(points: &[DVec3; 4], i: usize) -> Self {
+    /// Returns a corner as the nearest point.
+    fn at_vertex(points: &[DVec3; 4], i: usize) -> Self {
         let mut weights = [0.0; 4];
         weights[i] = 1.0;
         Self { point: points[i], weights }
     }
 
-    fn at<const N: usize>(point: DVec3, corners: [usize; N], of_corners: [f64; N]) -> Self {
+    /// Returns a point with the weights of some corners.
+    fn with_weights<const N: usize>(
+        point: DVec3,
+        corners: [usize; N],
+        of_corners: [f64; N],
+    ) -> Self {
         let mut weights = [0.0; 4];
         for (corner, weight) in corners.into_iter().zip(of_corners) {
             weights[corner] = weight;
@@ -117,12 +121,14 @@ impl Nearest {
         Self { point, weights }
     }
 
+    /// Returns the nearer one of two points.
     fn nearer(self, other: Self) -> Self {
         if other.point.length_squared() < self.point.length_squared() { other } else { self }
     }
 }
 
-fn segment(points: &[DVec3; 4], [a, b]: [usize; 2]) -> Nearest {
+/// Returns the nearest point of an edge.
+fn nearest_on_segment(points: &[DVec3; 4], [a, b]: [usize; 2]) -> Nearest {
     let edge = points[b] - points[a];
     let square = edge.length_squared();
     if square > 0.0 {
@@ -131,14 +137,15 @@ fn segment(points: &[DVec3; 4], [a, b]: [usize; 2]) -> Nearest {
         let axis = edge.abs().max_position();
         let to = [points[a] - foot, points[b] - foot];
         let slope = edge / square;
-        if let Some(weights) = inside(to, [to[1][axis], -to[0][axis]], [-slope, slope]) {
-            return Nearest::at(foot, [a, b], weights);
+        if let Some(weights) = positive_weights(to, [to[1][axis], -to[0][axis]], [-slope, slope]) {
+            return Nearest::with_weights(foot, [a, b], weights);
         }
     }
-    Nearest::vertex(points, a).nearer(Nearest::vertex(points, b))
+    Nearest::at_vertex(points, a).nearer(Nearest::at_vertex(points, b))
 }
 
-fn triangle(points: &[DVec3; 4], [a, b, c]: [usize; 3]) -> Nearest {
+/// Returns the nearest point of a face.
+fn nearest_on_triangle(points: &[DVec3; 4], [a, b, c]: [usize; 3]) -> Nearest {
     let sides = [[b, c], [c, a], [a, b]];
     let normal = (points[b] - points[a]).cross(points[c] - points[a]);
     let square = normal.length_squared();
@@ -149,25 +156,26 @@ fn triangle(points: &[DVec3; 4], [a, b, c]: [usize; 3]) -> Nearest {
         let to = [a, b, c].map(|i| points[i] - foot);
         let parts = [to[1].cross(to[2])[axis], to[2].cross(to[0])[axis], to[0].cross(to[1])[axis]];
         let slopes = sides.map(|[i, j]| normal.cross(points[j] - points[i]) / square);
-        if let Some(weights) = inside(to, parts, slopes) {
-            return Nearest::at(foot, [a, b, c], weights);
+        if let Some(weights) = positive_weights(to, parts, slopes) {
+            return Nearest::with_weights(foot, [a, b, c], weights);
         }
         beyond = may_be_beyond(parts, normal[axis], VOLUME_ERROR * longest_square(&to));
     }
-    nearest_of_faces(sides, beyond, |side| segment(points, side))
+    nearest_of_faces(sides, beyond, |side| nearest_on_segment(points, side))
 }
 
-fn tetrahedron(points: &[DVec3; 4]) -> Nearest {
+/// Returns the nearest point of the whole simplex.
+fn nearest_in_tetrahedron(points: &[DVec3; 4]) -> Nearest {
     let [a, b, c, d] = *points;
-    // The volume over a face is taken from a corner of it, not from the origin: far away, that
-    // would cost digits.
+    // The volume over a face is measured from a corner of the face. Measuring from a distant origin would
+    // lose digits.
     let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
     let normals = [normal(b, c, d), normal(a, d, c), normal(a, b, d), normal(a, c, b)];
     let parts = [b.dot(normals[0]), a.dot(normals[1]), a.dot(normals[2]), a.dot(normals[3])];
     let whole = (a - b).dot(normals[1]);
     let longest = longest_square(points).sqrt();
-    if let Some(weights) = inside(*points, parts, normals.map(|n| -n / whole))
-        // Else so flat that the weights are made of rounding errors.
+    if let Some(weights) = positive_weights(*points, parts, normals.map(|n| -n / whole))
+        // Otherwise the simplex is so flat that the weights are rounding errors.
         && combination(points, weights).length() <= RESIDUAL * longest
     {
         return Nearest { point: DVec3::ZERO, weights };
@@ -175,37 +183,39 @@ fn tetrahedron(points: &[DVec3; 4]) -> Nearest {
     let edges = longest_square(&[b - a, c - a, d - a]);
     let beyond = may_be_beyond(parts, whole, VOLUME_ERROR * longest * edges);
     let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
-    nearest_of_faces(faces, beyond, |face| triangle(points, face))
+    nearest_of_faces(faces, beyond, |face| nearest_on_triangle(points, face))
 }
 
-/// Bounds the rounding error of a signed area or volume: in units of the square of the longest
-/// vector, or of that of the longest edge from one corner times the longest corner. (Two edges from
-/// another corner are up to twice as long each.)
+/// Bound on the rounding error of a signed area or volume. The unit of areas is the square of the longest
+/// vector. That of volumes is the square of the longest edge from one corner, times the longest corner
+/// vector. Two edges from another corner are at most twice as long each.
 const VOLUME_ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// What a sum of four products may miss by rounding, in units of the longest vector.
+/// Rounding error of a sum of four products, in units of the longest vector.
 const RESIDUAL: f64 = 4.0 * f64::EPSILON;
 
+/// Returns the largest squared length.
 fn longest_square(vectors: &[DVec3]) -> f64 {
     vectors.iter().map(|v| v.length_squared()).fold(0.0, f64::max)
 }
 
+/// Returns the weighted sum of points.
 fn combination(points: &[DVec3], weights: impl IntoIterator<Item = f64>) -> DVec3 {
     points.iter().zip(weights).map(|(p, weight)| *p * weight).sum()
 }
 
-/// Beyond which faces, opposite to the corners, the origin may lie, signs being wrong up to
-/// `error`. One face more costs time only.
+/// Checks for each corner whether the origin may lie beyond the opposite face, if signs have errors up to
+/// `error`. An additional face only costs time.
 fn may_be_beyond<const N: usize>(parts: [f64; N], whole: f64, error: f64) -> [bool; N] {
     parts.map(|part| whole.abs() <= error || part * whole.signum() <= error)
 }
 
-/// The weights of the foot, from which the corners are seen at `corners`, if all are positive.
+/// Returns the weights of the foot if all are positive; `corners` are the corners relative to the foot.
 ///
-/// First they are what `parts` has of their sum. In a thin simplex that misses the foot by more
-/// than a rounding error, or misses that it is outside, so steps of Newton follow: a weight is a
-/// linear function, with the gradient `slopes`.
-fn inside<const N: usize>(
+/// The first weights are the quotients of `parts` and their sum. In a thin simplex their errors exceed
+/// rounding errors or hide that the foot is outside. Therefore Newton steps follow: each weight is a linear
+/// function with the gradient `slopes`.
+fn positive_weights<const N: usize>(
     corners: [DVec3; N],
     parts: [f64; N],
     slopes: [DVec3; N],
@@ -226,11 +236,11 @@ fn inside<const N: usize>(
     positive(&weights).then(|| weights.map(|weight| weight / sum))
 }
 
-/// The slopes of a simplex that is flat up to rounding are wrong in their first digit: the second
-/// step takes what the first one left.
+/// Number of Newton steps. In a simplex that is flat up to rounding the slopes have errors in the first
+/// digit, so the second step corrects the remainder of the first.
 const NEWTON_STEPS: u32 = 2;
 
-/// The nearest over the faces that are wanted, or over all if none is.
+/// Returns the nearest point over the wanted faces, or over all faces if none is wanted.
 fn nearest_of_faces<F: Copy, const N: usize>(
     faces: [F; N],
     wanted: [bool; N],
@@ -249,8 +259,8 @@ mod tests {
     use colltrans_testkit::oracle::exact::Vector;
     use colltrans_testkit::random::Random;
 
-    /// Up to four points: in general position, on a grid (so often in a plane, on a line or equal),
-    /// nearly in a plane, or far away and close to each other.
+    /// Returns up to four points: in general position, on a grid (often coplanar, collinear or equal), nearly
+    /// coplanar, or distant and close to each other.
     fn corners(rng: &mut Random) -> Vec<DVec3> {
         let n = rng.int(1, 4);
         let thin = rng.pick(&[1e-3, 1e-9, 1e-15, 1e-18]);
@@ -267,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn nearest_points_of_simplices_in_every_position() {
+    fn nearest_point_of_simplex_matches_exact_distance() {
         let mut rng = Random::new(1);
         let mut inside = 0;
         for case in 0..20_000 {

@@ -1,55 +1,55 @@
-//! Dobkin-Kirkpatrick's inner hierarchy of a convex polyhedron.
+//! The inner Dobkin-Kirkpatrick hierarchy of a convex polyhedron.
 //!
-//! Notation. Layer 0 is the body; layer `k + 1` is the hull of what is left of the vertices of
-//! layer `k` when an *independent set* (no two of them neighbours) of vertices of low degree is
-//! taken away. So layers are nested, and a vertex that is taken away leaves all its neighbours
-//! behind.
+//! Layer 0 is the body. Layer `k + 1` is the hull of layer `k` without an *independent set* of vertices of
+//! low degree, in which no two vertices are neighbours. Therefore layers are nested, and all neighbours of a
+//! removed vertex remain.
 //!
-//! Invariant. A fixed share of the vertices goes with each layer, so that there are `O(log n)`
-//! layers of `O(n)` features in all. At least half of the vertices of a convex polyhedron have
-//! fewer than [`LOW_DEGREE`] neighbours, and a greedy choice takes one in that many of them.
+//! Invariant: each layer removes a fixed share of the vertices, which yields `O(log n)` layers of `O(n)`
+//! features in all. At least half of the vertices of a convex polyhedron have fewer than [`LOW_DEGREE`]
+//! neighbours, and a greedy selection contains at least one in [`LOW_DEGREE`] of them.
 //!
-//! Source: Dobkin and Kirkpatrick, "Determining the separation of preprocessed polyhedra - a
-//! unified approach", ICALP 1990; Guibas, Hsu, Zhang 1999, on its use here.
+//! Sources: Dobkin and Kirkpatrick, "Determining the separation of preprocessed polyhedra - a unified
+//! approach", ICALP 1990; Guibas, Hsu, Zhang 1999.
 
 use colltrans::ConvexPolyhedron;
 
 use crate::features::{NotSolid, Shell};
 
-/// Layers end when there are no more vertices than this.
+/// Maximum number of vertices of the last layer.
 const CORE: usize = 12;
 
-/// Vertices with as many neighbours or more stay: the average is below 6, so fewer than half do.
+/// Vertices with at least this degree stay. The average degree is below 6, therefore fewer than half of the
+/// vertices do.
 const LOW_DEGREE: usize = 12;
 
-/// A layer and its links to its neighbours, by vertices.
+/// A layer with the links of its vertices to the adjacent layers.
 #[derive(Debug, Clone)]
 pub(crate) struct Layer {
     pub(crate) shell: Shell,
-    /// The same vertex in the next finer layer; empty in layer 0.
+    /// For each vertex, the same vertex in the next finer layer; empty in layer 0.
     pub(crate) finer: Vec<u32>,
-    /// The same vertex in the next coarser layer, or a neighbour; empty in the last layer.
+    /// For each vertex, the same vertex in the next coarser layer, or a neighbour; empty in the last layer.
     pub(crate) coarser: Vec<u32>,
 }
 
-/// A body and ever coarser bodies inside it, each on some of the vertices of the one before.
+/// A body and increasingly coarse bodies inside it, each with a subset of the vertices of the previous one.
 #[derive(Debug, Clone)]
 pub struct Hierarchy {
     layers: Vec<Layer>,
 }
 
 impl Hierarchy {
-    /// The layers of a body, down to about a dozen vertices. Takes the time of a few hulls.
+    /// Computes the layers of a body, down to about a dozen vertices. Takes the time of a few convex hulls.
     ///
     /// # Errors
-    /// The body is a polygon, a segment or a point.
+    /// [`NotSolid`] for a polygon, a segment or a point.
     pub fn new(body: &ConvexPolyhedron) -> Result<Self, NotSolid> {
         let mut layers = Vec::new();
         let mut last = Layer { shell: Shell::new(body)?, finer: Vec::new(), coarser: Vec::new() };
         let mut coarse = coarser_body(body);
         while let Some((body, finer)) = coarse {
             let shell = Shell::new(&body)?;
-            last.coarser = links(&last.shell, &finer);
+            last.coarser = coarser_links(&last.shell, &finer);
             layers.push(std::mem::replace(&mut last, Layer { shell, finer, coarser: Vec::new() }));
             coarse = coarser_body(&body);
         }
@@ -57,34 +57,34 @@ impl Hierarchy {
         Ok(Self { layers })
     }
 
-    /// Number of layers.
+    /// Returns the number of layers.
     pub fn layer_count(&self) -> usize {
         self.layers.len()
     }
 
-    /// Vertices of a layer; layer 0 is the body.
+    /// Returns the number of vertices of a layer; layer 0 is the body.
     ///
     /// # Panics
-    /// If there is no such layer.
+    /// If the layer does not exist.
     pub fn vertex_count(&self, layer: usize) -> usize {
         self.layers[layer].shell.vertex_count()
     }
 
-    /// Bytes of memory that the layers occupy, on the heap and in themselves.
+    /// Returns the number of bytes that the layers occupy, including the heap.
     pub fn memory_bytes(&self) -> usize {
         let links = |layer: &Layer| 4 * (layer.finer.capacity() + layer.coarser.capacity());
         let layers = self.layers.iter().map(|layer| layer.shell.memory_bytes() + links(layer));
         size_of::<Self>() + layers.sum::<usize>()
     }
 
-    /// A layer; the last one for all that are coarser.
+    /// Returns a layer, or the last one for a larger index.
     pub(crate) fn layer(&self, index: usize) -> &Layer {
         &self.layers[index.min(self.layers.len() - 1)]
     }
 }
 
-/// The hull of what is left without an independent set, and where its vertices come from; none if
-/// the body is a core, or what is left is no solid.
+/// Returns the hull without an independent set, and for each of its vertices the index in `body`. Returns
+/// `None` if the body is small enough, or if the hull is not a solid.
 fn coarser_body(body: &ConvexPolyhedron) -> Option<(ConvexPolyhedron, Vec<u32>)> {
     let count = body.vertices().len();
     if count <= CORE {
@@ -99,7 +99,7 @@ fn coarser_body(body: &ConvexPolyhedron) -> Option<(ConvexPolyhedron, Vec<u32>)>
     (kept.len() < count).then_some((coarse, finer))
 }
 
-/// Greedy, from the lowest degree.
+/// Marks a greedy independent set, starting with the lowest degrees.
 fn independent_set(body: &ConvexPolyhedron) -> Vec<bool> {
     let degree = |v: u32| body.neighbours(v).len();
     let mut order: Vec<u32> = (0..body.vertices().len() as u32).collect();
@@ -114,10 +114,9 @@ fn independent_set(body: &ConvexPolyhedron) -> Vec<bool> {
     taken
 }
 
-/// For each vertex of a layer the same one in the coarser layer, or the nearest along edges: a
-/// neighbour, unless the hull dropped that one as well because it lies in a face to within
-/// rounding.
-fn links(shell: &Shell, finer: &[u32]) -> Vec<u32> {
+/// Returns for each vertex of a layer the same vertex in the coarser layer, or the nearest one along edges.
+/// This is a neighbour, unless the hull dropped the neighbour too because it is inside a face up to rounding.
+fn coarser_links(shell: &Shell, finer: &[u32]) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut coarser = vec![NONE; shell.vertex_count()];
     let mut reached: Vec<u32> = finer.to_vec();
@@ -151,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn layers_shrink_and_links_lead_to_the_same_points() {
+    fn layers_shrink_and_links_match() {
         let mut rng = Random::new(3);
         for n in [13, 50, 400, 3_000] {
             let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();
@@ -176,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_core_has_one_layer() {
+    fn small_body_has_one_layer() {
         let cube = hierarchy(&cuboid(DVec3::ONE).vertices);
         assert_eq!((cube.layer_count(), cube.vertex_count(0)), (1, 8));
         assert_eq!(cube.layer(7).shell.some_vertex(Feature::Vertex(5)), 5);

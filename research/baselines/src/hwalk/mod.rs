@@ -1,18 +1,19 @@
-//! H-Walk: the distance of convex polyhedra by walks on a hierarchy of layers.
+//! H-Walk: distance of convex polyhedra by feature walks on a hierarchy of layers. L. Guibas, D. Hsu, L.
+//! Zhang, "H-Walk: hierarchical distance computation for moving convex bodies", Proc. 15th ACM Symposium on
+//! Computational Geometry, 1999.
 //!
-//! L. Guibas, D. Hsu, L. Zhang, "H-Walk: hierarchical distance computation for moving convex
-//! bodies", Proc. 15th ACM Symposium on Computational Geometry, 1999. A walk over pairs of features
-//! from those of the last query is fast if they are near. If it takes more than a few steps, a
-//! *shortcut* leads through the layers of the Dobkin-Kirkpatrick hierarchy (`hierarchy`): one
-//! layer coarser, where a step goes farther, and again until a walk ends in time, and back layer by
-//! layer, with a walk of a few steps on each.
+//! A walk over pairs of features from those of the last query is fast if they are close. If it exceeds a few
+//! steps, a *shortcut* leads to the next coarser layer of the Dobkin-Kirkpatrick hierarchy (`hierarchy`),
+//! repeatedly until a walk ends in time. Then it returns layer by layer, with a walk of a few steps on each.
 //!
-//! What the paper leaves open, and what is done here: the walk on a layer is V-Clip's (see
-//! [`crate::vclip`]; the paper's experiments walk as Lin and Canny do); a query without a last one
-//! starts at the coarsest layer; layer `k` of one body is paired with layer `k` of the other, or
-//! with its last. Layers lie inside the bodies, so features of any layer that cross end the query:
-//! the bodies overlap, and the next query starts on that layer. The end on layer 0 is proven as
-//! V-Clip's.
+//! Choices that the paper leaves open:
+//! - The walk on a layer is that of V-Clip ([`crate::vclip`]). The paper's experiments use Lin and Canny's
+//!   walk.
+//! - A query without a previous one starts at the coarsest layer. Layer `k` of one body is paired with layer
+//!   `k` of the other, or its last one.
+//! - Layers are inside the bodies. Therefore features of any layer that cross prove an overlap; the next
+//!   query starts on that layer.
+//! - The result on layer 0 is proven like that of V-Clip.
 
 mod hierarchy;
 
@@ -26,33 +27,34 @@ use crate::proximity::Proximity;
 use crate::vclip::walk::{End, Pair, Scene, Work};
 use crate::vclip::{FIRST_VERTICES, Settled, settle};
 
-/// Steps on a layer before a shortcut, unless set.
+/// Default maximum number of steps on a layer before a shortcut.
 pub const DEFAULT_PATIENCE: u32 = 16;
 
-/// The work of a query, and what it proves.
+/// Work of a query, and its bound on the error.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Steps {
-    /// Pairs of features looked at, on all layers.
+    /// Number of pairs of features examined, on all layers.
     pub pairs: u32,
-    /// Walks, one for each layer each time it is entered.
+    /// Number of walks, one each time a layer is entered.
     pub layers: u32,
-    /// Times that the walk went to a coarser layer.
+    /// Number of shortcuts to a coarser layer.
     pub shortcuts: u32,
-    /// Scans of all faces of a layer, in local minima of the walk.
+    /// Number of scans of all faces of a layer, in local minima of the walk.
     pub scans: u32,
-    /// Iterations of all loops: pairs of features looked at, faces scanned, and layers entered, also
-    /// those that are only passed on the way to the layer where the walk starts.
+    /// Iterations of all loops: pairs of features examined, faces scanned, and layers entered. This includes
+    /// layers that are only passed on the way to the start of the walk.
     pub iterations: u32,
-    /// How often an end that was not proven was left for nearer features around, or for a new walk.
+    /// Number of times that an unproven result was left for nearer features in its surroundings, or for
+    /// another walk.
     pub rescues: u32,
-    /// The distance is at most what is reported and at least that less this gap, up to rounding
-    /// (world units); 0 if the bodies overlap.
+    /// Bound on the error: the distance is at most the reported one, and at least the reported one minus this
+    /// gap, up to rounding (world units). It is 0 if the bodies overlap.
     pub gap: f64,
-    /// Whether all rescues were used up and the gap is more than rounding explains.
+    /// Whether all rescues were used and the gap exceeds rounding.
     pub gave_up: bool,
 }
 
-/// The distance of two bodies that move, query after query.
+/// Solver for a sequence of distance queries between two bodies.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -64,8 +66,8 @@ pub struct Steps {
 /// ));
 /// let cube = Hierarchy::new(&ConvexPolyhedron::from_points(&corners)?)?;
 /// let mut solver = HWalk::new(&cube, &cube).with_patience(10);
-/// let aside = Pose::from_translation(DVec3::new(4.0, 5.0, 0.5))?;
-/// assert_eq!(solver.distance(&Pose::IDENTITY, &aside).distance, 5.0);
+/// let offset = Pose::from_translation(DVec3::new(4.0, 5.0, 0.5))?;
+/// assert_eq!(solver.distance(&Pose::IDENTITY, &offset).distance, 5.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -73,15 +75,15 @@ pub struct HWalk<'a> {
     moving: &'a Hierarchy,
     fixed: &'a Hierarchy,
     patience: u32,
-    /// The layer where a query picks the features of the last one, if that is fixed.
+    /// Layer at which a query takes the features of the last one, if it is fixed.
     start_layer: Option<usize>,
-    /// Where the last query ended: a layer and a pair of features there.
+    /// Layer at which the last query ended; `pair` holds the features there.
     level: usize,
     pair: Pair,
 }
 
 impl<'a> HWalk<'a> {
-    /// A solver for two bodies; its first query starts at their coarsest layers.
+    /// Creates a solver for two bodies; the first query starts at their coarsest layers.
     pub fn new(moving: &'a Hierarchy, fixed: &'a Hierarchy) -> Self {
         let (patience, start_layer, pair) = (DEFAULT_PATIENCE, None, FIRST_VERTICES);
         let mut solver = Self { moving, fixed, patience, start_layer, level: 0, pair };
@@ -89,34 +91,34 @@ impl<'a> HWalk<'a> {
         solver
     }
 
-    /// With a limit of steps on a layer before a shortcut, at least 1.
+    /// Returns the solver with another maximum number of steps on a layer before a shortcut, at least 1.
     #[must_use]
     pub fn with_patience(self, steps: u32) -> Self {
         Self { patience: steps.max(1), ..self }
     }
 
-    /// With a fixed layer where a query picks the features of the last one, in place of shortcuts:
-    /// the paper's parameter `l`. 0 is the body itself, the strongest initialisation; the coarsest
-    /// layer, and any number beyond it, hardly initialises at all.
+    /// Returns the solver with a fixed start layer instead of shortcuts: the parameter `l` of the paper.
+    /// Layer 0 is the body and initialises best. The coarsest layer, or any larger index, uses little of the
+    /// last result.
     #[must_use]
     pub fn with_start_layer(self, layer: usize) -> Self {
         Self { start_layer: Some(layer), ..self }
     }
 
-    /// Forgets the closest features of the last query.
+    /// Discards the closest features of the last query.
     pub fn reset(&mut self) {
-        (self.level, self.pair) = (self.coarsest(), FIRST_VERTICES);
+        (self.level, self.pair) = (self.coarsest_layer(), FIRST_VERTICES);
     }
 
-    /// The distance of the bodies in these places.
+    /// Computes the distance of the placed bodies.
     pub fn distance(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> Proximity<Steps> {
         let body = |hierarchy: &'a Hierarchy| &hierarchy.layer(0).shell;
         let scene = Scene::new((body(self.moving), moving_pose), (body(self.fixed), fixed_pose));
         let mut work = Work::default();
         let mut steps = Steps::default();
-        self.pick_start(&mut steps);
-        let end = self.descend(&scene, &mut work, &mut steps);
-        let end = self.ascend(&scene, end, &mut work, &mut steps);
+        self.move_to_start_layer(&mut steps);
+        let end = self.walk_on_coarser_layers(&scene, &mut work, &mut steps);
+        let end = self.walk_to_layer_0(&scene, end, &mut work, &mut steps);
         let settled = settle(&self.on_layer(&scene), &mut self.pair, end, &mut work);
         let Settled { gap, rescues, gave_up, .. } = settled;
         let Work { pairs, scans, scanned } = work;
@@ -125,23 +127,28 @@ impl<'a> HWalk<'a> {
         settled.proximity(fixed_pose, steps)
     }
 
-    /// To the features on the layer where a walk is to start. A query that ended inside starts where
-    /// it ended, if that is coarser.
-    fn pick_start(&mut self, steps: &mut Steps) {
-        let start = self.start_layer.map_or(0, |layer| layer.min(self.coarsest()));
+    /// Moves to the layer at which the walk starts. A query whose predecessor ended on a coarser layer starts
+    /// there.
+    fn move_to_start_layer(&mut self, steps: &mut Steps) {
+        let start = self.start_layer.map_or(0, |layer| layer.min(self.coarsest_layer()));
         while self.level < start {
             self.coarsen();
             steps.layers += 1;
         }
     }
 
-    /// To coarser layers until a walk ends in time. In a local minimum as well: the layers inside
-    /// say more cheaply than a scan whether a vertex is.
-    fn descend(&mut self, scene: &Scene<'a>, work: &mut Work, steps: &mut Steps) -> End {
+    /// Moves to coarser layers until a walk ends in time. Local minima also cause a shortcut, because inner
+    /// layers decide more cheaply than a scan whether a vertex is inside.
+    fn walk_on_coarser_layers(
+        &mut self,
+        scene: &Scene<'a>,
+        work: &mut Work,
+        steps: &mut Steps,
+    ) -> End {
         loop {
             let layer = self.on_layer(scene);
-            let coarsest = self.level == self.coarsest();
-            let no_shortcuts = coarsest || self.start_layer.is_some();
+            let is_coarsest = self.level == self.coarsest_layer();
+            let no_shortcuts = is_coarsest || self.start_layer.is_some();
             let patience = if no_shortcuts { layer.patience() } else { self.patience };
             steps.layers += 1;
             let end = layer.walk(&mut self.pair, patience, work);
@@ -154,9 +161,9 @@ impl<'a> HWalk<'a> {
         }
     }
 
-    /// Back to layer 0, from closest features of a layer to those of the next; or to the layer
-    /// where the bodies meet.
-    fn ascend(
+    /// Returns to layer 0, from the closest features of a layer to those of the next, or to the layer on
+    /// which the bodies meet.
+    fn walk_to_layer_0(
         &mut self,
         scene: &Scene<'a>,
         mut end: End,
@@ -177,15 +184,17 @@ impl<'a> HWalk<'a> {
         end
     }
 
-    fn coarsest(&self) -> usize {
+    /// Returns the index of the coarsest layer.
+    fn coarsest_layer(&self) -> usize {
         self.moving.layer_count().max(self.fixed.layer_count()) - 1
     }
 
+    /// Returns the bodies' shells on the current layer.
     fn on_layer(&self, scene: &Scene<'a>) -> Scene<'a> {
         scene.with_shells(&self.moving.layer(self.level).shell, &self.fixed.layer(self.level).shell)
     }
 
-    /// One layer coarser, to vertices that are the same or neighbours.
+    /// Moves one layer coarser, to the same vertices or neighbours of them.
     fn coarsen(&mut self) {
         for (feature, body) in self.pair.iter_mut().zip([self.moving, self.fixed]) {
             let layer = body.layer(self.level);
@@ -197,7 +206,7 @@ impl<'a> HWalk<'a> {
         self.level += 1;
     }
 
-    /// One layer finer, to the vertices of the features that are nearest to where they are closest.
+    /// Moves one layer finer, to the vertices of the features nearest to the closest points.
     fn refine(&mut self, layer: &Scene<'a>) {
         let nearest = layer.nearest_vertices(self.pair);
         let bodies = [self.moving, self.fixed];

@@ -1,18 +1,18 @@
-//! Axes to fit bounding volumes along.
+//! Axes for fitting bounding volumes.
 //!
-//! The axes are the columns of a rotation, in the order of decreasing extent. For many triangles
-//! they are the eigenvectors of the covariance of their corners (Larsen et al. 1999),
-//! for one triangle its longest edge, its height and its normal.
+//! The axes are the columns of a rotation, in decreasing order of extent. For many triangles they are the
+//! eigenvectors of the covariance of the corners (Larsen et al. 1999). For one triangle they are its longest
+//! edge, its height and its normal.
 
 use glam::{DMat3, DVec3};
 
 use super::triangle::Triangle;
 
-/// Sweeps of rotations after which the axes are taken as they are: convergence is quadratic, and
-/// six sweeps are the rule. Any axes are correct; good ones fit tighter.
+/// Maximum number of sweeps of Jacobi rotations. Convergence is quadratic, and six sweeps are usual. Any axes
+/// are correct; good ones fit more tightly.
 const MAX_SWEEPS: usize = 12;
 
-/// Axes for one triangle.
+/// Returns axes for one triangle.
 pub(crate) fn of_triangle(t: &Triangle) -> DMat3 {
     let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
     let longest = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
@@ -21,7 +21,7 @@ pub(crate) fn of_triangle(t: &Triangle) -> DMat3 {
     orthonormal(along, a.cross(b).cross(along))
 }
 
-/// Principal axes of points; at least one.
+/// Returns the principal axes of at least one point.
 pub(crate) fn of_points(points: &[DVec3]) -> DMat3 {
     let mean = points.iter().sum::<DVec3>() / points.len() as f64;
     let mut covariance = [[0.0; 3]; 3];
@@ -33,15 +33,15 @@ pub(crate) fn of_points(points: &[DVec3]) -> DMat3 {
             }
         }
     }
-    let (values, vectors) = eigen(covariance);
+    let (values, vectors) = eigen_decomposition(covariance);
     let mut order = [0, 1, 2];
     order.sort_by(|&i: &usize, &j: &usize| values[j].total_cmp(&values[i]));
     orthonormal(vectors[order[0]], vectors[order[1]])
 }
 
-/// Eigenvalues and eigenvectors of a symmetric matrix given by its upper triangle: cyclic Jacobi
+/// Returns eigenvalues and eigenvectors of a symmetric matrix, given by its upper triangle, by cyclic Jacobi
 /// rotations.
-fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
+fn eigen_decomposition(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
     let mut vectors = DVec3::AXES;
     for _ in 0..MAX_SWEEPS {
         let off = m[0][1].abs() + m[0][2].abs() + m[1][2].abs();
@@ -49,14 +49,14 @@ fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
             break;
         }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            rotate(&mut m, &mut vectors, p, q);
+            apply_jacobi_rotation(&mut m, &mut vectors, p, q);
         }
     }
     ([m[0][0], m[1][1], m[2][2]], vectors)
 }
 
-/// The rotation in the plane of axes `p < q` that makes their entry 0.
-fn rotate(m: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize) {
+/// Rotates in the plane of axes `p < q` such that their entry becomes 0.
+fn apply_jacobi_rotation(m: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize) {
     if m[p][q] == 0.0 {
         return;
     }
@@ -77,10 +77,11 @@ fn rotate(m: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize) {
     vectors[q] = vp * sin + vq * cos;
 }
 
-/// The rotation whose first axis is along `x`, the second near `y`; any if they do not say.
+/// Returns a rotation whose first axis is along `x` and whose second axis is near `y`; arbitrary axes if
+/// these vanish or are parallel.
 fn orthonormal(x: DVec3, y: DVec3) -> DMat3 {
     let x = x.try_normalize().unwrap_or(DVec3::X);
-    // Once more: the first difference may be small and so not orthogonal to the last digit.
+    // Projecting twice makes the result orthogonal to the last digit, even if the first difference is small.
     let away = |y: DVec3| (y - x * x.dot(y)).try_normalize();
     let y = y.try_normalize().and_then(away).and_then(away);
     let y = y.unwrap_or_else(|| x.any_orthonormal_vector());

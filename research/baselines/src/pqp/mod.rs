@@ -1,22 +1,18 @@
-//! PQP: distance, tolerance and intersection queries between triangle soups.
+//! PQP: distance, tolerance and intersection queries between triangle soups. Larsen, Gottschalk, Lin,
+//! Manocha, "Fast Proximity Queries with Swept Sphere Volumes" (UNC TR99-018, 1999; ICRA 2000).
 //!
-//! Larsen, Gottschalk, Lin, Manocha, "Fast Proximity Queries with Swept Sphere Volumes" (UNC
-//! TR99-018, 1999; ICRA 2000). Each soup carries a tree of bounding volumes, built once: *rectangle
-//! swept spheres* bound distances from below, *oriented boxes* decide that there is no contact. A
-//! query descends both trees at once and compares triangles at the leaves.
+//! Each soup has a tree of bounding volumes. *Rectangle swept spheres* yield lower bounds of distances,
+//! *oriented boxes* exclude contacts. A query descends both trees at once and compares triangles at the
+//! leaves. Modules: `triangle` (two triangles), `frame` (principal axes), `rss` and `obb` (volumes), `tree`,
+//! `soup`, `query`.
 //!
-//! Data flow: `triangle` (two triangles) -> `frame` (principal axes) -> `rss` and `obb` (one
-//! volume, two volumes) -> `tree` (all volumes of a soup) -> `soup` -> `query`.
+//! As published: both volumes, axes from the covariance of the vertices, split at the mean, one triangle in
+//! each leaf, descent into the larger volume, depth first with the nearer pair first, the last closest
+//! triangles as first guess, the meaning of both error allowances.
 //!
-//! What is as published: both volumes, their axes from the covariance of the vertices, nodes split
-//! at the mean, one triangle per leaf, the descent into the larger volume, depth first with the
-//! nearer pair first, the last closest pair of triangles as the first guess, the meaning of the two
-//! error allowances.
-//!
-//! What is not: nodes are split at the median where the mean is far off, so that depth is
-//! logarithmic for every input; volumes are kept in the soup's frame instead of the parent's, so
-//! that nothing accumulates on the way down; volume tests subtract their rounding error, and a
-//! distance search does not look for gains of its order.
+//! Differences: nodes are split at the median if the mean is far off, so that the depth is logarithmic.
+//! Volumes are stored in the soup's frame instead of the parent's, so that errors do not accumulate. Volume
+//! tests subtract their rounding error, and a distance search ignores gains of that order.
 
 mod frame;
 mod obb;
@@ -32,29 +28,30 @@ mod tests;
 pub use query::{Pqp, Steps};
 pub use soup::{Soup, SoupError};
 
-/// The size of a configuration of two soups and what rounding does to lengths in it.
+/// The size of a configuration of two soups, and the rounding errors of lengths in it.
 ///
-/// `S` is the reach of both soups, the largest distance of a vertex from its frame's origin, plus
-/// the distance of the frames: no coordinate in either frame exceeds it. A coordinate after two
-/// changes of frame is wrong by less than `16 u S` (three products, three sums and an entry of a
-/// rotation that is itself wrong by a few `u`, twice), a projection on a computed direction by
-/// thrice as much; the noise of `128 u S`, `u = 2^-53`, is twice that again and more.
+/// `S` is the sum of the largest distances of vertices from their frames' origins, plus the distance of the
+/// frames. No coordinate in either frame exceeds it. After two changes of frame a coordinate has an error
+/// below `16 u S`, `u = 2^-53`: three products, three sums and an entry of a rotation with an error of a few
+/// `u`, twice. A projection on a computed direction has three times this error. The noise of `128 u S` is
+/// more than twice that.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scale {
     size: f64,
 }
 
 impl Scale {
+    /// Creates the scale of a size.
     pub(crate) fn new(size: f64) -> Self {
         Self { size }
     }
 
-    /// Differences of lengths below this mean nothing.
+    /// Returns the length below which differences of lengths are rounding errors.
     pub(crate) fn noise(self) -> f64 {
         64.0 * f64::EPSILON * self.size
     }
 
-    /// Differences of products of two lengths below this mean nothing.
+    /// Returns the area below which differences of products of two lengths are rounding errors.
     pub(crate) fn area_noise(self) -> f64 {
         2.0 * self.noise() * self.size
     }

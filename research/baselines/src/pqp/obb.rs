@@ -1,14 +1,13 @@
 //! Oriented boxes.
 //!
-//! Two boxes are disjoint if and only if one of 15 axes separates them: the three axes of each and
-//! their nine products (Gottschalk, Lin, Manocha, "`OBBTree`", SIGGRAPH 1996). Notation:
-//! `A` has half sides `a_i` along the axes of its frame; `B`, in that frame, has centre `t`, half
-//! sides `b_j` and axes `r_j`.
+//! Two boxes are disjoint exactly if one of 15 axes separates them: three axes of each box and their nine
+//! cross products (Gottschalk, Lin, Manocha, "`OBBTree`", SIGGRAPH 1996). `A` has half sides `a_i` along the
+//! axes of its frame. In that frame, `B` has centre `t`, half sides `b_j` and axes `r_j`.
 
 use glam::{DMat3, DVec3};
 
-/// Centre, in the soup's frame, and half sides along the axes that the [`Rss`](super::rss::Rss) of
-/// the same node has.
+/// A box: its centre in the soup's frame, and half sides along the axes of the [`Rss`](super::rss::Rss) of
+/// the same node.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Obb {
     pub(crate) center: DVec3,
@@ -16,15 +15,15 @@ pub(crate) struct Obb {
 }
 
 impl Obb {
-    /// The box of points given by their coordinates along `axes`.
+    /// Returns the box of points, given by their coordinates along `axes`.
     pub(crate) fn fit(axes: DMat3, points: &[DVec3]) -> Self {
         let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
         let high = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
         Self { center: axes * ((low + high) * 0.5), half: (high - low) * 0.5 }
     }
 
-    /// Whether boxes are farther apart than `noise` along one of the 15 axes. `axes` belong to this
-    /// box; `center` and `other_axes` place the other one in the same frame as this one.
+    /// Checks whether the boxes are farther apart than `noise` along one of the 15 axes. `axes` belong to
+    /// this box; `center` and `other_axes` place the other one in the same frame.
     #[inline]
     pub(crate) fn is_clear_of(
         &self,

@@ -1,15 +1,15 @@
-//! Distance, tolerance and intersection of two placed soups.
+//! Distance, tolerance and intersection queries for two placed soups.
 //!
-//! All queries descend both trees at once (Larsen et al. 1999): a pair of nodes is given
-//! up if its volumes are too far apart, or else the larger one is replaced by its children, or, at
-//! two leaves, the triangles are compared. Pairs wait on a stack, which holds at most one per level
-//! of the two trees; of two new pairs the nearer is taken up first, so the search is depth first.
+//! All queries descend both trees at once (Larsen et al. 1999). A pair of nodes is rejected if its volumes
+//! are too far apart. Otherwise the larger node is replaced by its children or, at two leaves, the triangles
+//! are compared. Pairs are kept on a stack, at most one for each level of both trees; of two new pairs the
+//! nearer one is processed first.
 //!
-//! Invariant of a distance search: no pair of triangles that was given up is nearer than the best
-//! pair, less the allowance. A volume's bound has the noise subtracted, so that it holds in spite
-//! of rounding. The allowance is two noises at least: where many pairs of triangles are equally far
-//! apart, as with parallel faces, a search that follows every gain in the last digit would visit
-//! them all. So a distance is at most two noises above that of the nearest pair of triangles.
+//! Invariant of a distance search: no rejected pair of triangles is nearer than the best pair less the
+//! allowance. The bound of a volume has the noise subtracted, so that it holds in spite of rounding. The
+//! allowance is at least two noises. Without it, a search between parallel faces, where many pairs of
+//! triangles are equally far apart, would visit all of them. Therefore a distance exceeds that of the nearest
+//! pair by at most two noises.
 
 use colltrans::Pose;
 use glam::DMat3;
@@ -25,17 +25,17 @@ use crate::proximity::Proximity;
 /// Work of a query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Steps {
-    /// Pairs of bounding volumes compared.
+    /// Number of compared pairs of bounding volumes.
     pub volume_tests: u64,
-    /// Pairs of triangles compared.
+    /// Number of compared pairs of triangles.
     pub triangle_tests: u64,
 }
 
-/// Queries between two soups, which remember the closest pair of triangles: in a sequence of
-/// similar poses the next search starts from it. Nothing is allocated by a query.
+/// Solver for queries between two soups. It remembers the closest pair of triangles, with which the next
+/// search starts. Queries allocate no memory.
 ///
-/// Soups are surfaces, as published: of two closed surfaces one inside the other the distance is
-/// that of the surfaces, and they do not intersect.
+/// Soups are surfaces, as published. For a closed surface inside another one, the distance is that of the
+/// surfaces, and they do not intersect.
 ///
 /// ```
 /// use colltrans::Pose;
@@ -54,12 +54,12 @@ pub struct Steps {
 pub struct Pqp<'a> {
     moving: &'a Soup,
     fixed: &'a Soup,
-    /// Triangles that were closest, of the fixed and the moving soup.
+    /// The last closest triangles, of the fixed and the moving soup.
     last: (u32, u32),
     pending: Vec<Pair>,
 }
 
-/// Two nodes that wait, and a lower bound of their distance.
+/// Two pending nodes, and a lower bound of their distance.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     bound: f64,
@@ -67,47 +67,45 @@ struct Pair {
     moving: u32,
 }
 
-/// When a distance search gives up a pair of nodes.
+/// Errors within which a distance search rejects pairs of nodes.
 #[derive(Debug, Clone, Copy)]
 struct Allowance {
     relative: f64,
     absolute: f64,
-    /// Gains up to this are not looked for.
+    /// Gain up to which a nearer pair is ignored.
     noise: f64,
 }
 
 impl Allowance {
-    /// Given up only if both errors allow it, as published.
-    fn gives_up(&self, bound: f64, best: f64) -> bool {
+    /// Checks whether a pair is rejected. As published, both errors must permit that.
+    fn rejects(&self, bound: f64, best: f64) -> bool {
         bound >= best - self.noise
             || (bound >= best - self.absolute && bound * (1.0 + self.relative) >= best)
     }
 }
 
 impl<'a> Pqp<'a> {
-    /// Queries between two soups.
+    /// Creates a solver for two soups.
     pub fn new(moving: &'a Soup, fixed: &'a Soup) -> Self {
         let levels = moving.tree().levels + fixed.tree().levels;
         Self { moving, fixed, last: (0, 0), pending: Vec::with_capacity(levels + 1) }
     }
 
-    /// Forgets the closest pair: the next search starts from scratch.
+    /// Discards the closest pair.
     pub fn reset(&mut self) {
         self.last = (0, 0);
     }
 
-    /// Distance and nearest points of the surfaces.
-    ///
-    /// Correct to within `2^-44 S`, `S` being the reach of both soups plus the distance of their
+    /// Computes the distance and nearest points of the surfaces, with an error of at most `2^-44 S`. `S` is
+    /// the sum of the largest distances of vertices from their frames' origins, plus the distance of the
     /// frames.
     pub fn distance(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> Proximity<Steps> {
         self.distance_within(moving_pose, fixed_pose, 0.0, 0.0)
     }
 
-    /// A pair of points nearly as near as the nearest ones: their distance exceeds that of the
-    /// surfaces by at most `absolute_error`, *and* by at most `relative_error` times that distance.
-    /// As published, so the smaller of the two counts; pass infinity for one to use the other.
-    /// Negative errors, and those that are not a number, count as 0.
+    /// Computes a pair of points whose distance exceeds that of the surfaces by at most `absolute_error`
+    /// *and* by at most `relative_error` times that distance. As published, the smaller of both errors
+    /// counts; pass infinity for one to use the other. Negative errors and NaN count as 0.
     pub fn distance_within(
         &mut self,
         moving_pose: &Pose,
@@ -122,18 +120,18 @@ impl<'a> Pqp<'a> {
             noise: 2.0 * view.scale.noise(),
         };
         let mut steps = Steps { triangle_tests: 1, ..Steps::default() };
-        let mut nearest = view.triangles(self.last.0, self.last.1);
+        let mut nearest = view.nearest_of_triangles(self.last.0, self.last.1);
         let mut best = nearest.squared.sqrt();
         self.pending.clear();
         self.pending.push(view.root(&mut steps));
         while let Some(pair) = self.pending.pop() {
-            if allowance.gives_up(pair.bound, best) {
+            if allowance.rejects(pair.bound, best) {
                 continue;
             }
             let Some((fixed, moving)) = view.descend(pair, &mut self.pending, &mut steps) else {
                 continue;
             };
-            let found = view.triangles(fixed, moving);
+            let found = view.nearest_of_triangles(fixed, moving);
             if found.squared < nearest.squared {
                 (nearest, best) = (found, found.squared.sqrt());
                 self.last = (fixed, moving);
@@ -147,7 +145,7 @@ impl<'a> Pqp<'a> {
         }
     }
 
-    /// Whether the distance of the surfaces is at most `tolerance`.
+    /// Checks whether the distance of the surfaces is at most `tolerance`.
     pub fn is_within(
         &mut self,
         moving_pose: &Pose,
@@ -156,7 +154,7 @@ impl<'a> Pqp<'a> {
     ) -> (bool, Steps) {
         let view = View::new(self.moving, self.fixed, moving_pose, fixed_pose);
         let mut steps = Steps { triangle_tests: 1, ..Steps::default() };
-        if view.triangles(self.last.0, self.last.1).squared.sqrt() <= tolerance {
+        if view.nearest_of_triangles(self.last.0, self.last.1).squared.sqrt() <= tolerance {
             return (true, steps);
         }
         self.pending.clear();
@@ -168,7 +166,7 @@ impl<'a> Pqp<'a> {
             let Some((fixed, moving)) = view.descend(pair, &mut self.pending, &mut steps) else {
                 continue;
             };
-            if view.triangles(fixed, moving).squared.sqrt() <= tolerance {
+            if view.nearest_of_triangles(fixed, moving).squared.sqrt() <= tolerance {
                 self.last = (fixed, moving);
                 return (true, steps);
             }
@@ -176,18 +174,19 @@ impl<'a> Pqp<'a> {
         (false, steps)
     }
 
-    /// Whether the surfaces have a point in common, up to rounding; ends at the first pair of
-    /// triangles that do.
+    /// Checks whether the surfaces have a common point, up to rounding. Ends at the first such pair of
+    /// triangles.
     pub fn intersects(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> (bool, Steps) {
         let (count, steps) = self.count_contacts(moving_pose, fixed_pose, 1);
         (count > 0, steps)
     }
 
-    /// How many pairs of triangles have a point in common, up to rounding.
+    /// Returns the number of pairs of triangles with a common point, up to rounding.
     pub fn contact_count(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> (u64, Steps) {
         self.count_contacts(moving_pose, fixed_pose, u64::MAX)
     }
 
+    /// Counts pairs of triangles with a common point, up to `enough`.
     fn count_contacts(
         &mut self,
         moving_pose: &Pose,
@@ -223,47 +222,60 @@ impl<'a> Pqp<'a> {
     }
 }
 
-/// How to go on from a pair of nodes: the children of the larger, or the triangles of two leaves,
-/// of the fixed and the moving soup.
+/// Next nodes of a pair: the children of the larger node, or the triangles of two leaves (of the fixed and
+/// the moving soup).
 enum Children {
     OfFixed([u32; 2]),
     OfMoving([u32; 2]),
     None(u32, u32),
 }
 
-/// Two soups as they are placed, in the fixed one's frame.
+/// Two placed soups, in the frame of the fixed one.
 struct View<'a> {
     moving: &'a Soup,
     fixed: &'a Soup,
-    /// From the moving soup's frame to the fixed one's.
+    /// Transformation from the moving soup's frame to the fixed one's.
     relative: Relative,
     scale: Scale,
 }
 
 impl<'a> View<'a> {
+    /// Places two soups.
     fn new(moving: &'a Soup, fixed: &'a Soup, moving_pose: &Pose, fixed_pose: &Pose) -> Self {
         let relative = Relative::new(moving_pose, fixed_pose);
         let scale = Scale::new(moving.reach() + fixed.reach() + relative.translation.length());
         Self { moving, fixed, relative, scale }
     }
 
+    /// Returns the trees of the fixed and the moving soup.
     fn trees(&self) -> (&'a Tree, &'a Tree) {
         (self.fixed.tree(), self.moving.tree())
     }
 
+    /// Returns a triangle of the moving soup in the fixed soup's frame.
     fn moving_triangle(&self, number: u32) -> triangle::Triangle {
         self.moving.triangle(number).map(|p| self.relative.point(p))
     }
 
-    /// Nearest points, in the fixed soup's frame, that of the fixed one first.
-    fn triangles(&self, fixed: u32, moving: u32) -> Nearest {
-        triangle::nearest(&self.fixed.triangle(fixed), &self.moving_triangle(moving), self.scale)
+    /// Returns nearest points of two triangles in the fixed soup's frame, that of the fixed soup first.
+    fn nearest_of_triangles(&self, fixed: u32, moving: u32) -> Nearest {
+        triangle::nearest_of_triangles(
+            &self.fixed.triangle(fixed),
+            &self.moving_triangle(moving),
+            self.scale,
+        )
     }
 
+    /// Checks whether two triangles have a common point, up to rounding.
     fn triangles_intersect(&self, fixed: u32, moving: u32) -> bool {
-        triangle::intersect(&self.fixed.triangle(fixed), &self.moving_triangle(moving), self.scale)
+        triangle::triangles_intersect(
+            &self.fixed.triangle(fixed),
+            &self.moving_triangle(moving),
+            self.scale,
+        )
     }
 
+    /// Returns the next nodes of a pair.
     fn children(&self, pair: Pair) -> Children {
         let (fixed, moving) = self.trees();
         let (f, m) = (&fixed.nodes[pair.fixed as usize], &moving.nodes[pair.moving as usize]);
@@ -277,15 +289,17 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Returns the pair of both roots.
     fn root(&self, steps: &mut Steps) -> Pair {
         steps.volume_tests += 1;
         let (fixed, moving) = self.trees();
         let rss = &moving.nodes[0].rss;
-        let bound = self.bound(&fixed.nodes[0].rss, &self.in_fixed(rss), rss.radius);
+        let bound = self.distance_bound(&fixed.nodes[0].rss, &self.in_fixed(rss), rss.radius);
         Pair { bound, fixed: 0, moving: 0 }
     }
 
-    /// Puts the pairs below on the stack, the nearer on top; or names the triangles of two leaves.
+    /// Pushes the pairs below a pair on the stack, the nearer one on top. For two leaves, returns their
+    /// triangles instead.
     fn descend(
         &self,
         pair: Pair,
@@ -302,7 +316,8 @@ impl<'a> View<'a> {
                 let rss = &moving.nodes[pair.moving as usize].rss;
                 let other = self.in_fixed(rss);
                 two.map(|child| {
-                    let bound = self.bound(&fixed.nodes[child as usize].rss, &other, rss.radius);
+                    let bound =
+                        self.distance_bound(&fixed.nodes[child as usize].rss, &other, rss.radius);
                     Pair { bound, fixed: child, ..pair }
                 })
             }
@@ -310,7 +325,8 @@ impl<'a> View<'a> {
                 let rss = &fixed.nodes[pair.fixed as usize].rss;
                 let other = self.in_moving(rss);
                 two.map(|child| {
-                    let bound = self.bound(&moving.nodes[child as usize].rss, &other, rss.radius);
+                    let bound =
+                        self.distance_bound(&moving.nodes[child as usize].rss, &other, rss.radius);
                     Pair { bound, moving: child, ..pair }
                 })
             }
@@ -321,11 +337,12 @@ impl<'a> View<'a> {
         None
     }
 
-    /// A lower bound of the distance of what two volumes contain.
-    fn bound(&self, rss: &Rss, other: &Rectangle, other_radius: f64) -> f64 {
+    /// Returns a lower bound of the distance of the contents of two volumes.
+    fn distance_bound(&self, rss: &Rss, other: &Rectangle, other_radius: f64) -> f64 {
         rss.gap(other, other_radius) - self.scale.noise()
     }
 
+    /// Returns the rectangle of a moving volume in the fixed soup's frame.
     fn in_fixed(&self, rss: &Rss) -> Rectangle {
         let turn = |side| self.relative.rotation * side;
         Rectangle {
@@ -335,6 +352,7 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Returns the rectangle of a fixed volume in the moving soup's frame.
     fn in_moving(&self, rss: &Rss) -> Rectangle {
         let turn = |side| self.relative.to_moving(side);
         Rectangle {
@@ -344,6 +362,7 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Checks whether the oriented boxes of a pair are disjoint.
     fn boxes_are_clear(&self, pair: Pair) -> bool {
         let (fixed, moving) = self.trees();
         let (f, m) = (pair.fixed as usize, pair.moving as usize);

@@ -1,22 +1,22 @@
 //! Rectangle swept spheres: all points within a radius of a rectangle.
 //!
-//! Notation. The rectangle of `A` has its centre at the origin, axes `x` and `y` and half sides
-//! `a_0, a_1`; that of `B`, in the same frame, has centre `t`, axes `r_0, r_1` and half sides `b_0,
-//! b_1`. The *gap* along a direction `v` is `(min_B v . q - max_A v . p) / |v|`: for every `v` a
-//! lower bound of the distance, and equal to it for the shortest vector from `A` to `B`.
+//! The rectangle of `A` has its centre at the origin, axes `x` and `y` and half sides `a_0, a_1`. In the same
+//! frame, that of `B` has centre `t`, axes `r_0, r_1` and half sides `b_0, b_1`. The *gap* along a direction
+//! `v`, `(min_B v . q - max_A v . p) / |v|`, is a lower bound of the distance for every `v`. It equals the
+//! distance for the shortest vector from `A` to `B`.
 //!
-//! That vector joins two edges, or it is normal to one of the rectangles, where the other's plane
-//! distance is the gap (Larsen et al. 1999). A pair of nearest points of two edges is
-//! the nearest of the rectangles if and only if `v` points outwards from both edges; so only edges
-//! that the other rectangle reaches beyond need to be looked at. What is returned is always a gap,
-//! never the length of `v`: rounding may have chosen a worse direction, but not a wrong bound.
+//! This vector joins two edges, or is normal to one rectangle, where the gap is the other's distance from the
+//! plane (Larsen et al. 1999). Nearest points of two edges are nearest points of the rectangles exactly if
+//! `v` points outwards from both edges. Therefore only edges beyond which the other rectangle extends are
+//! examined. The result is always a gap, not the length of `v`: rounding may select a worse direction, but
+//! the bound holds.
 
 use glam::{DMat3, DVec3};
 
-/// A rectangle with its centre, in the soup's frame, and a radius around it.
+/// A rectangle in the soup's frame, and a radius around it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rss {
-    /// Two sides of the rectangle, the longer first, and its normal.
+    /// Two sides of the rectangle, the longer one first, and its normal.
     pub(crate) axes: DMat3,
     pub(crate) center: DVec3,
     pub(crate) half: [f64; 2],
@@ -32,17 +32,17 @@ pub(crate) struct Rectangle {
 }
 
 impl Rss {
-    /// A volume that contains points, given by their coordinates along `axes`.
+    /// Fits a volume to points, given by their coordinates along `axes`.
     ///
-    /// The radius is half the thickness along the normal; a side of the rectangle is as short as
-    /// spheres at its ends allow, and longer where a corner would be left out.
+    /// The radius is half of the thickness along the normal. The sides of the rectangle are as short as the
+    /// spheres at their ends permit, and longer where a corner would be left out.
     pub(crate) fn fit(axes: DMat3, points: &[DVec3]) -> Self {
         let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
         let high = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
         let middle_z = 0.5 * (low.z + high.z);
         let radius = 0.5 * (high.z - low.z);
         let mut sides = Sides::between_caps(points, middle_z, radius);
-        sides.reach_corners(points, middle_z, radius);
+        sides.extend_corners(points, middle_z, radius);
         let [mut center, mut half] = [[0.0; 2]; 2];
         for i in 0..2 {
             center[i] = 0.5 * (sides.low[i] + sides.high[i]);
@@ -58,15 +58,15 @@ impl Rss {
         Self { axes, center: axes * middle, half, radius }
     }
 
-    /// Half of how far it reaches: decides which of two volumes to descend into, as in the authors' program. By the
-    /// longer side alone, searches of slivers took a third more tests.
+    /// Returns half of the extent, by which a query selects the volume to descend into, as in the authors'
+    /// program. Using only the longer side, searches of slivers needed a third more tests.
     pub(crate) fn extent(&self) -> f64 {
         let [a, b] = self.half;
         (a * a + b * b).sqrt() + self.radius
     }
 
-    /// A lower bound of the distance of the points in both volumes, up to rounding; negative if
-    /// the volumes overlap.
+    /// Returns a lower bound of the distance of the points in both volumes, up to rounding; negative if the
+    /// volumes overlap.
     #[inline]
     pub(crate) fn gap(&self, other: &Rectangle, other_radius: f64) -> f64 {
         let to_own = self.axes.transpose();
@@ -87,7 +87,7 @@ struct Sides {
 }
 
 impl Sides {
-    /// As short as half spheres at the ends allow.
+    /// Returns the shortest sides that half spheres at the ends permit.
     fn between_caps(points: &[DVec3], middle_z: f64, radius: f64) -> Self {
         let mut sides = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
         for p in points {
@@ -107,9 +107,8 @@ impl Sides {
         sides
     }
 
-    /// Moves corners outwards along their diagonals until spheres at them contain the points
-    /// beyond.
-    fn reach_corners(&mut self, points: &[DVec3], middle_z: f64, radius: f64) {
+    /// Moves corners outwards along their diagonals until the spheres at them contain the points beyond.
+    fn extend_corners(&mut self, points: &[DVec3], middle_z: f64, radius: f64) {
         for p in points {
             let over = |x: f64, i: usize| (x - self.high[i]).max(0.0) - (self.low[i] - x).max(0.0);
             let [x, y] = [over(p.x, 0), over(p.y, 1)];
@@ -117,7 +116,8 @@ impl Sides {
                 continue;
             }
             let z = p.z - middle_z;
-            // |x| - s and |y| - s are left after a step s; their squares and z^2 sum to radius^2.
+            // After a step `s`, the remainders are `|x| - s` and `|y| - s`; their squares and `z^2` sum to
+            // `radius^2`.
             let (sum, difference) = (x.abs() + y.abs(), x.abs() - y.abs());
             let rest = 2.0 * (radius * radius - z * z) - difference * difference;
             let step = 0.5 * (sum - rest.max(0.0).sqrt());
@@ -134,7 +134,7 @@ impl Sides {
     }
 }
 
-/// Two rectangles in the frame of the first.
+/// Two rectangles in the frame of the first one.
 struct Rectangles {
     a: [f64; 2],
     b: [f64; 2],
@@ -143,7 +143,7 @@ struct Rectangles {
 }
 
 impl Rectangles {
-    /// The greatest gap, 0 if the rectangles intersect.
+    /// Returns the largest gap; 0 if the rectangles intersect.
     #[inline]
     fn distance(&self) -> f64 {
         let Self { t, r, .. } = self;
@@ -154,19 +154,19 @@ impl Rectangles {
             .or_else(|| self.edge_pairs::<0, 1>(rt))
             .or_else(|| self.edge_pairs::<1, 0>(rt))
             .or_else(|| self.edge_pairs::<1, 1>(rt));
-        // Near contact v is short and its direction rough, which would cost most where parallel
-        // rectangles make a normal exact.
+        // Near contact, `v` is short and its direction inaccurate. The gap along a normal is exact for
+        // parallel rectangles.
         shortest.map_or(normal_gap, |v| self.gap(v).max(normal_gap))
     }
 
-    /// The shortest vector between an edge of A that bounds coordinate `I` and one of B that bounds
-    /// `K`, if it points outwards from both. `rt` are the coordinates of `t` along B's sides.
+    /// Returns the shortest vector between an edge of A that bounds coordinate `I` and one of B that bounds
+    /// `K`, if it points outwards from both. `rt` holds the coordinates of `t` along B's sides.
     #[inline]
     fn edge_pairs<const I: usize, const K: usize>(&self, rt: [f64; 2]) -> Option<[f64; 3]> {
         let Self { a, b, t, r } = self;
         let reach_b = b[0] * r[0][I].abs() + b[1] * r[1][I].abs();
         let reach_a = a[0] * r[K][0].abs() + a[1] * r[K][1].abs();
-        // A's centre seen from B is at -rt.
+        // In B's frame, A's centre is at `-rt`.
         let (at_a, at_b) = (-rt[K], t[I]);
         for side_a in [1.0, -1.0] {
             if side_a * at_b + reach_b <= a[I] {
@@ -185,7 +185,8 @@ impl Rectangles {
         None
     }
 
-    /// The same for one pair of edges, each on one side.
+    /// Returns the shortest vector between one pair of edges, if it points outwards from both. `side_a` and
+    /// `side_b` select the edges.
     #[inline]
     fn shortest<const I: usize, const K: usize>(
         &self,
@@ -197,7 +198,7 @@ impl Rectangles {
         let (j, l) = (1 - I, 1 - K);
         let (along, across) = (r[l], r[K]);
         let (at_a, at_b) = (side_a * a[I], side_b * b[K]);
-        // Does each edge reach beyond the other at all?
+        // Checks whether each edge extends beyond the other one.
         let beyond_a = t[I] + at_b * across[I] - at_a;
         let beyond_b = rt[K] + at_b - at_a * across[I];
         if side_a * beyond_a + b[l] * along[I].abs() < 0.0
@@ -228,7 +229,7 @@ impl Rectangles {
         Some(v)
     }
 
-    /// The gap along a direction; 0 along none.
+    /// Returns the gap along a direction, at least 0; 0 for a zero vector.
     #[inline]
     fn gap(&self, v: [f64; 3]) -> f64 {
         let Self { a, b, t, r } = self;
@@ -242,7 +243,7 @@ impl Rectangles {
         ((dot(t) - reach_a - reach_b) / length).max(0.0)
     }
 
-    /// The greater of the gaps along the two normals.
+    /// Returns the larger gap along the two normals.
     #[inline]
     fn normal_gap(&self) -> f64 {
         let Self { a, b, t, r } = self;

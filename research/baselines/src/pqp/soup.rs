@@ -1,4 +1,4 @@
-//! Triangle soups: triangles without structure.
+//! Triangle soups: triangles without connectivity.
 
 use std::fmt;
 
@@ -8,38 +8,37 @@ use glam::DVec3;
 use super::tree::Tree;
 use super::triangle::Triangle;
 
-/// Node numbers are 32 bits: a tree has twice as many nodes as triangles.
+/// Maximum number of triangles: node indices have 32 bits, and a tree has twice as many nodes as triangles.
 const MAX_TRIANGLES: usize = 1 << 31;
 
-/// Why no [`Soup`] could be built.
+/// Reason why a [`Soup`] cannot be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SoupError {
-    /// There is no triangle.
+    /// There are no triangles.
     Empty,
     /// There are more than 2^31 triangles.
     TooMany {
-        /// How many.
+        /// Number of triangles.
         triangles: usize,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     UnknownVertex {
-        /// The triangle.
+        /// Index of the triangle.
         triangle: usize,
-        /// What it names.
+        /// Index of the vertex.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A coordinate is infinite or not a number.
     NotFinite {
-        /// The vertex.
+        /// Index of the vertex.
         vertex: usize,
     },
-    /// A coordinate is not 0 and its magnitude is not between [`MIN_MAGNITUDE`] and
-    /// [`MAX_MAGNITUDE`].
+    /// A coordinate is nonzero and its magnitude is not between [`MIN_MAGNITUDE`] and [`MAX_MAGNITUDE`].
     OutOfRange {
-        /// The vertex.
+        /// Index of the vertex.
         vertex: usize,
     },
 }
@@ -47,17 +46,22 @@ pub enum SoupError {
 impl fmt::Display for SoupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Empty => write!(f, "there is no triangle"),
+            Self::Empty => write!(f, "there are no triangles; give at least one"),
             Self::TooMany { triangles } => {
-                write!(f, "{triangles} triangles, more than {MAX_TRIANGLES}")
+                write!(f, "{triangles} triangles; accepted: at most {MAX_TRIANGLES}")
             }
             Self::UnknownVertex { triangle, vertex, vertices } => {
-                write!(f, "triangle {triangle} names vertex {vertex} of {vertices}")
+                write!(
+                    f,
+                    "triangle {triangle} refers to vertex {vertex}; accepted: below {vertices}"
+                )
             }
-            Self::NotFinite { vertex } => write!(f, "vertex {vertex} is not finite"),
+            Self::NotFinite { vertex } => {
+                write!(f, "vertex {vertex} has a coordinate that is not finite")
+            }
             Self::OutOfRange { vertex } => write!(
                 f,
-                "a coordinate of vertex {vertex} is not 0 and not between 2^-200 and 2^200"
+                "vertex {vertex} has a coordinate out of range; accepted magnitudes: 0, and 2^-200 to 2^200"
             ),
         }
     }
@@ -65,27 +69,27 @@ impl fmt::Display for SoupError {
 
 impl std::error::Error for SoupError {}
 
-/// Triangles in their own frame, with a tree of bounding volumes; built once, queried by
-/// [`Pqp`](super::Pqp).
+/// Triangles in their own frame with a tree of bounding volumes, for queries by [`Pqp`](super::Pqp).
 ///
-/// Triangles may be degenerate, share vertices or intersect each other. A soup is a *surface*: it
-/// has no inside.
+/// Triangles may be degenerate, share vertices or intersect each other. A soup is a *surface* without an
+/// interior.
 #[derive(Debug, Clone)]
 pub struct Soup {
     vertices: Vec<DVec3>,
-    /// In the order of the tree's leaves.
+    /// Triangles in the order of the tree's leaves.
     triangles: Vec<[u32; 3]>,
     tree: Tree,
     reach: f64,
 }
 
 impl Soup {
-    /// Triangles as triples of indices into `vertices` (own frame, any unit), in either
-    /// orientation. Takes `O(n log n)` time.
+    /// Builds a soup from triples of indices into `vertices` (own frame, any unit), in either orientation, in
+    /// `O(n log n)` time.
     ///
     /// # Errors
-    /// No triangles or more than 2^31, an index that is out of range, a coordinate that is not
-    /// finite or out of the range of `colltrans`.
+    /// - [`SoupError::Empty`], [`SoupError::TooMany`]: the number of triangles is out of range.
+    /// - [`SoupError::UnknownVertex`]: an index is out of range.
+    /// - [`SoupError::NotFinite`], [`SoupError::OutOfRange`]: a coordinate is not accepted by `colltrans`.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -121,10 +125,8 @@ impl Soup {
         Ok(Self::build(vertices.to_vec(), triangles))
     }
 
-    /// The surface of a convex polyhedron, in its body frame: its faces cut into triangles. A flat
-    /// polygon is taken once; a segment and a point are one degenerate triangle.
-    ///
-    /// The polyhedron must have at most 2^30 vertices.
+    /// Triangulates the surface of a convex polyhedron, in its body frame. A flat polygon has one side; a
+    /// segment and a point become one degenerate triangle. The polyhedron must have at most 2^30 vertices.
     pub fn of_polyhedron(body: &ConvexPolyhedron) -> Self {
         let last = body.vertices().len() as u32 - 1;
         let faces = match body.dimension() {
@@ -135,11 +137,12 @@ impl Soup {
         let mut triangles = Vec::with_capacity(2 * body.vertices().len());
         for face in 0..faces {
             let corners: Vec<u32> = body.face_vertices(face).collect();
-            cut(&corners, &mut triangles);
+            triangulate_by_halving(&corners, &mut triangles);
         }
         Self::build(body.vertices().to_vec(), &triangles)
     }
 
+    /// Builds the tree, and sorts the triangles in its order.
     fn build(vertices: Vec<DVec3>, triangles: &[[u32; 3]]) -> Self {
         let corners = |i: u32| triangles[i as usize].map(|v| vertices[v as usize]);
         let (tree, order) = Tree::build(triangles.len(), corners);
@@ -149,12 +152,12 @@ impl Soup {
         Self { vertices, triangles, tree, reach }
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Bytes of memory that the soup and its tree occupy.
+    /// Returns the number of bytes that the soup and its tree occupy.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()
             + self.vertices.capacity() * size_of::<DVec3>()
@@ -162,30 +165,31 @@ impl Soup {
             + self.tree.heap_bytes()
     }
 
-    /// A triangle by the number that the tree gives it.
+    /// Returns a triangle by its index in the tree's order.
     pub(crate) fn triangle(&self, number: u32) -> Triangle {
         self.triangles[number as usize].map(|v| self.vertices[v as usize])
     }
 
+    /// Returns the tree.
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    /// The largest distance of a triangle's corner from the origin.
+    /// Returns the largest distance of a triangle's corner from the origin.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 }
 
-/// Cuts a convex polygon into triangles by halving it: in a fan every triangle reaches across the
-/// polygon, so that no volume around some of them is smaller than that around all.
-fn cut(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
+/// Triangulates a convex polygon by halving. In contrast, each triangle of a fan would reach across the
+/// polygon, so that volumes of some triangles would not be smaller than that of all.
+fn triangulate_by_halving(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
     if let [first, .., last] = *corners
         && corners.len() > 2
     {
         let middle = corners.len() / 2;
-        cut(&corners[..=middle], triangles);
+        triangulate_by_halving(&corners[..=middle], triangles);
         triangles.push([first, corners[middle], last]);
-        cut(&corners[middle..], triangles);
+        triangulate_by_halving(&corners[middle..], triangles);
     }
 }

@@ -1,10 +1,9 @@
-//! A tree of bounding volumes over triangles, both volumes in every node.
+//! A tree of bounding volumes over triangles, with both kinds of volumes in every node.
 //!
-//! Top-down: the volumes of a node are fitted to its triangles, which are then divided at the mean
-//! of their centres along the longest axis, or at the median where that leaves less than
-//! 1/8 on one side, down to single triangles. `n` triangles make `2 n - 1` nodes in
-//! `O(log n)` levels, in `O(n log n)` time. Nodes lie in preorder: the left child follows its
-//! parent, and the triangles of a node lie in one piece.
+//! The tree is built top-down. The volumes of a node are fitted to its triangles. These are split at the mean
+//! of their centres along the longest axis, or at the median if one side would have less than 1/8 of them,
+//! down to single triangles. `n` triangles yield `2 n - 1` nodes in `O(log n)` levels, in `O(n log n)` time.
+//! Nodes are in preorder: the left child follows its parent, and the triangles of a node are consecutive.
 
 use glam::{DMat3, DVec3};
 
@@ -13,19 +12,19 @@ use super::obb::Obb;
 use super::rss::Rss;
 use super::triangle::Triangle;
 
-/// Bounds the depth: no child has more than 7/8 of its parent's triangles.
+/// Limit of the split, which bounds the depth: no child has more than 7/8 of its parent's triangles.
 const MOST_UNEVEN: usize = 8;
 
-/// What a node stands for.
+/// Content of a node.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Content {
-    /// One triangle.
+    /// A leaf with this triangle.
     Leaf(u32),
-    /// Two nodes: the next one and this one.
+    /// An inner node. Its children are the next node and this one.
     Inner(u32),
 }
 
-/// A node for distances: two cache lines.
+/// A node for distance queries, of two cache lines.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     pub(crate) rss: Rss,
@@ -37,12 +36,12 @@ pub(crate) struct Node {
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     pub(crate) boxes: Vec<Obb>,
-    /// Number of nodes on the longest way from the root to a leaf.
+    /// Number of nodes on the longest path from the root to a leaf.
     pub(crate) levels: usize,
 }
 
 impl Tree {
-    /// The tree of at least one triangle, and the order in which it numbers them.
+    /// Builds the tree of at least one triangle, and the order of its triangles.
     pub(crate) fn build(count: usize, triangle: impl Fn(u32) -> Triangle) -> (Self, Vec<u32>) {
         let mut builder = Builder {
             triangle,
@@ -55,17 +54,17 @@ impl Tree {
             boxes: Vec::with_capacity(node_count),
             levels: 0,
         };
-        // A stack of ranges of items: a node's left part is taken up next, so nodes come in
+        // A stack of ranges of items. The left part of a node is processed next, so that nodes are in
         // preorder.
         let mut pending = vec![(0, count, 1)];
         while let Some((start, end, level)) = pending.pop() {
             tree.levels = tree.levels.max(level);
-            let (rss, obb) = builder.volumes(start, end);
+            let (rss, obb) = builder.fit_volumes(start, end);
             let node = tree.nodes.len();
             let content = if end - start == 1 {
                 Content::Leaf(start as u32)
             } else {
-                let middle = builder.divide(start, end, rss.axes.x_axis);
+                let middle = builder.partition_triangles(start, end, rss.axes.x_axis);
                 pending.push((middle, end, level + 1));
                 pending.push((start, middle, level + 1));
                 Content::Inner((node + 2 * (middle - start)) as u32)
@@ -76,21 +75,24 @@ impl Tree {
         (tree, builder.items.into_iter().map(|(_, i)| i).collect())
     }
 
+    /// Returns the number of bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>() + self.boxes.capacity() * size_of::<Obb>()
     }
 }
 
+/// Data for building a tree.
 struct Builder<F> {
     triangle: F,
-    /// Triangles in the order of leaves, each with the key of the last division.
+    /// Triangles in the order of the leaves, each with the key of the last split.
     items: Vec<(f64, u32)>,
-    /// Corners of the node's triangles, then their coordinates along its axes.
+    /// Corners of the node's triangles, later their coordinates along its axes.
     points: Vec<DVec3>,
 }
 
 impl<F: Fn(u32) -> Triangle> Builder<F> {
-    fn volumes(&mut self, start: usize, end: usize) -> (Rss, Obb) {
+    /// Fits both volumes to a range of triangles.
+    fn fit_volumes(&mut self, start: usize, end: usize) -> (Rss, Obb) {
         let Self { triangle, items, points } = self;
         points.clear();
         points.extend(items[start..end].iter().flat_map(|(_, i)| triangle(*i)));
@@ -105,8 +107,8 @@ impl<F: Fn(u32) -> Triangle> Builder<F> {
         (Rss::fit(axes, points), Obb::fit(axes, points))
     }
 
-    /// Puts the triangles that come first along an axis first; where the others begin.
-    fn divide(&mut self, start: usize, end: usize, along: DVec3) -> usize {
+    /// Partitions a range of triangles along an axis, and returns the start of the second part.
+    fn partition_triangles(&mut self, start: usize, end: usize, along: DVec3) -> usize {
         let items = &mut self.items[start..end];
         let mut sum = 0.0;
         for (key, i) in items.iter_mut() {

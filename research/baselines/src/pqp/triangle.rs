@@ -1,20 +1,19 @@
 //! Nearest points of two triangles.
 //!
-//! Notation. `A` and `B` are triangles in one frame, degenerate ones included; `P` and `Q` a pair
-//! of nearest points, `v = Q - P`.
+//! `A` and `B` are triangles in one frame, possibly degenerate; `P` and `Q` a pair of nearest points, `v = Q
+//! - P`.
 //!
-//! If the triangles are apart, the shortest vector joins two edges (9 pairs) or a vertex and the
-//! inside of a face (6 pairs); if they meet, an edge of one pierces the other, or they are coplanar
-//! and one of the former has length 0. Every candidate is a pair of points of `A` and `B`, so it is
-//! an upper bound whatever rounding did; the answer is the best of them. An edge pair ends the
-//! search at once if the third corners lie *clearly* outside the slab between the planes through
-//! `P` and `Q` normal to `v`: then nothing is nearer (Larsen et al. 1999). Where
-//! rounding cannot tell, all candidates are compared.
+//! For disjoint triangles, the shortest vector joins two edges (9 pairs), or a vertex and the interior of a
+//! face (6 pairs). For triangles that meet, an edge of one pierces the other, or they are coplanar and a
+//! former candidate has length 0. Every candidate is an upper bound, because it is a pair of points of `A`
+//! and `B`; the answer is the best one. An edge pair ends the search if the third corners are *clearly*
+//! outside of the slab between the planes through `P` and `Q` normal to `v` (Larsen et al. 1999). If rounding
+//! hides that, all candidates are compared.
 //!
-//! What slivers need: the nearest points of two lines come from the cross product of their
-//! directions, whose error grows with 1/sin of the angle and not with its square; normals of
-//! slivers are formed without cancellation; a point is inside a face if it is behind its three
-//! edges *and* beside the longest one, since two edges at a sharp corner do not tell where it ends.
+//! Slivers: nearest points of two lines are computed from the cross product of their directions, whose error
+//! grows with `1 / sin` of the angle, not with its square. Normals are formed without cancellation. A point
+//! is inside a face if it is behind its three edges and within the longest edge, because two edges at a sharp
+//! corner do not bound it.
 
 use glam::DVec3;
 
@@ -23,15 +22,15 @@ use super::Scale;
 /// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
 
-/// Relative error of the normal of a triangle below which it counts as a segment: its edges say as
-/// much.
+/// Relative error of a triangle's normal below which the triangle counts as a segment, which its edges
+/// represent.
 const DEGENERATE: f64 = 32.0 * f64::EPSILON;
 
-/// Sine of the angle below which a cross product is formed without cancellation: above, it loses
-/// four bits at most.
+/// Sine of the angle below which a cross product is formed without cancellation. Above, at most four bits are
+/// lost.
 const NEARLY_PARALLEL: f64 = 0.1;
 
-/// A point of each triangle and their squared distance.
+/// A point of each triangle, and their squared distance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest {
     pub(crate) squared: f64,
@@ -40,25 +39,29 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
+    /// Returns a pair of points with their distance.
     fn between(on_a: DVec3, on_b: DVec3) -> Self {
         Self { squared: on_a.distance_squared(on_b), on_a, on_b }
     }
 
+    /// Returns a common point.
     fn common(point: DVec3) -> Self {
         Self { squared: 0.0, on_a: point, on_b: point }
     }
 
+    /// Returns the pair with both triangles exchanged.
     fn swapped(self) -> Self {
         Self { on_a: self.on_b, on_b: self.on_a, ..self }
     }
 
+    /// Returns the nearer one of two pairs.
     fn or_nearer(self, other: Self) -> Self {
         if other.squared < self.squared { other } else { self }
     }
 }
 
-/// Nearest points of two triangles; distance 0 with a common point if they intersect.
-pub(crate) fn nearest(a: &Triangle, b: &Triangle, scale: Scale) -> Nearest {
+/// Returns nearest points of two triangles; distance 0 with a common point if they intersect.
+pub(crate) fn nearest_of_triangles(a: &Triangle, b: &Triangle, scale: Scale) -> Nearest {
     let (edges_a, edges_b) = (edges(a), edges(b));
     let margin = scale.area_noise();
     let mut best = Nearest::between(a[0], b[0]);
@@ -83,34 +86,37 @@ pub(crate) fn nearest(a: &Triangle, b: &Triangle, scale: Scale) -> Nearest {
     best
 }
 
-/// Whether two triangles have a point in common, up to rounding.
-pub(crate) fn intersect(a: &Triangle, b: &Triangle, scale: Scale) -> bool {
+/// Checks whether two triangles have a common point, up to rounding.
+pub(crate) fn triangles_intersect(a: &Triangle, b: &Triangle, scale: Scale) -> bool {
     let beside = |a: &Triangle, b: &Triangle| Face::new(a).is_some_and(|f| f.is_beside(b, scale));
     let noise = scale.noise();
-    !beside(a, b) && !beside(b, a) && nearest(a, b, scale).squared <= noise * noise
+    !beside(a, b) && !beside(b, a) && nearest_of_triangles(a, b, scale).squared <= noise * noise
 }
 
+/// An edge as a start and a vector.
 struct Edge {
     start: DVec3,
     along: DVec3,
-    /// 1 / length^2, or 0 if that is none.
+    /// The inverse of the squared length; 0 if that is not finite.
     inverse_square: f64,
 }
 
+/// Returns the edges of a triangle.
 fn edges(t: &Triangle) -> [Edge; 3] {
     [0, 1, 2].map(|i| {
         let along = t[(i + 1) % 3] - t[i];
-        Edge { start: t[i], along, inverse_square: inverse(along.length_squared()) }
+        Edge { start: t[i], along, inverse_square: inverse_or_zero(along.length_squared()) }
     })
 }
 
-fn inverse(square: f64) -> f64 {
+/// Returns the inverse of a squared length; 0 if it is 0 or subnormal.
+fn inverse_or_zero(square: f64) -> f64 {
     if square >= f64::MIN_POSITIVE { 1.0 / square } else { 0.0 }
 }
 
 impl Edge {
-    /// Points `start + s along` of both, `0 <= s <= 1`: those of the lines, then clamped in turn,
-    /// which ends in the minimum because the squared distance is convex.
+    /// Returns the nearest points `start + s along` of both edges, `0 <= s <= 1`: those of the lines, then
+    /// clamped in turn. This yields the minimum, because the squared distance is convex.
     #[inline]
     fn nearest(&self, other: &Self) -> Nearest {
         let r = other.start - self.start;
@@ -136,6 +142,7 @@ struct Face<'a> {
 }
 
 impl<'a> Face<'a> {
+    /// Returns the face; `None` for a degenerate triangle.
     fn new(corners: &'a Triangle) -> Option<Self> {
         let (u, v) = (corners[1] - corners[0], corners[2] - corners[0]);
         let mut normal = u.cross(v);
@@ -148,19 +155,22 @@ impl<'a> Face<'a> {
         (square > enough).then_some(Self { corners, normal, square })
     }
 
+    /// Returns the heights of the other triangle's corners above the plane, multiplied by the length of
+    /// `normal`.
     fn heights(&self, other: &Triangle) -> [f64; 3] {
         other.map(|p| (p - self.corners[0]).dot(self.normal))
     }
 
-    /// Whether a triangle lies clearly on one side of this one's plane.
+    /// Checks whether a triangle is clearly on one side of this face's plane.
     fn is_beside(&self, other: &Triangle, scale: Scale) -> bool {
         let margin = scale.noise() * self.square.sqrt();
         let heights = self.heights(other);
         heights.iter().all(|h| *h > margin) || heights.iter().all(|h| *h < -margin)
     }
 
-    /// A common point where an edge of `other` pierces this face; or, if `other` is on one side,
-    /// its lowest corner and the foot of that; or `known`, if neither is inside. This face is `A`.
+    /// Returns a common point where an edge of `other` pierces this face (`A`). If `other` is on one side,
+    /// returns its lowest corner and the foot of that corner. Returns `known` if these points are not inside
+    /// the face.
     fn nearest_corner_or_common(&self, other: &Triangle, known: Nearest) -> Nearest {
         let h = self.heights(other);
         let low = (0..3).fold(0, |low, i| if h[i].abs() < h[low].abs() { i } else { low });
@@ -185,7 +195,7 @@ impl<'a> Face<'a> {
         common.map_or(known, Nearest::common)
     }
 
-    /// Whether the foot of a point on the plane is inside.
+    /// Checks whether the projection of a point on the plane is inside the face.
     fn contains(&self, p: DVec3) -> bool {
         let c = self.corners;
         let along = [c[1] - c[0], c[2] - c[1], c[0] - c[2]];
@@ -196,7 +206,7 @@ impl<'a> Face<'a> {
     }
 }
 
-/// A cross product with a relative error of a few units in the last place.
+/// Returns a cross product with a relative error of a few units in the last place.
 fn accurate_cross(u: DVec3, v: DVec3) -> DVec3 {
     DVec3::new(
         difference_of_products(u.y, v.z, u.z, v.y),
@@ -205,13 +215,14 @@ fn accurate_cross(u: DVec3, v: DVec3) -> DVec3 {
     )
 }
 
-/// `a b - c d`: the rounded products and their errors (Dekker 1971).
+/// Returns `a b - c d`, from the rounded products and their errors (Dekker 1971).
 fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let (ab, ab_error) = two_product(a, b);
     let (cd, cd_error) = two_product(c, d);
     (ab - cd) + (ab_error - cd_error)
 }
 
+/// Returns a product and its rounding error.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
         let c = f64::from((1 << 27) + 1) * x;

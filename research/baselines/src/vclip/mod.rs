@@ -1,16 +1,16 @@
-//! V-Clip: the distance of convex polyhedra by a walk over pairs of features.
+//! V-Clip: distance of convex polyhedra by a walk over pairs of features. B. Mirtich, "V-Clip: fast and
+//! robust polyhedral collision detection", ACM Transactions on Graphics 17(3), 1998.
 //!
-//! B. Mirtich, "V-Clip: fast and robust polyhedral collision detection", ACM Transactions on
-//! Graphics 17(3), 1998. Two features are closest if each has its nearest point in the other's
-//! Voronoi region. A walk starts from the closest features of the last query and exchanges one
-//! feature at a time for a neighbour that is nearer (`walk`, `view`).
+//! Two features are closest if each has its nearest point in the Voronoi region of the other. A walk starts
+//! at the closest features of the last query and repeatedly replaces one feature by a nearer neighbour
+//! (`walk`, `view`).
 //!
-//! As published, apart from its end. The walk decides on rounded numbers, and can then go in
-//! circles among tied features, which is noticed, or end where rounding hides that a feature is
-//! nearer. So every end is measured against the supporting planes across it (`proof`), which
-//! costs a look at the neighbours of a few vertices. If it is not proven, the search goes on by
-//! distances alone to nearer features around, then from where the planes touch, with Voronoi
-//! regions that overlap by more than rounding. [`Steps::gap`] is what that leaves open.
+//! The implementation follows the publication except for its end. Rounded decisions can cause a cycle among
+//! tied features, which is detected, or hide that a neighbour is nearer. Therefore every result is compared
+//! with the supporting planes perpendicular to it (`proof`), which examines the neighbours of a few vertices.
+//! An unproven result is improved first by distances among the surrounding features. Then walks restart at
+//! the vertices on the supporting planes, with enlarged Voronoi regions. [`Steps::gap`] is the remaining
+//! uncertainty.
 
 pub(crate) mod proof;
 mod segment;
@@ -26,26 +26,28 @@ use crate::proximity::Proximity;
 use proof::Slab;
 use walk::{End, Pair, Scene, Work};
 
-/// How often a walk whose answer is not proven starts again, where the supporting planes touch.
+/// Maximum number of restarts of an unproven walk, at the vertices on the supporting planes.
 const MAX_RESTARTS: u32 = 6;
 
-/// The work of a query, and what it proves.
+/// Work of a query, and its bound on the error.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Steps {
-    /// Pairs of features looked at.
+    /// Number of pairs of features examined.
     pub pairs: u32,
-    /// Scans of all faces of a body, in local minima of the walk: when bodies overlap.
+    /// Number of scans of all faces of a body, in local minima of the walk, for example between overlapping
+    /// bodies.
     pub scans: u32,
-    /// How often an end that was not proven was left for nearer features around, or for a new walk.
+    /// Number of times that an unproven result was left for nearer features in its surroundings, or for
+    /// another walk.
     pub rescues: u32,
-    /// The distance is at most what is reported and at least that less this gap, up to rounding
-    /// (world units); 0 if the bodies overlap.
+    /// Bound on the error: the distance is at most the reported one, and at least the reported one minus this
+    /// gap, up to rounding (world units). It is 0 if the bodies overlap.
     pub gap: f64,
-    /// Whether all rescues were used up and the gap is more than rounding explains.
+    /// Whether all rescues were used and the gap exceeds rounding.
     pub gave_up: bool,
 }
 
-/// The distance of two bodies that move, query after query.
+/// Solver for a sequence of distance queries between two bodies.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -57,8 +59,8 @@ pub struct Steps {
 /// ));
 /// let cube = Shell::new(&ConvexPolyhedron::from_points(&corners)?)?;
 /// let mut solver = VClip::new(&cube, &cube);
-/// let aside = Pose::from_translation(DVec3::new(4.0, 5.0, 0.5))?;
-/// let proximity = solver.distance(&Pose::IDENTITY, &aside);
+/// let offset = Pose::from_translation(DVec3::new(4.0, 5.0, 0.5))?;
+/// let proximity = solver.distance(&Pose::IDENTITY, &offset);
 /// assert_eq!(proximity.distance, 5.0);
 /// assert!(!proximity.steps.gave_up);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -71,17 +73,17 @@ pub struct VClip<'a> {
 }
 
 impl<'a> VClip<'a> {
-    /// A solver for two bodies; its first query starts from their first vertices.
+    /// Creates a solver for two bodies; the first query starts at their first vertices.
     pub fn new(moving: &'a Shell, fixed: &'a Shell) -> Self {
         Self { moving, fixed, pair: FIRST_VERTICES }
     }
 
-    /// Forgets the closest features of the last query.
+    /// Discards the closest features of the last query.
     pub fn reset(&mut self) {
         self.pair = FIRST_VERTICES;
     }
 
-    /// The distance of the bodies in these places.
+    /// Computes the distance of the placed bodies.
     pub fn distance(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> Proximity<Steps> {
         let scene = Scene::new((self.moving, moving_pose), (self.fixed, fixed_pose));
         let mut work = Work::default();
@@ -91,10 +93,10 @@ impl<'a> VClip<'a> {
     }
 }
 
-/// Every body has a first vertex.
+/// The first vertex of each body, as a start of walks.
 pub(crate) const FIRST_VERTICES: Pair = [Feature::Vertex(0); 2];
 
-/// The answer in the fixed body's frame.
+/// An answer in the fixed body's frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settled {
     pub(crate) on_moving: DVec3,
@@ -106,8 +108,8 @@ pub(crate) struct Settled {
 }
 
 impl Settled {
-    /// Bodies with a point in common.
-    pub(crate) fn meeting(common: DVec3, rescues: u32) -> Self {
+    /// Returns the answer for bodies with a common point.
+    pub(crate) fn overlapping(common: DVec3, rescues: u32) -> Self {
         Self {
             on_moving: common,
             on_fixed: common,
@@ -118,6 +120,7 @@ impl Settled {
         }
     }
 
+    /// Converts the answer of V-Clip to the world.
     fn into_proximity(self, fixed_pose: &Pose, work: Work) -> Proximity<Steps> {
         let Self { gap, rescues, gave_up, .. } = self;
         self.proximity(
@@ -126,7 +129,7 @@ impl Settled {
         )
     }
 
-    /// In the world.
+    /// Converts the answer to the world.
     pub(crate) fn proximity<S>(&self, fixed_pose: &Pose, steps: S) -> Proximity<S> {
         Proximity {
             distance: self.distance,
@@ -137,8 +140,8 @@ impl Settled {
     }
 }
 
-/// From the end of a walk to an answer: out of local minima, and again from elsewhere as long as
-/// the answer is not proven.
+/// Computes the answer from the result of a walk. Leaves local minima, and restarts elsewhere while the
+/// answer is unproven. Returns the nearest result.
 pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Work) -> Settled {
     let mut best: Option<(Settled, Pair)> = None;
     let mut scene = *scene;
@@ -147,15 +150,15 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
         end = scene.walk_on(pair, end, work);
         if let End::Penetrating(body, x) = end {
             let common = if body == 1 { x } else { to_fixed(&scene, x) };
-            return Settled::meeting(common, rescues);
+            return Settled::overlapping(common, rescues);
         }
         if end == End::Circle {
             scene.settle_in_circle(pair);
         }
-        let (mut settled, mut supports) = judge(&scene, *pair, rescues);
+        let (mut settled, mut supports) = evaluate_pair(&scene, *pair, rescues);
         if settled.gave_up && scene.polish(pair) {
             rescues += 1;
-            (settled, supports) = judge(&scene, *pair, rescues);
+            (settled, supports) = evaluate_pair(&scene, *pair, rescues);
         }
         if !settled.gave_up {
             return settled;
@@ -164,10 +167,11 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
             best = Some((settled, *pair));
         }
         *pair = supports;
-        // Planes flared by more each time: up to what the proof forgives.
+        // The planes are moved outwards by a larger length in each restart, up to the error that the proof
+        // accepts.
         let flare = scene.rounding() / f64::from(1 << (MAX_RESTARTS - restart));
         rescues += 1;
-        scene = scene.flared(flare);
+        scene = scene.with_flare(flare);
         end = scene.walk(pair, scene.patience(), work);
     }
     let (settled, kept) = best.expect("at least one walk");
@@ -175,10 +179,10 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
     settled
 }
 
-/// What a pair of features is worth, and vertices of nearer ones if it is not the answer.
-fn judge(scene: &Scene, pair: Pair, rescues: u32) -> (Settled, Pair) {
+/// Returns the answer for a pair of features, and the vertices on the supporting planes.
+fn evaluate_pair(scene: &Scene, pair: Pair, rescues: u32) -> (Settled, Pair) {
     let near = scene.nearest(pair);
-    let Slab { gap, supports } = scene.slab(&near, pair);
+    let Slab { gap, supports } = scene.narrowest_gap_slab(&near, pair);
     let settled = Settled {
         on_moving: near.on_moving,
         on_fixed: near.on_fixed,
@@ -190,7 +194,7 @@ fn judge(scene: &Scene, pair: Pair, rescues: u32) -> (Settled, Pair) {
     (settled, supports)
 }
 
-/// A point of the moving body's frame in the fixed body's.
+/// Transforms a point from the moving body's frame to the fixed body's frame.
 fn to_fixed(scene: &Scene, x: DVec3) -> DVec3 {
     scene.views[1].rotation * x + scene.views[1].translation
 }

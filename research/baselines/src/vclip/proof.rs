@@ -1,13 +1,12 @@
-//! The nearest points of two features, and how near the bodies can be at most.
+//! Nearest points of two features, and a lower bound of the distance of the bodies.
 //!
-//! Notation. `p`, `q` points of the moving and the fixed body in the fixed body's frame; `n` a unit
-//! vector. For every `n` the slab between the supporting planes,
-//! `w(n) = min_Q n . q - max_P n . p`, is a lower bound of the distance; for the nearest points and
-//! `n` along `q - p` it is the distance. The difference is the *gap*: what the answer can be wrong
-//! by, whatever walk led to it.
+//! `p`, `q` are points of the moving and the fixed body in the fixed body's frame, `n` is a unit vector. For
+//! every `n` the width of the slab between the supporting planes, `w(n) = min_Q n . q - max_P n . p`, is a
+//! lower bound of the distance. For the nearest points and `n` along `q - p` it equals the distance. The
+//! difference is the *gap*, a bound on the error of the answer, whatever the walk did.
 //!
-//! Close to contact `q - p` is known to a few units in the last place of the *size* and its
-//! direction to as little as that allows; the features give better ones: the face's normal, what is
+//! Near contact, `q - p` has an error of a few units in the last place of the *size*, which limits the
+//! accuracy of its direction. The features yield better directions: the normal of a face, or a vector
 //! orthogonal to the edges.
 
 use glam::DVec3;
@@ -16,11 +15,11 @@ use super::segment::{at, foot, nearest_of_segments};
 use super::walk::{Pair, Scene};
 use crate::features::{Feature, HalfEdge, Shell};
 
-/// Rounding of a coordinate of a difference of two points, in units of `2^-53` times the size: as
-/// derived at the head of `colltrans`' `minkowski`.
+/// Rounding error of a coordinate of a difference of two points, in units of `2^-53` times the size, as
+/// derived in `colltrans-kernel` (`noise`).
 const NOISE: f64 = 32.0;
 
-/// Edges of a vertex that are looked at when an answer is not proven at once: pairs of them are.
+/// Maximum number of edges of a vertex that are examined, in pairs, if a result is not proven at once.
 const MAX_FAN: usize = 32;
 
 /// Nearest points of a pair of features, in the fixed body's frame.
@@ -36,14 +35,14 @@ pub(crate) struct Nearest {
 /// The slab between two parallel supporting planes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slab {
-    /// By how much the slab is narrower than the distance found.
+    /// Difference of the distance found and the width of the slab.
     pub(crate) gap: f64,
-    /// Vertices on the planes: if the gap is real, a nearer pair is around here.
+    /// Vertices on the planes. If the gap is real, a nearer pair is near them.
     pub(crate) supports: Pair,
 }
 
 impl Scene<'_> {
-    /// The nearest points of two features that a walk ended with.
+    /// Computes the nearest points of two features at the end of a walk.
     pub(crate) fn nearest(&self, pair: Pair) -> Nearest {
         use Feature::{Edge, Face, Vertex};
         let [from_moving, from_fixed] = &self.views;
@@ -61,20 +60,20 @@ impl Scene<'_> {
                 let (p, edge) = (from_fixed.seen(v), fixed.ends(h));
                 let share = foot(p, edge);
                 let q = at(edge, share);
-                Nearest::new(p, q, across(q - p, edge, share))
+                Nearest::new(p, q, without_component_along(q - p, edge, share))
             }
             [Edge(h), Vertex(w)] => {
                 let (edge, q) = (seen(h), fixed.vertex(w));
                 let share = foot(q, edge);
                 let p = at(edge, share);
-                Nearest::new(p, q, across(q - p, edge, share))
+                Nearest::new(p, q, without_component_along(q - p, edge, share))
             }
             [Edge(g), Edge(h)] => {
                 let (first, second) = (seen(g), fixed.ends(h));
                 let near = nearest_of_segments(first, second);
                 let apart = near.second - near.first;
                 let crossing = near.share > 0.0 && near.share < 1.0;
-                let normal = if crossing { across_both(apart, first, second) } else { apart };
+                let normal = if crossing { common_normal(apart, first, second) } else { apart };
                 Nearest::new(near.first, near.second, normal)
             }
             [Vertex(v), Face(f)] => {
@@ -86,7 +85,7 @@ impl Scene<'_> {
                 let (q, height) = (fixed.vertex(w), moving.height(f, from_moving.seen(w)));
                 Nearest::new(q - normal * height, q, normal)
             }
-            // No walk ends here.
+            // No walk ends at such a pair.
             [a, b] => {
                 let vertices = [moving.some_vertex(a), fixed.some_vertex(b)].map(Vertex);
                 self.nearest(vertices)
@@ -94,7 +93,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Of each feature the vertex that is nearest to its nearest point.
+    /// Returns for each feature its vertex nearest to its nearest point.
     pub(crate) fn nearest_vertices(&self, pair: Pair) -> [u32; 2] {
         let [from_moving, from_fixed] = &self.views;
         let Nearest { on_moving, on_fixed, .. } = self.nearest(pair);
@@ -105,27 +104,28 @@ impl Scene<'_> {
         ]
     }
 
-    /// How far below the distance of these points that of the bodies can be. `pair` is where to
-    /// look for supporting planes first.
-    pub(crate) fn slab(&self, near: &Nearest, pair: Pair) -> Slab {
+    /// Returns the slab with the smallest gap found. `pair` is the start of the search for supporting planes.
+    pub(crate) fn narrowest_gap_slab(&self, near: &Nearest, pair: Pair) -> Slab {
         let straight = self.slab_along(near, near.normal, pair);
         if straight.gap <= self.rounding() {
             return straight;
         }
-        // A tie: the normal is at the border of what the features allow, and rounded beyond it.
+        // For ties, the normal is at the boundary of the directions that the features permit, and rounding
+        // moved it outside.
         self.normals_around(near.normal, pair)
             .into_iter()
             .map(|normal| self.slab_along(near, normal, pair))
             .fold(straight, |best, slab| if slab.gap < best.gap { slab } else { best })
     }
 
-    /// A gap that rounding explains: a few noises of the coordinates.
+    /// Returns the largest gap that rounding explains: four noises of the coordinates.
     pub(crate) fn rounding(&self) -> f64 {
         let size = self.views.iter().map(|view| view.own.reach()).sum::<f64>()
             + self.views[1].translation.length();
         4.0 * NOISE * (f64::EPSILON / 2.0) * size
     }
 
+    /// Returns the slab along a normal.
     fn slab_along(&self, near: &Nearest, normal: DVec3, pair: Pair) -> Slab {
         let [from_moving, from_fixed] = &self.views;
         let (moving, fixed) = (from_moving.own, from_fixed.own);
@@ -136,9 +136,9 @@ impl Scene<'_> {
         Slab { gap, supports: [p, q].map(Feature::Vertex) }
     }
 
-    /// Goes on to nearer features around as long as there are any, by distances alone: where a body
-    /// comes close at a small angle, rounding hides on which side of a Voronoi plane a point is
-    /// long before it hides a distance. Says whether it went anywhere.
+    /// Moves to nearer features in the surroundings, by distances alone, while there are any. If a body
+    /// approaches at a small angle, rounding hides the side of a Voronoi plane earlier than a distance.
+    /// Returns whether the pair changed.
     pub(crate) fn polish(&self, pair: &mut Pair) -> bool {
         let (start, mut best) = (*pair, self.nearest(*pair).distance);
         for _ in 0..self.patience() {
@@ -152,9 +152,10 @@ impl Scene<'_> {
         *pair != start
     }
 
-    /// Edges with edges, which includes their ends, and vertices above faces.
+    /// Returns the surrounding pairs: all pairs of edges (which include their ends), and vertices above
+    /// faces.
     fn pairs_around(&self, pair: Pair) -> Vec<Pair> {
-        let around = self.around(pair);
+        let around = self.surrounding_half_edges(pair);
         let shells = self.views.map(|view| view.own);
         let mut pairs = Vec::new();
         for &g in &around[0] {
@@ -174,9 +175,9 @@ impl Scene<'_> {
         pairs
     }
 
-    /// The half-edges that leave two features where they are nearest: all of them, unless a vertex
-    /// has very many.
-    fn around(&self, pair: Pair) -> [Vec<u32>; 2] {
+    /// Returns for each feature the half-edges that leave it where the features are nearest, at most
+    /// [`MAX_FAN`] for each vertex.
+    fn surrounding_half_edges(&self, pair: Pair) -> [Vec<u32>; 2] {
         let near = self.nearest_vertices(pair);
         let leaving = |body: usize| {
             let shell = self.views[body].own;
@@ -190,15 +191,15 @@ impl Scene<'_> {
         [leaving(0), leaving(1)]
     }
 
-    /// Unit vectors that two features may have meant by `normal`: across one edge around them, or
-    /// across one of each body, or along a face's normal; with both signs where the edges do not
-    /// say which.
+    /// Returns candidates for the exact normal: perpendicular to one surrounding edge, perpendicular to one
+    /// edge of each body, or the normal of a face. Both signs are included where the edges do not determine
+    /// the sign.
     fn normals_around(&self, normal: DVec3, pair: Pair) -> Vec<DVec3> {
         let [from_moving, from_fixed] = &self.views;
         let to_fixed = |n: DVec3| from_fixed.rotation * n;
-        let [moving, fixed] = self.around(pair);
-        let moving = described(from_moving.own, &moving);
-        let fixed = described(from_fixed.own, &fixed);
+        let [moving, fixed] = self.surrounding_half_edges(pair);
+        let moving = directions_and_normals(from_moving.own, &moving);
+        let fixed = directions_and_normals(from_fixed.own, &fixed);
         let moving = moving.into_iter().map(|(along, n)| (to_fixed(along), to_fixed(n)));
         let moving: Vec<(DVec3, DVec3)> = moving.collect();
         let mut normals: Vec<DVec3> = moving.iter().map(|(_, n)| *n).collect();
@@ -208,8 +209,8 @@ impl Scene<'_> {
         }
         for (first, _) in &moving {
             for (second, _) in &fixed {
-                let across = first.cross(*second).normalize_or_zero();
-                normals.extend([across, -across]);
+                let without_component_along = first.cross(*second).normalize_or_zero();
+                normals.extend([without_component_along, -without_component_along]);
             }
         }
         normals
@@ -217,6 +218,7 @@ impl Scene<'_> {
 }
 
 impl Nearest {
+    /// Creates the nearest points with a normal of any length.
     fn new(p: DVec3, q: DVec3, normal: DVec3) -> Self {
         Self {
             on_moving: p,
@@ -227,8 +229,8 @@ impl Nearest {
     }
 }
 
-/// `apart` without what rounding left of it along an edge, if it ends at an inner point of it.
-fn across(apart: DVec3, [a, b]: [DVec3; 2], share: f64) -> DVec3 {
+/// Returns `apart` without its rounding error along an edge, if it ends at an interior point of the edge.
+fn without_component_along(apart: DVec3, [a, b]: [DVec3; 2], share: f64) -> DVec3 {
     if share <= 0.0 || share >= 1.0 {
         return apart;
     }
@@ -236,19 +238,20 @@ fn across(apart: DVec3, [a, b]: [DVec3; 2], share: f64) -> DVec3 {
     apart - along * apart.dot(along)
 }
 
-/// The common normal of two edges, unless they are so nearly parallel that `apart` says it better.
-fn across_both(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
+/// Returns the common normal of two edges, or `apart` if the edges are nearly parallel and `apart` is more
+/// accurate.
+fn common_normal(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     let normal = (b - a).normalize_or_zero().cross((d - c).normalize_or_zero());
     let length = apart.length();
     if normal.length() * length < f64::EPSILON.sqrt() * a.distance(b).max(c.distance(d)).max(length)
     {
-        return across(apart, [a, b], 0.5);
+        return without_component_along(apart, [a, b], 0.5);
     }
     normal * normal.dot(apart).signum()
 }
 
-/// Unit vector along each half-edge, and the normal of the face on its left.
-fn described(shell: &Shell, half_edges: &[u32]) -> Vec<(DVec3, DVec3)> {
+/// Returns for each half-edge its unit direction and the normal of the face on its left.
+fn directions_and_normals(shell: &Shell, half_edges: &[u32]) -> Vec<(DVec3, DVec3)> {
     let described = half_edges.iter().map(|&h| {
         let [a, b] = shell.ends(h);
         ((b - a).normalize_or_zero(), shell.normal(shell.half_edge(h).face))
@@ -256,6 +259,7 @@ fn described(shell: &Shell, half_edges: &[u32]) -> Vec<(DVec3, DVec3)> {
     described.collect()
 }
 
+/// Returns the vertices of a feature.
 fn corners(shell: &Shell, feature: Feature) -> Vec<u32> {
     match feature {
         Feature::Vertex(v) => vec![v],
@@ -264,6 +268,7 @@ fn corners(shell: &Shell, feature: Feature) -> Vec<u32> {
     }
 }
 
+/// Returns the vertex of a feature nearest to `x`.
 fn nearest_corner(shell: &Shell, feature: Feature, x: DVec3) -> u32 {
     let square = |v: &u32| shell.vertex(*v).distance_squared(x);
     let corners = corners(shell, feature).into_iter();

@@ -1,18 +1,18 @@
-//! The nearest points of two segments.
+//! Nearest points of two segments.
 
 use glam::DVec3;
 
-/// Nearest points of two segments, and where on the first one.
+/// Nearest points of two segments, and the parameter on the first one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SegmentPair {
     pub(crate) first: DVec3,
     pub(crate) second: DVec3,
-    /// 0 at the start of the first segment, 1 at its end.
+    /// Parameter on the first segment: 0 at its start, 1 at its end.
     pub(crate) share: f64,
 }
 
-/// Inner points of both where their lines are nearest, or an end of one and a point of the other:
-/// the best of five candidates, which needs no decision on what is parallel.
+/// Returns the nearest points: interior points at which the lines are nearest, or an end of one segment and a
+/// point of the other. The best of five candidates needs no decision about parallel segments.
 pub(crate) fn nearest_of_segments(ab: [DVec3; 2], cd: [DVec3; 2]) -> SegmentPair {
     let from_first = |share: f64| {
         let first = ab[0].lerp(ab[1], share);
@@ -25,28 +25,29 @@ pub(crate) fn nearest_of_segments(ab: [DVec3; 2], cd: [DVec3; 2]) -> SegmentPair
     let ends = [from_first(0.0), from_first(1.0), from_second(cd[0]), from_second(cd[1])];
     let square = |pair: &SegmentPair| pair.first.distance_squared(pair.second);
     ends.into_iter()
-        // The foot of the crossing's foot: for nearly parallel lines the crossing itself slips
-        // along both.
-        .chain(crossing(ab, cd).map(|share| from_second(from_first(share).second)))
+        // The second foot corrects the crossing, which is inaccurate along both lines if they are nearly
+        // parallel.
+        .chain(crossing_parameter(ab, cd).map(|share| from_second(from_first(share).second)))
         .min_by(|p, q| square(p).total_cmp(&square(q)))
         .expect("four ends")
 }
 
-/// Where on the first segment it is nearest to the second's line, if that is an inner point.
-fn crossing([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> Option<f64> {
+/// Returns the parameter on the first segment at which it is nearest to the second segment's line; `None`
+/// unless it is interior.
+fn crossing_parameter([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> Option<f64> {
     let (along, other) = (b - a, d - c);
     let normal = along.cross(other);
     let share = (c - a).cross(other).dot(normal) / normal.length_squared();
     (share > 0.0 && share < 1.0).then_some(share)
 }
 
-/// The share of a segment at which it is nearest to a point.
+/// Returns the parameter of a segment at its nearest point to `x`.
 pub(crate) fn foot(x: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     let along = b - a;
     ((x - a).dot(along) / along.length_squared()).clamp(0.0, 1.0)
 }
 
-/// The point at a share of a segment: exact at both ends.
+/// Returns the point at a parameter of a segment; exact at both ends.
 pub(crate) fn at([a, b]: [DVec3; 2], share: f64) -> DVec3 {
     a.lerp(b, share)
 }

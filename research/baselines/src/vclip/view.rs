@@ -1,96 +1,101 @@
-//! One body's Voronoi regions against a feature of the other body: the states of V-Clip.
+//! The states of V-Clip: the Voronoi regions of one body against a feature of the other body (Mirtich 1998).
 //!
-//! Notation. `own` is the body whose Voronoi region `VR(X)` is asked, `X` its feature; the other
-//! body's feature is a vertex or an edge `e(l) = tail + l (head - tail)`, `0 <= l <= 1`, *seen* in
-//! the own body's frame. `D(l)` is the distance of `e(l)` from a feature.
+//! - `own` is the body with the Voronoi region `VR(X)` of its feature `X`.
+//! - The other body's feature is a vertex or an edge `e(l) = tail + l (head - tail)`, `0 <= l <= 1`, in the
+//!   own body's frame.
+//! - `D(l)` is the distance of `e(l)` from a feature. The sign of its derivative where the edge leaves a
+//!   region selects the next feature.
+//! - *Flare*: a length (0 as published) by which Voronoi regions are enlarged, so that neighbouring regions
+//!   overlap by more than rounding and ties end a walk. The result is then nearest up to about this length.
 //!
-//! *Flared* planes: a Voronoi region grown outwards by `flare` (a length, 0 as published), so that
-//! the regions of neighbours overlap by more than rounding and ties send a walk nowhere. What a
-//! walk ends with is then nearest to within about that.
-//!
-//! Source: Mirtich 1998 (clipping an edge against a Voronoi region, and what the
-//! derivative of `D` where the edge leaves it says; the states). The states are one half each:
-//! what they say about `X`. The other half is the same with the bodies exchanged.
+//! Each function is one half of a state: what it implies for `X`. The other half exchanges the bodies.
 
 use glam::{DMat3, DVec3};
 
 use super::segment::nearest_of_segments;
 use crate::features::{Feature, HalfEdge, Shell};
 
-/// A body, and the other one as seen from its frame: `x_own = R x_other + t`.
+/// A body, and the other one in its frame: `x_own = R x_other + t`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View<'a> {
     pub(crate) own: &'a Shell,
     pub(crate) other: &'a Shell,
     pub(crate) rotation: DMat3,
     pub(crate) translation: DVec3,
-    /// By how much the planes of Voronoi regions are moved outwards.
+    /// Length by which the planes of Voronoi regions are moved outwards.
     pub(crate) flare: f64,
 }
 
-/// Relative error of the slope of an edge, if the planes are flared: a few roundings of a rotated
-/// normal and of a product.
-const LEVEL: f64 = 8.0 * f64::EPSILON;
+/// Relative error of the slope of an edge, which applies if the planes are flared: a few roundings of a
+/// rotated normal and of a product.
+const SLOPE_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// What a state with a face says.
+/// Result of a state with a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum FaceVerdict {
-    /// Closest features.
+    /// The features are closest.
     Stay,
-    /// A feature at the border of the own face is nearer, or as near.
+    /// A feature at the boundary of the own face is nearer, or equally near.
     Own(Feature),
-    /// A neighbour of the other body's feature is nearer, or as near.
+    /// A neighbour of the other body's feature is nearer, or equally near.
     Other(Feature),
     /// This point, in the own frame, belongs to both bodies.
     Penetrating(DVec3),
-    /// The vertex is below the face and all its edges lead away from it.
+    /// The vertex is below the face, and all its edges lead away from the face.
     LocalMinimum,
 }
 
 impl View<'_> {
-    /// A vertex of the other body, in the own frame.
+    /// Returns a vertex of the other body in the own frame.
     pub(crate) fn seen(&self, v: u32) -> DVec3 {
         self.rotation * self.other.vertex(v) + self.translation
     }
 
+    /// Returns an edge of the other body in the own frame.
     fn seen_edge(&self, h: u32) -> Edge {
         let HalfEdge { origin, target, .. } = self.other.half_edge(h);
         Edge { tail: self.seen(origin), head: self.seen(target) }
     }
 
-    /// How steeply the other body's edge climbs above the own face. Exactly opposite for twins.
+    /// Returns the rise of the other body's edge along the normal of the own face. It is exactly opposite for
+    /// twins.
     fn slope(&self, face: u32, h: u32) -> f64 {
         let [tail, head] = self.other.ends(h);
         (self.rotation.transpose() * self.own.normal(face)).dot(head - tail)
     }
 
-    /// The sign that a slope has for certain.
+    /// Returns the slope, or 0 if its sign is uncertain and the planes are flared.
     fn certain_slope(&self, face: u32, h: u32) -> f64 {
         let slope = self.slope(face, h);
-        if self.flare > 0.0 && slope.abs() <= LEVEL * self.other.length(h) { 0.0 } else { slope }
+        if self.flare > 0.0 && slope.abs() <= SLOPE_ERROR * self.other.length(h) {
+            0.0
+        } else {
+            slope
+        }
     }
 
-    /// What flaring adds to a height above a Voronoi plane, which is in units of this edge's
-    /// length.
-    fn lift(&self, h: u32) -> f64 {
+    /// Returns the flare as a value of a Voronoi plane function, whose unit is the length of this edge.
+    fn scaled_flare(&self, h: u32) -> f64 {
         if self.flare > 0.0 { self.flare * self.own.length(h) } else { 0.0 }
     }
 
-    /// Vertex `v` against the other's vertex: an edge whose plane the latter is beyond.
+    /// Returns, for vertex `v` and a vertex of the other body, an edge whose Voronoi plane the other vertex
+    /// is beyond; `None` if there is none.
     pub(crate) fn vertex_vertex(&self, v: u32, other: u32) -> Option<Feature> {
         let x = self.seen(other);
-        let beyond = |h: &&u32| self.own.beyond_vertex(**h, x) > self.lift(**h);
+        let beyond = |h: &&u32| self.own.beyond_vertex(**h, x) > self.scaled_flare(**h);
         self.own.outgoing(v).iter().find(beyond).map(|&h| self.own.edge(h))
     }
 
-    /// Vertex `v` against the other's edge.
+    /// Returns, for vertex `v` and an edge of the other body, an edge through whose plane the nearest point
+    /// is left; `None` if the nearest point is in the region.
     pub(crate) fn vertex_edge(&self, v: u32, other: u32) -> Option<Feature> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
         for &h in self.own.outgoing(v) {
-            let lift = self.lift(h);
+            let lift = self.scaled_flare(h);
             let heights = [edge.tail, edge.head].map(|x| lift - self.own.beyond_vertex(h, x));
-            match clip.cut(heights, self.own.edge(h)) {
+            match clip.clip_below(heights, self.own.edge(h)) {
                 Cut::Part => {}
                 Cut::Excluded => return Some(self.own.edge(h)),
                 Cut::Empty => break,
@@ -99,18 +104,19 @@ impl View<'_> {
         clip.leave_through(|l, _| self.climb_from(v, edge, l))
     }
 
-    /// A number of the sign of `D'(l)` for the distance from vertex `v`.
+    /// Returns a number with the sign of `D'(l)` for the distance from vertex `v`.
     fn climb_from(&self, v: u32, edge: Edge, l: f64) -> f64 {
         let along = edge.along();
         let climb = along.dot(edge.at(l) - self.own.vertex(v));
         if self.flare > 0.0 && climb.abs() <= self.flare * along.length() { 0.0 } else { climb }
     }
 
-    /// Edge `h` against the other's vertex.
+    /// Returns, for edge `h` and a vertex of the other body, the neighbour beyond whose plane the vertex is;
+    /// `None` if it is in the region.
     pub(crate) fn edge_vertex(&self, h: u32, other: u32) -> Option<Feature> {
         let x = self.seen(other);
         let HalfEdge { origin, target, twin, face } = self.own.half_edge(h);
-        let lift = self.lift(h);
+        let lift = self.scaled_flare(h);
         if self.own.beyond_vertex(h, x) < -lift {
             Some(Feature::Vertex(origin))
         } else if self.own.beyond_vertex(twin, x) < -lift {
@@ -124,15 +130,17 @@ impl View<'_> {
         }
     }
 
-    /// Edge `h` against the other's edge: first the planes of its ends, then those of its faces.
+    /// Returns, for edge `h` and an edge of the other body, the neighbour through whose plane the nearest
+    /// point is left; `None` if it is in the region. Tests first the planes of the ends, then those of the
+    /// faces.
     pub(crate) fn edge_edge(&self, h: u32, other: u32) -> Option<Feature> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
-        let (sides, lift) = ([h, self.own.half_edge(h).twin], self.lift(h));
+        let (sides, lift) = ([h, self.own.half_edge(h).twin], self.scaled_flare(h));
         for h in sides {
             let heights = [edge.tail, edge.head].map(|x| lift + self.own.beyond_vertex(h, x));
             let end = Feature::Vertex(self.own.half_edge(h).origin);
-            match clip.cut(heights, end) {
+            match clip.clip_below(heights, end) {
                 Cut::Part => {}
                 Cut::Excluded => return Some(end),
                 Cut::Empty => break,
@@ -153,7 +161,7 @@ impl View<'_> {
         for h in sides {
             let heights = [edge.tail, edge.head].map(|x| lift - self.own.inside_edge(h, x));
             let face = Feature::Face(self.own.half_edge(h).face);
-            match clip.cut(heights, face) {
+            match clip.clip_below(heights, face) {
                 Cut::Part => {}
                 Cut::Excluded => return Some(face),
                 Cut::Empty => break,
@@ -162,7 +170,7 @@ impl View<'_> {
         clip.leave_through(derivative)
     }
 
-    /// Face `f` against the other's vertex.
+    /// Evaluates face `f` and a vertex of the other body.
     pub(crate) fn face_vertex(&self, f: u32, other: u32) -> FaceVerdict {
         let x = self.seen(other);
         let mut lowest = (-self.flare, None);
@@ -190,14 +198,14 @@ impl View<'_> {
         }
     }
 
-    /// Face `f` against the other's edge: they are never closest, unless they cross.
+    /// Evaluates face `f` and an edge of the other body. They are never closest features unless they cross.
     pub(crate) fn face_edge(&self, f: u32, other: u32) -> FaceVerdict {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
         for h in self.own.boundary(f) {
-            let lift = self.lift(h);
+            let lift = self.scaled_flare(h);
             let heights = [edge.tail, edge.head].map(|x| lift + self.own.inside_edge(h, x));
-            if clip.cut(heights, self.own.edge(h)) != Cut::Part {
+            if clip.clip_below(heights, self.own.edge(h)) != Cut::Part {
                 return FaceVerdict::Own(self.nearest_of_border(f, edge));
             }
         }
@@ -216,7 +224,7 @@ impl View<'_> {
         border.map_or(FaceVerdict::Other(Feature::Vertex(end)), FaceVerdict::Own)
     }
 
-    /// The edge or vertex of a face nearest to an edge that does not meet the face's region.
+    /// Returns the edge or vertex of a face nearest to an edge outside of the face's region.
     fn nearest_of_border(&self, f: u32, edge: Edge) -> Feature {
         let mut best = (f64::INFINITY, Feature::Face(f));
         for h in self.own.boundary(f) {
@@ -237,14 +245,14 @@ impl View<'_> {
         best.1
     }
 
-    /// Whether a vertex of the other body is in the Voronoi region of the own face.
+    /// Checks whether a vertex of the other body is in the Voronoi region of the own face.
     pub(crate) fn is_above(&self, face: u32, other: u32) -> bool {
         let x = self.seen(other);
         self.own.height(face, x) > 0.0
             && self.own.boundary(face).all(|h| self.own.inside_edge(h, x) >= 0.0)
     }
 
-    /// The own face above which a vertex of the other body is highest, if it is above one.
+    /// Returns the own face above which a vertex of the other body is highest; `None` if it is above no face.
     pub(crate) fn face_below(&self, other: u32) -> Option<u32> {
         let x = self.seen(other);
         let heights = (0..self.own.face_count() as u32).map(|f| (f, self.own.height(f, x)));
@@ -253,7 +261,7 @@ impl View<'_> {
     }
 }
 
-/// An edge of the other body, seen.
+/// An edge of the other body in the own frame.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     tail: DVec3,
@@ -261,17 +269,19 @@ struct Edge {
 }
 
 impl Edge {
+    /// Returns the vector from tail to head.
     fn along(&self) -> DVec3 {
         self.head - self.tail
     }
 
+    /// Returns the point at parameter `l`.
     fn at(&self, l: f64) -> DVec3 {
         self.tail.lerp(self.head, l)
     }
 }
 
-/// The part of an edge inside some planes of a Voronoi region, and the neighbours behind the
-/// planes that it ends at.
+/// The part of an edge inside some planes of a Voronoi region, and the neighbours beyond the planes at its
+/// ends.
 #[derive(Debug, Clone, Copy)]
 struct Clip {
     low: f64,
@@ -280,14 +290,14 @@ struct Clip {
     high_at: Option<Feature>,
 }
 
-/// What a plane leaves of an edge.
+/// Effect of a plane on the part of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cut {
-    /// Something.
+    /// Something remains.
     Part,
-    /// Nothing, all of the edge is beyond this plane.
+    /// The whole edge is beyond this plane.
     Excluded,
-    /// Nothing, together with an earlier plane.
+    /// Nothing remains, because of this plane and an earlier one.
     Empty,
 }
 
@@ -298,8 +308,8 @@ impl Default for Clip {
 }
 
 impl Clip {
-    /// Cuts off what is below a plane, by the heights of the tail and the head.
-    fn cut(&mut self, [tail, head]: [f64; 2], neighbour: Feature) -> Cut {
+    /// Clips the part below a plane, given the heights of tail and head.
+    fn clip_below(&mut self, [tail, head]: [f64; 2], neighbour: Feature) -> Cut {
         if tail < 0.0 && head < 0.0 {
             return Cut::Excluded;
         }
@@ -312,8 +322,9 @@ impl Clip {
         if self.low > self.high { Cut::Empty } else { Cut::Part }
     }
 
-    /// The neighbour behind an end at which the distance still decreases outwards. If nothing is
-    /// left of the edge, one of the two ends is such, because the distance is convex.
+    /// Returns the neighbour at an end of the part at which the distance still decreases outwards; `None` if
+    /// there is none. If nothing remains of the edge, one end has this property, because the distance is
+    /// convex.
     fn leave_through(&self, derivative: impl Fn(f64, Feature) -> f64) -> Option<Feature> {
         let low = self.low_at.filter(|at| derivative(self.low, *at) > 0.0);
         low.or_else(|| self.high_at.filter(|at| derivative(self.high, *at) < 0.0))

@@ -1,11 +1,10 @@
 //! The walk over pairs of features, from any pair to a closest one.
 //!
-//! Invariant. A step leads to a pair that is nearer, or as near with a feature of lower dimension
-//! (Mirtich 1998), so that in exact arithmetic no pair returns. With rounding, pairs
-//! that are tied can send the walk in a circle. A step is a function of the pair alone, so a pair
-//! that returns once returns forever: the walk is compared with a pair kept from the step whose
-//! number was the last power of two (Brent 1980), which a circle always meets. What it ends with
-//! is judged elsewhere ([`super::proof`]).
+//! Invariant: a step leads to a nearer pair, or to an equally near one with a feature of lower dimension
+//! (Mirtich 1998). In exact arithmetic, no pair returns. With rounding, tied pairs can form a cycle. A step
+//! depends on the pair alone, therefore a pair that returns once returns forever. The walk is compared with
+//! the pair of the last step whose number was a power of two (Brent 1980), which detects every cycle.
+//! [`super::proof`] evaluates the result.
 
 use colltrans::Pose;
 
@@ -16,45 +15,47 @@ use crate::placed::Relative;
 /// A feature of the moving body and one of the fixed body.
 pub(crate) type Pair = [Feature; 2];
 
-/// Two placed bodies, each seen from the other.
+/// Two placed bodies, each viewed from the other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scene<'a> {
-    /// From the moving body's frame, from the fixed body's frame.
+    /// The view from the moving body's frame, and that from the fixed body's frame.
     pub(crate) views: [View<'a>; 2],
 }
 
-/// How a walk ended.
+/// Result of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum End {
     /// No feature has a nearer neighbour.
     Nearest,
-    /// The walk came back to where it was.
+    /// The walk returned to an earlier pair.
     Circle,
-    /// The bodies have a point in common: in the frame of this body.
+    /// The bodies have this common point, in the frame of this body.
     Penetrating(usize, glam::DVec3),
     /// A vertex of one body is below the face of this other body, and so are its neighbours.
     LocalMinimum(usize),
-    /// No end within the steps allowed.
+    /// The maximum number of steps was reached.
     OutOfPatience,
 }
 
-/// The work of a walk, as the papers count it.
+/// Work of a walk, counted as in the papers.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Work {
-    /// Pairs of features looked at.
+    /// Number of pairs of features examined.
     pub(crate) pairs: u32,
-    /// Scans of all faces of a body.
+    /// Number of scans of all faces of a body.
     pub(crate) scans: u32,
-    /// Faces looked at in them.
+    /// Number of faces examined in these scans.
     pub(crate) scanned: u32,
 }
 
+/// Outcome of one step.
 enum Step {
     To(Pair),
     End(End),
 }
 
 impl<'a> Scene<'a> {
+    /// Places two bodies.
     pub(crate) fn new(
         (moving, moving_pose): (&'a Shell, &Pose),
         (fixed, fixed_pose): (&'a Shell, &Pose),
@@ -72,7 +73,7 @@ impl<'a> Scene<'a> {
         Self { views: [from_moving, from_fixed] }
     }
 
-    /// The same bodies with other shells, in the same places.
+    /// Returns the scene with other shells in the same poses.
     pub(crate) fn with_shells(&self, moving: &'a Shell, fixed: &'a Shell) -> Self {
         let [from_moving, from_fixed] = self.views;
         Self {
@@ -83,12 +84,12 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The same with Voronoi regions that are larger by this length.
-    pub(crate) fn flared(&self, flare: f64) -> Self {
+    /// Returns the scene with Voronoi regions enlarged by a length.
+    pub(crate) fn with_flare(&self, flare: f64) -> Self {
         Self { views: self.views.map(|view| View { flare, ..view }) }
     }
 
-    /// Walks until an end, over no more than `patience` pairs.
+    /// Walks to a result, over at most `patience` pairs.
     pub(crate) fn walk(&self, pair: &mut Pair, patience: u32, work: &mut Work) -> End {
         let mut kept = *pair;
         for step in 1..=patience {
@@ -107,10 +108,10 @@ impl<'a> Scene<'a> {
         End::OutOfPatience
     }
 
-    /// Walks until an end that is not a local minimum: from there the walk goes on with the face
-    /// that the vertex is highest above, and if there is none the vertex is inside. Each scan
-    /// leaves a pair farther apart than any before it for good, so there are few; a pair that
-    /// rounding sends there again is left as it is.
+    /// Continues a walk until its result is not a local minimum. From a local minimum it continues at the
+    /// face that the vertex is highest above; if there is none, the vertex is inside. Few scans are needed,
+    /// because each one permanently leaves a pair that is farther apart than all earlier pairs. Rounding can
+    /// send a walk back; [`MAX_SCANS`] limits that.
     pub(crate) fn walk_on(&self, pair: &mut Pair, mut end: End, work: &mut Work) -> End {
         for _ in 0..MAX_SCANS {
             let End::LocalMinimum(body) = end else { return end };
@@ -126,12 +127,12 @@ impl<'a> Scene<'a> {
         end
     }
 
-    /// More steps than any walk needs that is not in trouble: one for each feature.
+    /// Returns a number of steps that no regular walk needs: one for each feature.
     pub(crate) fn patience(&self) -> u32 {
         self.views.iter().map(|view| 2 * view.own.edge_count() as u32 + 2).sum()
     }
 
-    /// Goes around a circle once and stays at the pair that is nearest.
+    /// Traverses a cycle once and selects its nearest pair.
     pub(crate) fn settle_in_circle(&self, pair: &mut Pair) {
         let (start, mut best) = (*pair, (self.nearest(*pair).distance, *pair));
         let mut at = start;
@@ -149,9 +150,10 @@ impl<'a> Scene<'a> {
         *pair = best.1;
     }
 
+    /// Computes the next pair.
     fn step(&self, pair: Pair) -> Step {
         use Feature::{Edge, Face, Vertex};
-        // The view of `i` is that of the body whose feature has the lower dimension.
+        // The body whose feature has the lower dimension has index `i`.
         let i = usize::from(dimension(pair[0]) > dimension(pair[1]));
         let j = 1 - i;
         let [low, high] = [self.views[i], self.views[j]];
@@ -170,16 +172,18 @@ impl<'a> Scene<'a> {
             }
             (Vertex(v), Face(f)) => return face_step(pair, i, high.face_vertex(f, v)),
             (Edge(e), Face(f)) => return face_step(pair, i, high.face_edge(f, e)),
-            // No state leads here.
+            // No state leads to such a pair.
             (first, _) => Some((i, Vertex(low.own.some_vertex(first)))),
         };
         moved.map_or(Step::End(End::Nearest), |(body, to)| Step::To(replaced(pair, body, to)))
     }
 }
 
-/// A walk leaves a local minimum for good; more scans than this are rounding's.
+/// Maximum number of scans. A regular walk leaves a local minimum for good, so more scans result from
+/// rounding.
 const MAX_SCANS: usize = 8;
 
+/// Returns the dimension of a feature.
 fn dimension(feature: Feature) -> u8 {
     match feature {
         Feature::Vertex(_) => 0,
@@ -188,12 +192,13 @@ fn dimension(feature: Feature) -> u8 {
     }
 }
 
+/// Returns the pair with one feature replaced.
 fn replaced(mut pair: Pair, body: usize, to: Feature) -> Pair {
     pair[body] = to;
     pair
 }
 
-/// What a state says in which the body other than `i` is in with a face.
+/// Returns the step for a state in which the body other than `i` has a face.
 fn face_step(pair: Pair, i: usize, verdict: FaceVerdict) -> Step {
     match verdict {
         FaceVerdict::Stay => Step::End(End::Nearest),

@@ -1,5 +1,5 @@
-//! All directions along which parts of an assembly can leave the rest: cells, areas, work and time, and what ordinary
-//! casts say of as many directions, half of them in cells beside borders.
+//! Free directions of parts of an assembly: cells, areas, work and time, compared with ordinary casts along random
+//! directions, half of them in cells.
 //!
 //! `free SOURCE [--tolerance L] [--parts A,B | --group PREFIX] [--depth N] [--looks N] [--judge N] [--verify 1]`
 
@@ -16,6 +16,7 @@ use glam::DVec3;
 
 type Failure = Box<dyn std::error::Error>;
 
+/// Returns the value of a command line option; `None` if it is missing or invalid.
 fn option<T: std::str::FromStr>(name: &str) -> Option<T> {
     let words: Vec<String> = std::env::args().collect();
     words.windows(2).find(|w| w[0] == name).and_then(|w| w[1].parse().ok())
@@ -54,8 +55,8 @@ fn main() -> Result<(), Failure> {
                 let seconds = started.elapsed().as_secs_f64();
                 all += seconds;
                 print!("{name}: {seconds:.4} s ({joined:.4} joining), ");
-                tell(&free);
-                judge(&bodies, &group, &free, option("--judge").unwrap_or(0));
+                print_summary(&free);
+                compare_with_casts(&bodies, &group, &free, option("--judge").unwrap_or(0));
                 if option::<u8>("--verify").is_some() {
                     let started = Instant::now();
                     free.verify()?;
@@ -68,7 +69,8 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-fn tell(free: &FreeDirections) {
+/// Prints the numbers of cells of each kind, the shares and the work.
+fn print_summary(free: &FreeDirections) {
     let count = |kind| free.cells().filter(|cell| cell.kind == kind).count();
     let kinds = [CellKind::Free, CellKind::Blocked, CellKind::Both, CellKind::Undecided].map(count);
     let sphere = 4.0 * std::f64::consts::PI;
@@ -82,7 +84,8 @@ fn tell(free: &FreeDirections) {
     );
 }
 
-fn judge(bodies: &Bodies, group: &[usize], free: &FreeDirections, count: u64) {
+/// Compares verdicts with casts along random directions, and prints the numbers of contradictions.
+fn compare_with_casts(bodies: &Bodies, group: &[usize], free: &FreeDirections, count: u64) {
     let mut state = 7 + group[0] as u64;
     let mut unit = || {
         state =

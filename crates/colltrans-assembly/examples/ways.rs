@@ -1,5 +1,6 @@
-//! Ways out in several moves: `ways SOURCE [tolerance] [legs] [axes]` prints the legs that take a first part or group out.
-//! With more axes than the parts' large facets have, up to 13 in all, those of a cube's edges and diagonals are tried.
+//! Removal paths: `ways SOURCE [tolerance] [legs] [axes]` prints the legs that remove a first part or group. If more
+//! axes are requested than the large facets of the parts yield, axes of a cube's edges and diagonals are added, up to
+//! 13 in all.
 
 use std::time::Instant;
 
@@ -21,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if axes > 0 {
         let own = of_large_facets(&bodies);
         let more =
-            of_a_cube().into_iter().filter(|d| own.iter().all(|a| a.cross(*d).length() > 1e-6));
+            cube_axes().into_iter().filter(|d| own.iter().all(|a| a.cross(*d).length() > 1e-6));
         options = options.with_directions(own.iter().copied().chain(more).take(axes).collect());
     }
     let start = Instant::now();
@@ -50,11 +51,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Axes of a cube: of its edges, and of the diagonals of its faces and its own.
-fn of_a_cube() -> Vec<DVec3> {
-    // Of three digits from 0 to 2 those after the middle one.
-    let of = |k: u32| DVec3::from([k / 9, k / 3 % 3, k % 3].map(f64::from)) - 1.0;
-    let mut axes: Vec<DVec3> = (14..27).map(|k| of(k).normalize()).collect();
+/// Returns the axes of a cube: of its edges, and of the diagonals of its faces and its volume.
+fn cube_axes() -> Vec<DVec3> {
+    // The directions with coordinates -1, 0 and 1, of which the second half is used.
+    let direction = |k: u32| DVec3::from([k / 9, k / 3 % 3, k % 3].map(f64::from)) - 1.0;
+    let mut axes: Vec<DVec3> = (14..27).map(|k| direction(k).normalize()).collect();
     axes.sort_by(|a, b| b.abs().max_element().total_cmp(&a.abs().max_element()));
     axes
 }

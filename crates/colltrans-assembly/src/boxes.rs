@@ -19,9 +19,9 @@ pub(crate) fn entry_translation(moving: &Aabb, other: &Aabb, d: DVec3) -> Option
     first_meeting([0, 1, 2].map(|k| ([low[k], high[k]], d[k])))
 }
 
-/// Returns a lower bound of the least translation `t >= 0` at which all moving intervals meet their fixed
-/// ones. Each item holds the distances from the moving interval to both ends of the range of contact, and the
-/// speed. Returns `None` if no translation satisfies all items.
+/// Returns a lower bound of the least translation `t >= 0` at which all moving intervals meet their fixed ones. Each
+/// item holds the range of displacements at which two intervals meet, and the speed. Returns `None` if no translation
+/// satisfies all items.
 pub(crate) fn first_meeting(gaps: impl IntoIterator<Item = ([f64; 2], f64)>) -> Option<f64> {
     let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
     for ([low, high], speed) in gaps {

@@ -1,11 +1,11 @@
 //! Hints about oddities of the parts as read. They are reported and never applied.
 //!
 //! - *Identical*: parts of the same shape ([`likes`]).
-//! - *Frames*: parts seem to be in their own frames instead of at their places in the assembly. Either equal
-//!   parts coincide, or all parts surround the origin and most pairs overlap deeply.
-//! - *Units*: parts seem to have another unit of length. Either one of two parts of the same shape is 1,000
-//!   or 25.4 times as large, or the sizes form two groups whose ratio is that of metres and millimetres. If
-//!   most pairs overlap deeply, a smaller ratio suffices, and a units hint replaces the frames hint.
+//! - *Frames*: parts seem to be in their own frames instead of at their places in the assembly. Either equal parts
+//!   coincide, or all parts surround the origin and most pairs overlap deeply.
+//! - *Units*: parts seem to have another unit of length. Either one of two parts of the same shape is 1,000 or 25.4
+//!   times as large, or the sizes form two groups at least 250 times apart. If most pairs overlap deeply, a smaller
+//!   ratio suffices, and a units hint replaces the frames hint.
 
 use std::cell::Cell;
 

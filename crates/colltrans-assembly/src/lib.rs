@@ -1,22 +1,17 @@
-//! Disassembly planning: which parts of an assembly come out, along which directions, in which order, and
-//! which parts block the others.
+//! Disassembly planning: which parts of an assembly come out, along which directions, in which order, and what blocks
+//! the others.
 //!
-//! The stages of a run, in order. One [`Question`] runs them all.
-//! - [`Assembly`]: parts in one world frame and one unit, read from files by `colltrans-assembly-io`.
-//! - [`Bodies`] with a [`Fit`] (a tolerance, or a minimum gap). `bodies` holds nearly all queries of pairs to
-//!   `colltrans`; [`roles`] and [`threads`] describe what a pair tolerates.
-//! - [`start`] (overlaps), [`suggest`] (causes of overlaps), [`hints`] (oddities of the parts), [`liaisons`]
-//!   (contacts).
-//! - [`candidates`] (directions, also of [`cylinders`] and [`inertia`]), [`matrix`] and [`rooms`] (who stops
-//!   whom, how far).
-//! - [`blocking`] (graph; arcs of [`constraints`]), [`likes`] (parts of equal shape), [`plan`] (steps,
-//!   interlocked groups), [`map`] (all directions of a part).
-//! - [`record`] (JSON), and [`report`] (pictures, an HTML file, an animation) with the feature `report`.
+//! Stages of a run, performed by one [`Question`]:
+//! - [`Assembly`] and [`Fit`] -> [`Bodies`] (queries to `colltrans`; [`roles`], [`threads`]) -> [`start`],
+//!   [`suggest`] (overlaps)
+//! - [`hints`] (oddities), [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and
+//!   [`inertia`])
+//! - [`matrix`], [`rooms`] (who stops whom) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`likes`]), [`map`]
+//! - [`record`] (JSON) and [`report`] (pictures, HTML, animation; feature `report`)
 //!
-//! Lengths are in the unit of the files. Directions have length 1. Results do not depend on the number of
-//! threads. One matrix serves all states of a plan, because parts do not move until they leave. Memory,
-//! besides the parts: 100 bytes for each pair and direction with a contact, and on each thread up to 50 kB
-//! for each pair of parts whose facets are cached.
+//! Lengths are in the unit of the files. Results do not depend on the number of threads. One matrix serves all states
+//! of a plan, because parts do not move until they leave. Memory: 100 bytes for each pair and direction with a
+//! contact, and on each thread up to 50 kB for each pair with cached facets.
 
 mod bodies;
 mod boxes;

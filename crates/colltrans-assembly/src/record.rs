@@ -152,7 +152,9 @@ pub fn meetings(assembly: &Assembly, matrix: &Matrix, direction: usize) -> Value
 /// | `stages` | ranges of steps that are described as one, as the first and the last step |
 /// | `rounds` | steps that can be done at the same time |
 /// | `assembly` | the steps in the order of assembly, with those that each needs |
-/// | `last`, `left`, `stuck` | the parts that stay, the parts that are left, the interlocked groups |
+/// | `last` | the parts from which all others were removed; empty if parts are left |
+/// | `left` | the parts that stay: fixed, or not moved by any direction |
+/// | `stuck` | the interlocked groups |
 /// | `wanted` | the requested removal, if any |
 pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
     let steps: Vec<Value> = plan.steps.iter().map(|s| step_json(bodies.assembly(), s)).collect();

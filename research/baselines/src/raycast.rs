@@ -1,17 +1,17 @@
-//! GJK ray cast: van den Bergen, "Ray casting against general convex objects with application to continuous
-//! collision detection", 2004. Physics engines use this linear cast.
+//! GJK ray cast: van den Bergen, "Ray casting against general convex objects with application to continuous collision
+//! detection", 2004. Physics engines use this linear cast.
 //!
-//! - `M = {q - p}` is the Minkowski difference in the fixed body's frame, `d` the direction. `S` is the size,
-//!   as in [`egjk`](crate::egjk).
+//! - `M = {q - p}` is the Minkowski difference in the fixed body's frame, `d` the direction. `S` is the size, as in
+//!   [`egjk`](crate::egjk).
 //! - `x = t d` is the tip of the ray from the origin. The moved bodies touch when `x` enters `M`.
-//! - `v` is the shortest vector from `x` to the simplex (the paper uses `-v`); `w` is the lowest point of `M`
-//!   along `v`.
+//! - `v` is the shortest vector from `x` to the simplex (the paper uses `-v`); `w` is the lowest point of `M` along
+//!   `v`.
 //!
-//! Invariant: `t` is a lower bound of the collision translation. It is raised only to planes below `M`,
-//! through `w` with normal `v`, that `x` has not crossed. A *hit* is declared if `|v|` is at most the
-//! tolerance `e`. Then `x` is within `e` of `M`, and `t` is too small by at most `e / n . d` with the unknown
-//! contact normal `n`. A ray that misses `M` ends at a plane from which it moves away. One addition: `t |d| >
-//! S` is a proven miss, because all of `M` is within `S` of the origin.
+//! Invariant: `t` is a lower bound of the collision translation. It is raised only to planes below `M`, through `w`
+//! with normal `v`, that `x` has not crossed. A *hit* is declared if `|v|` is at most the tolerance `e`. Then `x` is
+//! within `e` of `M`, and `t` is too small by at most `e / n . d` with the unknown contact normal `n`. A ray that
+//! misses `M` ends at a plane from which it moves away. One addition: `t |d| > S` is a proven miss, because all of
+//! `M` is within `S` of the origin.
 //!
 //! Known failures of the published algorithm: see [`RayCast`].
 

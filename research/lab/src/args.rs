@@ -7,11 +7,12 @@ use clap::{Args, Parser, Subcommand};
 use colltrans_lab::experiments;
 use colltrans_lab::plan::{Plan, Scale};
 
+/// Text after the help: results and exit codes.
 const RESULTS: &str = "\
 The paper is Mirolo, Carpin and Pagello, \"Incremental Convex Minimization for Computing Collision
 Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, section V.
 
-Results, in the folder given by --output (files of these names are replaced):
+Results, in the existing_folder given by --output (files of these names are replaced):
   report.html              every figure and table beside the claims it supports or refutes, and
                            where the numbers come from; one page that needs nothing else
   claims.json              every claim with its numbers, intervals and verdict, for programs
@@ -19,8 +20,8 @@ Results, in the folder given by --output (files of these names are replaced):
   figure-NN....svg, .png   the figure
   table-N....csv           the table
 
-What is going on and how much is left stands on standard error. Times are of this machine: leave it alone while
-it measures.
+Progress and the remaining time are written to standard error. Times are those of this machine: do not use it
+while it measures.
 
 Exit codes:
   0  measured (claims may hold or not)
@@ -108,7 +109,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     passes: Option<u32>,
     /// A folder with mesh files of real parts, to be measured beside other shapes (`beyond`)
-    #[arg(long, value_name = "DIR", value_parser = folder)]
+    #[arg(long, value_name = "DIR", value_parser = existing_folder)]
     parts: Option<PathBuf>,
     /// The folder of the results, made if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "lab-results")]
@@ -116,6 +117,7 @@ pub(crate) struct Options {
 }
 
 impl Options {
+    /// Returns the plan for these options.
     pub(crate) fn plan(&self) -> Plan {
         let scale = match self {
             Self { full: true, .. } => Scale::Full,
@@ -126,13 +128,13 @@ impl Options {
     }
 }
 
-/// A folder that is there.
-fn folder(path: &str) -> Result<PathBuf, String> {
+/// Returns the path of an existing folder.
+fn existing_folder(path: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(path);
-    if path.is_dir() { Ok(path) } else { Err("there is no such folder".to_owned()) }
+    if path.is_dir() { Ok(path) } else { Err("no such folder; give an existing one".to_owned()) }
 }
 
-/// The numbers of the experiments whose ids begin so; the help and errors list them.
+/// Returns the accepted numbers of experiments with an identifier prefix, for help and errors.
 fn numbers_of(prefix: &'static str) -> PossibleValuesParser {
     let numbers = experiments().iter().filter_map(|experiment| {
         let number = experiment.id.strip_prefix(prefix)?;

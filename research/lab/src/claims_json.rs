@@ -1,12 +1,12 @@
-//! The claims of a run for programs: where the numbers come from, and of each claim the paper's words,
-//! what was measured with its interval, the verdict and why. Numbers that are not finite are `null`.
+//! The claims of a run as JSON: provenance, and for each claim the paper's words, the measured number with
+//! its interval, the verdict and the reason. Numbers that are not finite are `null`.
 
 use serde_json::{Value, json};
 
 use crate::claims::Claim;
 use crate::report::Report;
 
-/// All claims of a run.
+/// Returns all claims of a run.
 pub(crate) fn claims(report: &Report) -> Value {
     let claims = report.done.iter().flat_map(|done| &done.finding.claims);
     let mut value = report.provenance.to_json();
@@ -14,11 +14,12 @@ pub(crate) fn claims(report: &Report) -> Value {
     value["seed"] = json!(report.plan.seed);
     value["seconds"] = json!(report.wall.as_secs());
     value["experiments"] = json!({ "done": report.done.len(), "all": report.all });
-    value["claims"] = claims.map(claim).collect();
+    value["claims"] = claims.map(claim_json).collect();
     value
 }
 
-fn claim(claim: &Claim) -> Value {
+/// Returns one claim.
+fn claim_json(claim: &Claim) -> Value {
     let measured = claim.paper.criteria.iter().zip(&claim.measured).map(|(criterion, measured)| {
         json!({
             "what": criterion.what,

@@ -1,32 +1,33 @@
-//! Figures and tables as comma-separated values (RFC 4180, lines end with a line feed).
+//! Figures and tables as comma-separated values (RFC 4180, with line feeds).
 
 use crate::finding::{Figure, Table};
 
-/// The points of a figure, a row each: the measured series, then those to compare with.
+/// Returns the points of a figure, one in each row: the measured series, then the references.
 ///
-/// Numbers are the shortest that read back as the same `f64`; `NaN`, `inf` and `-inf` are written
-/// so.
+/// Numbers are the shortest that read back as the same `f64`. Other values are written as `NaN`, `inf` and
+/// `-inf`.
 pub fn figure(figure: &Figure) -> String {
     let mut text = String::from("series,x,y,low,high,count\n");
     for series in figure.series.iter().chain(&figure.references) {
         for point in &series.points {
-            let numbers = [point.x, point.y, point.low, point.high].map(number);
+            let numbers = [point.x, point.y, point.low, point.high].map(format_number);
             let count = point.count.to_string();
-            row(&mut text, std::iter::once(&series.name).chain(&numbers).chain([&count]));
+            write_row(&mut text, std::iter::once(&series.name).chain(&numbers).chain([&count]));
         }
     }
     text
 }
 
-/// The columns' heads and the rows of a table.
+/// Returns the column heads and the rows of a table.
 pub fn table(table: &Table) -> String {
     let mut text = String::new();
-    row(&mut text, table.columns.iter());
-    table.rows.iter().for_each(|cells| row(&mut text, cells.iter()));
+    write_row(&mut text, table.columns.iter());
+    table.rows.iter().for_each(|cells| write_row(&mut text, cells.iter()));
     text
 }
 
-fn row<'a>(text: &mut String, cells: impl Iterator<Item = &'a String>) {
+/// Appends a row, with quotes where necessary.
+fn write_row<'a>(text: &mut String, cells: impl Iterator<Item = &'a String>) {
     for (i, cell) in cells.enumerate() {
         if i > 0 {
             text.push(',');
@@ -40,8 +41,9 @@ fn row<'a>(text: &mut String, cells: impl Iterator<Item = &'a String>) {
     text.push('\n');
 }
 
-fn number(value: f64) -> String {
-    // With an exponent where that is shorter, unlike `{}`.
+/// Formats a number.
+fn format_number(value: f64) -> String {
+    // Unlike `{}`, this uses an exponent where that is shorter.
     let text = format!("{value:?}");
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }
@@ -52,16 +54,16 @@ mod tests {
     use crate::finding::{Axis, Point, Series};
 
     #[test]
-    fn numbers_read_back() {
+    fn numbers_are_read_back_exactly() {
         for value in [0.0, -0.0, 0.1, 1e300, 5e-324, 2000.0, 1.0 / 3.0, f64::INFINITY, f64::MAX] {
-            assert_eq!(number(value).parse::<f64>().unwrap().to_bits(), value.to_bits());
+            assert_eq!(format_number(value).parse::<f64>().unwrap().to_bits(), value.to_bits());
         }
-        assert!(number(f64::NAN).parse::<f64>().unwrap().is_nan());
-        assert_eq!(number(2000.0), "2000");
+        assert!(format_number(f64::NAN).parse::<f64>().unwrap().is_nan());
+        assert_eq!(format_number(2000.0), "2000");
     }
 
     #[test]
-    fn rows() {
+    fn cells_are_quoted() {
         let axis = Axis { label: String::new(), log: false };
         let series = |name: &str, y| Series {
             name: name.into(),

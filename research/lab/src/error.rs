@@ -1,18 +1,18 @@
-//! What can go wrong in a run.
+//! Errors of a run.
 
 use std::io;
 use std::path::PathBuf;
 
-/// Why the results of a run are not where they should be.
+/// Reason why results cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LabError {
-    /// The folder of the results does not exist and cannot be made.
-    #[error("{}: the folder cannot be made: {source}", path.display())]
+    /// The folder of the results cannot be created.
+    #[error("{}: cannot create the folder: {source}", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A file cannot be written.
@@ -20,18 +20,18 @@ pub enum LabError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A picture cannot be encoded.
     #[error("{figure}: cannot be drawn as PNG: {reason}")]
     Picture {
-        /// The figure's id.
+        /// Identifier of the figure.
         figure: String,
-        /// What the encoder says.
+        /// Message of the encoder.
         reason: String,
     },
-    /// A figure of the paper cannot be drawn anew.
+    /// A figure of the paper cannot be reproduced.
     #[error("the paper's figures: {0}")]
     Figures(#[from] crate::figures::Error),
 }

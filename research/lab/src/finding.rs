@@ -1,4 +1,4 @@
-//! What an experiment found: figures and tables from data, and the claims they support or refute.
+//! The result of an experiment: figures and tables from data, and the claims that they support or refute.
 
 use colltrans_testkit::timing::quantile;
 
@@ -8,11 +8,11 @@ use crate::statistics::mean;
 /// The result of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// The figures, in the paper's form; more than one where the paper shows several plots.
+    /// Figures, in the paper's form; several where the paper shows several plots.
     pub figures: Vec<Figure>,
     /// Tables.
     pub tables: Vec<Table>,
-    /// The claims put to the test.
+    /// The tested claims.
     pub claims: Vec<Claim>,
 }
 
@@ -29,16 +29,16 @@ pub struct Figure {
     pub y: Axis,
     /// Measured curves.
     pub series: Vec<Series>,
-    /// Curves to compare with, such as `log n`, drawn thin.
+    /// Curves for comparison, such as `log n`, drawn thin.
     pub references: Vec<Series>,
 }
 
 /// An axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What and in which unit.
+    /// Quantity and unit.
     pub label: String,
-    /// Logarithmic.
+    /// Whether the axis is logarithmic.
     pub log: bool,
 }
 
@@ -54,27 +54,27 @@ pub struct Series {
 /// A measured value with its spread.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Place on the horizontal axis.
+    /// Horizontal coordinate.
     pub x: f64,
-    /// The value: a median or a mean, as the figure's title says.
+    /// Value: a median or a mean, as stated in the figure's title.
     pub y: f64,
-    /// Lower end of the spread: a quartile, or an end of a 95 % interval, as the figure's title says.
+    /// Lower end of the spread: a quartile, or an end of a 95 % interval, as stated in the figure's title.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the spread.
     pub high: f64,
-    /// From how many measurements.
+    /// Number of measurements.
     pub count: usize,
 }
 
 impl Point {
-    /// Median with quartiles.
+    /// Returns the median with quartiles.
     pub(crate) fn median(x: f64, values: &[f64]) -> Self {
         let [low, y, high] = [0.25, 0.5, 0.75].map(|share| quantile(values, share));
         Self { x, y, low, high, count: values.len() }
     }
 
-    /// Mean with quartiles; where more than three quarters of the values lie to one side of their
-    /// mean, the spread ends there.
+    /// Returns the mean with quartiles. If more than three quarters of the values are on one side of the
+    /// mean, the spread ends at the mean.
     pub(crate) fn mean(x: f64, values: &[f64]) -> Self {
         let y = mean(values);
         let [low, high] = [0.25, 0.75].map(|share| quantile(values, share));

@@ -1,4 +1,4 @@
-//! `colltrans-lab`: the experiments of the paper, run anew.
+//! `colltrans-lab`: repeats the experiments of the paper.
 
 mod args;
 
@@ -16,40 +16,46 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use args::{Arguments, Command};
 
-/// The exit code where results cannot be written, as `--help` documents it.
+/// Exit code if results cannot be written, as documented in `--help`.
 const CANNOT_WRITE: u8 = 5;
 
 fn main() -> ExitCode {
     let (chosen, options) = match Arguments::parse().command {
-        Command::Figure { numbers, options } => (choose("figure-", &numbers), options),
-        Command::Table { numbers, options } => (choose("table-", &numbers), options),
-        Command::Section { numbers, options } => (choose("section-", &numbers), options),
-        Command::Beyond { options } => (choose("", &["beyond".into()]), options),
+        Command::Figure { numbers, options } => {
+            (selected_experiments("figure-", &numbers), options)
+        }
+        Command::Table { numbers, options } => (selected_experiments("table-", &numbers), options),
+        Command::Section { numbers, options } => {
+            (selected_experiments("section-", &numbers), options)
+        }
+        Command::Beyond { options } => (selected_experiments("", &["beyond".into()]), options),
         Command::All { options } => (experiments().to_vec(), options),
-        Command::Pictures { output } => return said(&colltrans_lab::figures::write(&output)),
+        Command::Pictures { output } => {
+            return print_result(&colltrans_lab::figures::write(&output));
+        }
     };
     let plan = options.plan();
     announce(&chosen, &plan, &options.output);
     let mut bar = Bar::new();
     let result = colltrans_lab::run(&chosen, &plan, &mut bar, &options.output);
     bar.drawn.finish_and_clear();
-    said(&result)
+    print_result(&result)
 }
 
-/// Says what was written, or why it could not be.
-fn said(result: &Result<impl Display, LabError>) -> ExitCode {
-    let said = match result {
+/// Prints the summary or the error, and returns the exit code.
+fn print_result(result: &Result<impl Display, LabError>) -> ExitCode {
+    let printed = match result {
         Ok(summary) => io::stdout().write_all(summary.to_string().as_bytes()),
-        // Not `eprintln!`, which panics when standard error is closed.
+        // `eprintln!` would panic if standard error is closed.
         Err(error) => io::stderr().write_all(format!("error: {error}\n").as_bytes()),
     };
-    // A pipe whose reader has gone is no failure: the results are in their folder.
-    let is_lost = said.is_err_and(|error| error.kind() != io::ErrorKind::BrokenPipe);
+    // A closed pipe is not a failure, because the results are in their folder.
+    let is_lost = printed.is_err_and(|error| error.kind() != io::ErrorKind::BrokenPipe);
     if result.is_err() || is_lost { ExitCode::from(CANNOT_WRITE) } else { ExitCode::SUCCESS }
 }
 
-/// The experiments with these numbers, in the paper's order.
-fn choose(prefix: &str, numbers: &[String]) -> Vec<Experiment> {
+/// Returns the experiments with these numbers, in the paper's order.
+fn selected_experiments(prefix: &str, numbers: &[String]) -> Vec<Experiment> {
     let is_chosen = |experiment: &&Experiment| {
         let number = experiment.id.strip_prefix(prefix);
         number.is_some_and(|number| numbers.iter().any(|chosen| chosen == number))
@@ -57,7 +63,7 @@ fn choose(prefix: &str, numbers: &[String]) -> Vec<Experiment> {
     experiments().iter().filter(is_chosen).copied().collect()
 }
 
-/// Says at once what is to be done and about how long it takes.
+/// Prints what is measured and the estimated duration.
 fn announce(chosen: &[Experiment], plan: &Plan, output: &Path) {
     let seconds: f64 = chosen.iter().map(|experiment| experiment.expected(plan)).sum();
     let names: Vec<_> = chosen.iter().map(Experiment::name).collect();
@@ -72,19 +78,19 @@ fn announce(chosen: &[Experiment], plan: &Plan, output: &Path) {
     let _ = io::stderr().write_all(text.as_bytes());
 }
 
-/// The progress of the run, drawn on a terminal, and as lines from time to time where there is none. It
-/// is said when something is reported and by no thread of its own, which would disturb what is measured.
+/// Progress of the run: a bar on a terminal, otherwise lines at intervals. It is updated only by reports,
+/// because a thread of its own would disturb the measurements.
 struct Bar {
     drawn: ProgressBar,
     start: Instant,
-    /// When the last line was written.
-    said: Option<Instant>,
+    /// Time of the last line.
+    last_line: Option<Instant>,
 }
 
 impl Bar {
-    /// Parts in which the run is counted.
+    /// Number of steps of the bar.
     const FINENESS: f64 = 1000.0;
-    /// Between two lines.
+    /// Minimum time between two lines.
     const PAUSE: Duration = Duration::from_secs(10);
 
     fn new() -> Self {
@@ -95,14 +101,14 @@ impl Bar {
         } else {
             ProgressBar::hidden()
         };
-        Self { drawn, start: Instant::now(), said: None }
+        Self { drawn, start: Instant::now(), last_line: None }
     }
 }
 
 impl Progress for Bar {
     fn at(&mut self, done: f64, all: f64, doing: &str) {
         let (share, spent) = ((done / all).clamp(0.0, 1.0), self.start.elapsed());
-        // Too early to tell from what is done.
+        // At the beginning, the progress does not permit an estimate.
         let left = if share < 0.01 {
             String::new()
         } else {
@@ -111,11 +117,11 @@ impl Progress for Bar {
         };
         self.drawn.set_position((Self::FINENESS * share) as u64);
         self.drawn.set_message(format!("{left}{doing}"));
-        let is_due = self.said.is_none_or(|said| said.elapsed() >= Self::PAUSE);
+        let is_due = self.last_line.is_none_or(|last| last.elapsed() >= Self::PAUSE);
         if self.drawn.is_hidden() && is_due {
             let text = format!("{:3.0} %, {left}{doing}\n", 100.0 * share);
             let _ = io::stderr().write_all(text.as_bytes());
-            self.said = Some(Instant::now());
+            self.last_line = Some(Instant::now());
         }
     }
 }

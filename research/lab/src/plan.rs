@@ -1,20 +1,20 @@
-//! How much to measure.
+//! The amount of measurements.
 
 use std::path::PathBuf;
 
 /// The scale of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Bodies of a few hundred vertices, a few queries: for tests, in seconds.
+    /// Bodies of a few hundred vertices and a few queries, for tests, in seconds.
     Tiny,
-    /// All sizes, few queries: under three minutes on two cores for everything.
+    /// All sizes and few queries: under three minutes on two cores for everything.
     Quick,
-    /// All sizes, eight pairs of bodies of each, many queries: under half an hour.
+    /// All sizes, eight pairs of bodies of each, and many queries: under half an hour.
     Full,
 }
 
 impl Scale {
-    /// Its name on the command line and in reports.
+    /// Returns the name on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tiny => "tiny",
@@ -24,21 +24,23 @@ impl Scale {
     }
 }
 
-/// What an experiment is given.
+/// Parameters of the experiments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Plan {
-    /// How much.
+    /// Scale of the measurements.
     pub scale: Scale,
-    /// Everything random is drawn from it; the same seed draws the same bodies and settings.
+    /// Seed of all random numbers; the same seed yields the same bodies and settings.
     pub seed: u64,
-    /// Passes over every experiment, each with another pair of bodies of each size, if not what the scale has.
+    /// Number of passes over every experiment, each with another pair of bodies of each size; `None` for that
+    /// of the scale.
     pub passes: Option<u32>,
-    /// A folder of mesh files, real parts to be measured as well.
+    /// A folder of mesh files of real parts to measure too.
     pub parts: Option<PathBuf>,
 }
 
-/// Told how far an experiment is.
+/// Receiver of progress reports.
 pub trait Progress {
-    /// `done` of `all` parts (shares of the expected time, not counts), and what is going on.
+    /// Reports that `done` of `all` parts are finished (shares of the expected time, not counts), and the
+    /// current activity.
     fn at(&mut self, done: f64, all: f64, doing: &str);
 }

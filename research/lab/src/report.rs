@@ -1,5 +1,5 @@
-//! One page about a run: what was found, beside the claims it supports or refutes, and where the
-//! numbers come from. It needs nothing but itself: no script, no font, no picture from elsewhere.
+//! A page about a run: results next to the claims that they support or refute, and the origin of the numbers.
+//! The page is self-contained, without scripts, fonts or external pictures.
 
 use std::fmt::{self, Write};
 use std::time::Duration;
@@ -11,35 +11,35 @@ use crate::finding::{Figure, Finding, Table};
 use crate::plan::Plan;
 use colltrans_testkit::provenance::{Provenance, for_people};
 
-/// An experiment that was run.
+/// A finished experiment.
 #[derive(Debug, Clone)]
 pub struct Done {
-    /// Which.
+    /// The experiment.
     pub experiment: Experiment,
-    /// What it found.
+    /// Its result.
     pub finding: Finding,
-    /// Its figures, drawn, in their order.
+    /// Pictures of its figures, in the same order.
     pub pictures: Vec<Picture>,
-    /// How long it took.
+    /// Its duration.
     pub wall: Duration,
 }
 
-/// What the page is about.
+/// Content of the page.
 #[derive(Debug)]
 pub struct Report<'r> {
-    /// Where the numbers come from.
+    /// Origin of the numbers.
     pub provenance: &'r Provenance,
-    /// How much was measured.
+    /// Parameters of the run.
     pub plan: &'r Plan,
-    /// What is finished.
+    /// Finished experiments.
     pub done: &'r [Done],
-    /// How many experiments there are to be.
+    /// Number of experiments of the run.
     pub all: usize,
-    /// The time since the start.
+    /// Time since the start.
     pub wall: Duration,
 }
 
-/// The page.
+/// Returns the page.
 pub fn html(report: &Report) -> String {
     let mut page = String::new();
     // Writing to a string cannot fail.
@@ -47,15 +47,15 @@ pub fn html(report: &Report) -> String {
     page
 }
 
-/// What is to be said of such a build.
+/// Warning for unoptimised builds.
 pub(crate) const UNOPTIMISED: &str = "This is an unoptimised build: its times mean nothing.";
 
 /// All verdicts, the worst first.
 const VERDICTS: [Verdict; 4] =
     [Verdict::Fails, Verdict::Undecided, Verdict::Holds, Verdict::Better];
 
-/// How many of the claims hold, in words.
-pub(crate) fn count(done: &[Done]) -> String {
+/// Returns the number of claims with each verdict, as text.
+pub(crate) fn verdict_counts(done: &[Done]) -> String {
     let claims = || done.iter().flat_map(|done| &done.finding.claims);
     let with = |verdict: Verdict| claims().filter(|claim| claim.verdict == verdict).count();
     let all = claims().count();
@@ -70,6 +70,7 @@ pub(crate) fn count(done: &[Done]) -> String {
     )
 }
 
+/// Writes the whole page.
 fn write_page(page: &mut String, report: &Report) -> fmt::Result {
     let style = include_str!("report.css");
     write!(
@@ -98,8 +99,9 @@ fn write_page(page: &mut String, report: &Report) -> fmt::Result {
     Ok(())
 }
 
+/// Writes the state of the run: verdicts, missing experiments, and a warning for unoptimised builds.
 fn write_state(page: &mut String, report: &Report) -> fmt::Result {
-    writeln!(page, "<p><strong>{}.</strong></p>", count(report.done))?;
+    writeln!(page, "<p><strong>{}.</strong></p>", verdict_counts(report.done))?;
     let (done, all) = (report.done.len(), report.all);
     if done < all {
         let state = format!("{done} of {all} experiments were finished when this was written.");
@@ -111,6 +113,7 @@ fn write_state(page: &mut String, report: &Report) -> fmt::Result {
     Ok(())
 }
 
+/// Writes the origin of the numbers.
 fn write_facts(page: &mut String, report: &Report) -> fmt::Result {
     let Provenance { processor, cores, system, versions, build, date, command, .. } =
         report.provenance;
@@ -135,7 +138,7 @@ fn write_facts(page: &mut String, report: &Report) -> fmt::Result {
     Ok(())
 }
 
-/// All claims, a line each, by verdict: the paper's number, and what was measured first.
+/// Writes all claims by verdict, one in each line, with the paper's number and the first measured one.
 fn write_overview(page: &mut String, done: &[Done]) -> fmt::Result {
     page.push_str("<div class=\"overview\">\n");
     for verdict in VERDICTS {
@@ -156,7 +159,7 @@ fn write_overview(page: &mut String, done: &[Done]) -> fmt::Result {
     Ok(())
 }
 
-/// Which reading of "thin" fits the paper's sentences: of each, the claims that hold with it. Nothing where none was
+/// Returns which reading of "thin" fits the paper: for each, the claims that hold with it; `None` if none was
 /// judged.
 pub(crate) fn readings(done: &[Done]) -> Option<String> {
     let claims = || done.iter().flat_map(|done| &done.finding.claims);
@@ -178,7 +181,7 @@ pub(crate) fn readings(done: &[Done]) -> Option<String> {
         .then(|| format!("Claims about thin faces that hold, by what \"thin\" is: {text}."))
 }
 
-/// The reasons for what does not hold or is undecided, by their first sentence.
+/// Writes the first sentence of the reason for each claim that fails or is undecided.
 fn write_reasons(page: &mut String, done: &[Done]) -> fmt::Result {
     page.push_str("<ul class=\"reasons\">\n");
     for verdict in [Verdict::Fails, Verdict::Undecided] {
@@ -193,7 +196,7 @@ fn write_reasons(page: &mut String, done: &[Done]) -> fmt::Result {
     Ok(())
 }
 
-/// The claims with a verdict, with the ids of their experiments.
+/// Iterates over the claims with a verdict, with the identifiers of their experiments.
 fn claims_of(done: &[Done], verdict: Verdict) -> impl Iterator<Item = (&'static str, &Claim)> {
     let claims = done
         .iter()
@@ -201,6 +204,7 @@ fn claims_of(done: &[Done], verdict: Verdict) -> impl Iterator<Item = (&'static 
     claims.filter(move |(_, claim)| claim.verdict == verdict)
 }
 
+/// Writes the section of an experiment.
 fn write_experiment(page: &mut String, done: &Done) -> fmt::Result {
     let (id, name) = (done.experiment.id, done.experiment.name());
     let title = Escaped(done.experiment.title);
@@ -224,6 +228,7 @@ fn write_experiment(page: &mut String, done: &Done) -> fmt::Result {
     Ok(())
 }
 
+/// Writes a figure with its notes.
 fn write_figure(page: &mut String, figure: &Figure, picture: &Picture) -> fmt::Result {
     writeln!(page, "<figure>\n{}\n<figcaption>", picture.svg.trim_end())?;
     for note in &picture.notes {
@@ -232,6 +237,7 @@ fn write_figure(page: &mut String, figure: &Figure, picture: &Picture) -> fmt::R
     writeln!(page, "Data: {}.csv</figcaption>\n</figure>", Escaped(&figure.id))
 }
 
+/// Writes a table.
 fn write_table(page: &mut String, table: &Table) -> fmt::Result {
     let title = Escaped(&table.title);
     write!(page, "<div class=\"wide\"><table>\n<caption>{title}</caption>\n<thead><tr>")?;
@@ -252,6 +258,7 @@ fn write_table(page: &mut String, table: &Table) -> fmt::Result {
     writeln!(page, "</tbody></table>\n<p class=\"faint\">Data: {id}.csv</p></div>")
 }
 
+/// Writes a claim with its measurements and reason.
 fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
     let PaperClaim { id, statement, paper, place, criteria } = claim.paper;
     write!(
@@ -279,6 +286,7 @@ fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
     Ok(())
 }
 
+/// Returns the CSS class of a verdict.
 fn class(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Holds => "holds",
@@ -288,7 +296,7 @@ fn class(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Text as HTML, in elements and in quoted attributes.
+/// A text escaped for HTML elements and quoted attributes.
 struct Escaped<'t>(&'t str);
 
 impl fmt::Display for Escaped<'_> {

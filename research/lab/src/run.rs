@@ -1,9 +1,9 @@
-//! Runs experiments and leaves what they find in a folder.
+//! Runs experiments and writes their results to a folder.
 //!
-//! The folder gets, for each figure, `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, the
-//! claims with their verdicts in `claims.json`, and one `report.html`. Everything is written as soon
-//! as it is known: a long run that is interrupted leaves a report about what was finished, and a
-//! folder that cannot be written to is found out before anything is measured.
+//! For each figure the folder contains `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, the claims
+//! with verdicts in `claims.json`, and `report.html`. Files are written as soon as their content is known.
+//! Therefore an interrupted run leaves a report about the finished experiments, and a folder that is not
+//! writable is detected before anything is measured.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -18,27 +18,27 @@ use crate::report::{self, Done, Report};
 use crate::{Experiment, claims_json, csv, shapes};
 use colltrans_testkit::provenance::{Provenance, for_people};
 
-/// What a run found, in short: its [`Display`](fmt::Display) is for people.
+/// Results of a run; the [`Display`](fmt::Display) form is a text for people.
 #[derive(Debug, Clone)]
 pub struct Summary {
-    /// The experiments, in the order in which they were run.
+    /// Experiments in the order of execution.
     pub done: Vec<Done>,
-    /// Where the numbers come from.
+    /// Origin of the numbers.
     pub provenance: Provenance,
-    /// The report.
+    /// Path of the report.
     pub report: PathBuf,
-    /// How long everything took.
+    /// Total duration.
     pub wall: Duration,
 }
 
-/// Runs the experiments, one after the other, and writes what they find to `directory`, which is
-/// made if it does not exist. Files of the same names are replaced, others left alone.
+/// Runs the experiments one after the other, and writes their results to `directory`, which is created if
+/// necessary. Files of the same names are replaced.
 ///
-/// `progress` is told about the whole run, each experiment counting as the seconds that it is expected to take.
+/// `progress` receives reports about the whole run, in which each experiment counts with its expected
+/// duration.
 ///
 /// # Errors
-///
-/// The first file that cannot be written ends the run.
+/// [`LabError`] for the first file that cannot be written, which ends the run.
 pub fn run(
     experiments: &[Experiment],
     plan: &Plan,
@@ -52,8 +52,8 @@ pub fn run(
         let (all, wall) = (experiments.len(), start.elapsed());
         let report = Report { provenance: &provenance, plan, done, all, wall };
         let claims = format!("{:#}\n", claims_json::claims(&report));
-        write(&directory.join("claims.json"), claims.as_bytes())?;
-        write(&path, report::html(&report).as_bytes())
+        write_file(&directory.join("claims.json"), claims.as_bytes())?;
+        write_file(&path, report::html(&report).as_bytes())
     };
     std::fs::create_dir_all(directory)
         .map_err(|source| LabError::Folder { path: directory.into(), source })?;
@@ -78,31 +78,33 @@ pub fn run(
     Ok(Summary { done, wall: start.elapsed(), report: path, provenance })
 }
 
+/// Writes the tables and figures of an experiment, and returns the pictures.
 fn write_finding(finding: &Finding, directory: &Path) -> Result<Vec<Picture>, LabError> {
     for table in &finding.tables {
-        write(&directory.join(format!("{}.csv", table.id)), csv::table(table).as_bytes())?;
+        write_file(&directory.join(format!("{}.csv", table.id)), csv::table(table).as_bytes())?;
     }
     let mut pictures = Vec::new();
     for figure in &finding.figures {
         let file = |ending: &str| directory.join(format!("{}.{ending}", figure.id));
-        write(&file("csv"), csv::figure(figure).as_bytes())?;
+        write_file(&file("csv"), csv::figure(figure).as_bytes())?;
         let picture = draw(figure)
             .map_err(|reason| LabError::Picture { figure: figure.id.clone(), reason })?;
-        write(&file("svg"), picture.svg.as_bytes())?;
-        write(&file("png"), &picture.png)?;
+        write_file(&file("svg"), picture.svg.as_bytes())?;
+        write_file(&file("png"), &picture.png)?;
         pictures.push(picture);
     }
     Ok(pictures)
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
+/// Writes a file.
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
     std::fs::write(path, bytes).map_err(|source| LabError::Write { path: path.into(), source })
 }
 
 /// The progress of one experiment as a part of the whole run.
 struct Part<'p> {
     name: String,
-    /// Expected seconds: of those before, of this one, and of all.
+    /// Expected durations in seconds of the earlier experiments, of this one, and of all.
     before: f64,
     own: f64,
     all: f64,
@@ -136,7 +138,7 @@ impl fmt::Display for Summary {
         if !self.provenance.is_optimised {
             writeln!(f, "{}", report::UNOPTIMISED)?;
         }
-        let verdicts = report::count(&self.done);
+        let verdicts = report::verdict_counts(&self.done);
         writeln!(f, "{verdicts}, {}. Report: {}", for_people(self.wall), self.report.display())
     }
 }

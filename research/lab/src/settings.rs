@@ -1,11 +1,12 @@
-//! Settings: two poses and a direction, for bodies that meet, or pass each other at a known
-//! distance, by construction.
+//! Settings: two poses and a direction for bodies that meet, or that pass each other at a known distance, by
+//! construction.
 //!
-//! Notation. `D` is the bodies' diameter. The *least distance* is that of the bodies while the moving
-//! one goes along the direction, which is the distance of their shadows (`shadow`): it is the asked
-//! one to rounding. The *gap ahead* is by how much a plane across the direction keeps the bodies
-//! apart at the start; the paper does not say how far apart its bodies start, here it is uniform in
-//! 0.05 to 1 `D`, and for sequences in 0.75 to 1.25 `D`, so that the motion leads into no overlap.
+//! - `D` is the diameter of the bodies.
+//! - The *least distance* is that of the bodies during the motion along the direction. It equals the distance
+//!   of their shadows (`shadow`) and has the requested value up to rounding.
+//! - The *gap ahead* is the distance by which a plane perpendicular to the direction separates the bodies at
+//!   the start. The paper does not state it. Here it is uniform between 0.05 and 1 `D`, for sequences between
+//!   0.75 and 1.25 `D`, so that the motion causes no overlap.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -16,34 +17,34 @@ use crate::shadow::Shadow;
 use crate::shapes::Bodies;
 use colltrans_testkit::random::Random;
 
-/// Where the bodies are and where the moving one goes.
+/// Poses of the bodies, and the direction of motion.
 #[derive(Debug, Clone, Copy)]
 pub struct Setting {
     /// The moving body's pose at the start.
     pub moving: Pose,
     /// The fixed body's pose.
     pub fixed: Pose,
-    /// Of unit length.
+    /// Direction of length 1.
     pub direction: DVec3,
 }
 
 /// Whether the bodies meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Meeting {
-    /// They do.
+    /// The bodies meet.
     Colliding,
-    /// They pass with this least distance, in `D`.
+    /// The bodies pass with this least distance, in `D`.
     Passing(f64),
-    /// They pass with a least distance up to this many `D`, uniform.
+    /// The bodies pass with a uniformly distributed least distance up to this one, in `D`.
     PassingWithin(f64),
 }
 
-/// How a body moves from setting to setting.
+/// Motion of a body from setting to setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
-    /// It is displaced.
+    /// Displacement.
     Translation,
-    /// It turns about its centre.
+    /// Rotation about the centre.
     Rotation,
     /// Both, along and about one axis.
     Screw,
@@ -52,15 +53,16 @@ pub enum Motion {
 /// All motions.
 pub const MOTIONS: [Motion; 3] = [Motion::Translation, Motion::Rotation, Motion::Screw];
 
-/// Bounds of the gap ahead, in `D`.
+/// Minimum and maximum of the gap ahead, in `D`.
 const AHEAD: [f64; 2] = [0.05, 1.0];
+/// Minimum and maximum of the gap ahead of sequences, in `D`.
 const AHEAD_OF_SEQUENCES: [f64; 2] = [0.75, 1.25];
 
 impl Setting {
-    /// The query about two bodies.
+    /// Returns the query about two bodies.
     ///
     /// # Errors
-    /// As [`Cast::new`] and [`Cast::with_options`].
+    /// Those of [`Cast::new`] and [`Cast::with_options`].
     #[inline]
     pub fn cast<'a>(&self, bodies: &'a Bodies, options: &Options) -> Result<Cast<'a>, QueryError> {
         let [moving, fixed] = &bodies.pair;
@@ -68,7 +70,7 @@ impl Setting {
             .with_options(*options)
     }
 
-    /// A random setting of bodies that are apart at the start, in random orientations.
+    /// Draws a random setting of bodies that are apart at the start, in random orientations.
     ///
     /// # Panics
     /// If the bodies are out of the range of poses.
@@ -76,13 +78,14 @@ impl Setting {
         Self::draw_ahead(bodies, meeting, AHEAD, random)
     }
 
+    /// Draws a random setting with a range of the gap ahead.
     fn draw_ahead(bodies: &Bodies, meeting: Meeting, ahead: [f64; 2], random: &mut Random) -> Self {
         let [p, q] = &bodies.pair;
         let (turn_p, turn_q) = (random.rotation(), random.rotation());
         let direction = random.direction();
         let lateral = direction.cross(random.direction()).normalize();
-        // First so that a point inside P is opposite to one inside Q.
-        let [inside_p, inside_q] = [0, 1].map(|k| inside(bodies, k, random));
+        // Places the bodies such that a point inside P is opposite to one inside Q.
+        let [inside_p, inside_q] = [0, 1].map(|k| random_interior_point(bodies, k, random));
         let mut offset = turn_p * inside_p - turn_q * inside_q;
         let least_distance = match meeting {
             Meeting::Colliding => None,
@@ -102,8 +105,8 @@ impl Setting {
         Self { moving: pose(turn_p, DVec3::ZERO), fixed: pose(turn_q, offset), direction }
     }
 
-    /// `count` settings about a random one, each `delta` diameters from the next: the moving body
-    /// is displaced, or turns about its centre, or half of either as a screw does.
+    /// Draws `count` settings about a random one, each `delta` diameters from the next: the moving body is
+    /// displaced, rotated about its centre, or moved along a screw.
     ///
     /// # Panics
     /// If the bodies are out of the range of poses.
@@ -116,7 +119,7 @@ impl Setting {
     ) -> Vec<Self> {
         let middle = Self::draw_ahead(bodies, meeting, AHEAD_OF_SEQUENCES, random);
         let motion = MOTIONS[random.index(3)];
-        middle.moved(bodies, motion, delta, count, random)
+        middle.along_motion(bodies, motion, delta, count, random)
     }
 
     /// As [`sequence`](Self::sequence), with this kind of motion.
@@ -131,10 +134,11 @@ impl Setting {
         random: &mut Random,
     ) -> Vec<Self> {
         let middle = Self::draw_ahead(bodies, Meeting::Colliding, AHEAD_OF_SEQUENCES, random);
-        middle.moved(bodies, motion, delta, count, random)
+        middle.along_motion(bodies, motion, delta, count, random)
     }
 
-    fn moved(
+    /// Returns settings along a motion, with this setting in the middle.
+    fn along_motion(
         &self,
         bodies: &Bodies,
         motion: Motion,
@@ -151,7 +155,7 @@ impl Setting {
         (0..count)
             .map(|k| {
                 let by = delta * (k as f64 - 0.5 * (count - 1) as f64);
-                // A point half a diameter from the axis moves by `delta` diameters.
+                // A point at half a diameter from the axis moves by `delta` diameters.
                 let turn = DQuat::from_axis_angle(axis, 2.0 * by * turned);
                 let rotation = (turn * self.moving.rotation()).normalize();
                 Self { moving: pose(rotation, axis * (by * displaced * bodies.diameter)), ..*self }
@@ -159,17 +163,18 @@ impl Setting {
             .collect()
     }
 
-    /// The paper's motion of variable coherence (section V-E), for spheres: the moving one goes
-    /// round the fixed one, aiming at a point in its neighbourhood, and turns about an axis of its
-    /// own by as much, `alpha_deg` a step. The spheres always meet: no line of motion passes the fixed
-    /// one's centre at more than three quarters of both radii together.
+    /// Draws the paper's motion of variable coherence (section V-E) for spheres. The moving sphere orbits the
+    /// fixed one, directed at a point near it, and rotates about an axis of its own by the same `alpha_deg`
+    /// in each step. The spheres always meet, because lines of motion pass the fixed centre at no more than
+    /// three quarters of the sum of both radii.
     ///
-    /// All is told in a frame that goes round as well, so that every direction looks the same way: a
-    /// [`Tracker`](colltrans::Tracker) keeps the solutions of opposite directions apart, and would
-    /// begin from the last but one, at 180 degrees that of the same configuration.
+    /// The settings are given in a frame that rotates along, so that all directions are similar. A
+    /// [`Tracker`](colltrans::Tracker) stores the solutions of opposite directions separately. Otherwise it
+    /// would start with the solution before the last one, which at 180 degrees is that of the same
+    /// configuration.
     ///
     /// # Panics
-    /// Never: the poses are in range.
+    /// Never, because the poses are in range.
     pub fn orbit(bodies: &Bodies, alpha_deg: f64, count: usize, random: &mut Random) -> Vec<Self> {
         let (axis, spin_axis) = (random.direction(), random.direction());
         let start = axis.any_orthonormal_vector() * (2.0 * bodies.diameter);
@@ -190,18 +195,19 @@ impl Setting {
     }
 }
 
+/// Creates a pose.
 fn pose(rotation: DQuat, translation: DVec3) -> Pose {
     Pose::new(rotation, translation).expect("a rotation, and a translation of a few diameters")
 }
 
-/// A point inside a body: between its middle and a vertex.
-fn inside(bodies: &Bodies, which: usize, random: &mut Random) -> DVec3 {
+/// Returns a random point inside a body, between its centre and a vertex.
+fn random_interior_point(bodies: &Bodies, which: usize, random: &mut Random) -> DVec3 {
     let vertices = bodies.pair[which].vertices();
     let middle = bodies.middles[which];
     middle.lerp(vertices[random.index(vertices.len())], 0.95 * random.unit().sqrt())
 }
 
-/// `min_Q n.q - max_P n.p` for bodies turned about the origin.
+/// Returns `min_Q n.q - max_P n.p` for bodies rotated about the origin.
 fn gap_along(
     normal: DVec3,
     (p, turn_p): (&ConvexPolyhedron, DQuat),
@@ -221,7 +227,7 @@ mod tests {
     use crate::shapes::{Kind, bodies};
 
     #[test]
-    fn bodies_meet_or_pass_as_asked() {
+    fn bodies_meet_or_pass_as_requested() {
         for kind in [Kind::Balanced, Kind::Thin] {
             let bodies = bodies(5, kind, 200, 0);
             let mut random = Random::new(5);
@@ -243,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn orbits_collide() {
+    fn settings_of_orbits_collide() {
         let bodies = bodies(5, Kind::Spheres, 200, 0);
         let mut random = Random::new(7);
         for alpha_deg in [0.1, 30.0, 180.0] {
@@ -260,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_of_sequences_move_points_by_delta() {
+    fn sequence_steps_move_points_by_delta() {
         let bodies = bodies(5, Kind::Spheres, 200, 0);
         let mut random = Random::new(6);
         for _ in 0..30 {

@@ -1,13 +1,14 @@
-//! Shadows: the bodies' projections along a direction, and their true distance in the plane.
+//! Shadows: projections of bodies along a direction, and their distance in the plane.
 //!
-//! Notation. The plane across the direction has coordinates along two unit vectors. `C = {b - a}` is
-//! the Minkowski difference of the shadow of the fixed and of the moving body: a convex polygon. When
-//! the fixed body is displaced by `s u`, the shadows are as far apart as the point `-s u` is from
-//! `C`; that distance is the least one between the bodies while the moving one goes all the way.
+//! - The plane perpendicular to the direction has coordinates along two unit vectors.
+//! - `C = {b - a}` is the Minkowski difference of the shadows of the fixed and the moving body: a convex
+//!   polygon.
+//! - If the fixed body is displaced by `s u`, the distance of the shadows is that of the point `-s u` from
+//!   `C`. It is the least distance of the bodies during the whole motion.
 //!
-//! Invariant. Polygons are counter-clockwise, without repeated corners. The points at a distance
-//! `gap > 0` from `C` are edges of `C` displaced outwards and arcs about its corners; a ray from
-//! inside `C` leaves through exactly one of them.
+//! Invariant: polygons are counter-clockwise, without repeated corners. The points at a distance `gap > 0`
+//! from `C` form edges of `C` displaced outwards and arcs about its corners. A ray from inside `C` crosses
+//! exactly one of them.
 
 use colltrans::ConvexPolyhedron;
 use glam::{DQuat, DVec2, DVec3};
@@ -17,7 +18,7 @@ use glam::{DQuat, DVec2, DVec3};
 pub(crate) struct Shadow(Vec<DVec2>);
 
 impl Shadow {
-    /// Of a body turned about the origin, in the plane of two orthogonal unit vectors.
+    /// Computes the shadow of a body rotated about the origin, in the plane of two orthogonal unit vectors.
     pub(crate) fn of(body: &ConvexPolyhedron, turn: DQuat, plane: [DVec3; 2]) -> Self {
         let [e, f] = plane.map(|axis| turn.inverse() * axis);
         let at = |vertex: u32| {
@@ -31,7 +32,7 @@ impl Shadow {
         for _ in body.vertices() {
             let here = at(vertex);
             rim.push(here);
-            // Edges of the rim are edges of the body: the next one has all neighbours on its left.
+            // Edges of the silhouette are edges of the body. The next one has all neighbours on its left.
             let mut next = (vertex, DVec2::ZERO);
             for &neighbour in body.neighbours(vertex) {
                 let way = at(neighbour) - here;
@@ -48,6 +49,7 @@ impl Shadow {
         Self::hull(rim)
     }
 
+    /// Returns the shadow displaced by a vector.
     pub(crate) fn displaced(mut self, by: DVec2) -> Self {
         for corner in &mut self.0 {
             *corner += by;
@@ -55,7 +57,7 @@ impl Shadow {
         self
     }
 
-    /// The hull of points (Andrew's monotone chain).
+    /// Computes the hull of points (Andrew's monotone chain).
     fn hull(mut points: Vec<DVec2>) -> Self {
         points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         points.dedup();
@@ -66,8 +68,8 @@ impl Shadow {
         Self(corners)
     }
 
-    /// `{b - a}` for points `a` of this polygon and `b` of the other: the edges of both in the order
-    /// of their directions.
+    /// Returns `{b - a}` for points `a` of this polygon and `b` of the other, by merging the edges of both in
+    /// the order of their directions.
     pub(crate) fn differences(&self, other: &Self) -> Self {
         let negated: Vec<DVec2> = self.0.iter().map(|corner| -*corner).collect();
         let [a, b] = [lowest_first(&negated), lowest_first(&other.0)];
@@ -85,13 +87,13 @@ impl Shadow {
         Self(corners)
     }
 
-    /// How far from the origin, which is inside this polygon, a ray along the unit vector is when its
-    /// distance from the polygon is `gap`.
+    /// Returns the distance from the origin, which is inside this polygon, at which a ray along the unit
+    /// vector `way` is at distance `gap` from the polygon.
     pub(crate) fn ray_to_distance(&self, way: DVec2, gap: f64) -> f64 {
         let next = self.0.iter().cycle().skip(1);
         let mut farthest: f64 = 0.0;
         for (&from, &to) in self.0.iter().zip(next) {
-            // About the corner: |s way - from| = gap.
+            // On the arc about the corner, `|s way - from| = gap`.
             let along = way.dot(from);
             let root = along * along - from.length_squared() + gap * gap;
             if root >= 0.0 {
@@ -110,7 +112,7 @@ impl Shadow {
     }
 }
 
-/// From the first to the last of points in the order of a coordinate, always turning left.
+/// Returns the chain from the first to the last of sorted points that only turns left.
 fn half_hull<'p>(points: impl Iterator<Item = &'p DVec2>) -> Vec<DVec2> {
     let mut corners: Vec<DVec2> = Vec::new();
     for &point in points {
@@ -124,7 +126,7 @@ fn half_hull<'p>(points: impl Iterator<Item = &'p DVec2>) -> Vec<DVec2> {
     corners
 }
 
-/// The same polygon from its lowest corner on (of several the leftmost).
+/// Returns the polygon rotated to start at its lowest corner, the leftmost one of several.
 fn lowest_first(polygon: &[DVec2]) -> Vec<DVec2> {
     let lowest = (0..polygon.len()).min_by(|&i, &j| {
         let (a, b) = (polygon[i], polygon[j]);
@@ -147,7 +149,7 @@ mod tests {
         point.distance(from + edge * share)
     }
 
-    /// By all pairs of corners and edges; of polygons that do not meet.
+    /// Computes the distance of disjoint polygons from all pairs of corners and edges.
     fn distance(a: &[DVec2], b: &[DVec2]) -> f64 {
         let one_way = |points: &[DVec2], edges: &[DVec2]| {
             let mut least = f64::INFINITY;
@@ -162,9 +164,9 @@ mod tests {
         one_way(a, b).min(one_way(b, a))
     }
 
-    /// The rim is the hull of all projected vertices: nothing sticks out, and it is convex.
+    /// The silhouette is the hull of all projected vertices: it is convex and contains them.
     #[test]
-    fn shadows_are_hulls_of_all_vertices() {
+    fn shadow_is_hull_of_projected_vertices() {
         let mut random = Random::new(3);
         for kind in [Kind::Balanced, Kind::Thin, Kind::Prism, Kind::HalfEllipsoid, Kind::RandomHull]
         {
@@ -186,9 +188,9 @@ mod tests {
         }
     }
 
-    /// Displaced as it says, the shadows are as far apart as asked, by brute force.
+    /// The distance of the displaced shadows is the requested one, by brute force.
     #[test]
-    fn displaced_shadows_are_that_far_apart() {
+    fn displaced_shadows_have_requested_distance() {
         let mut random = Random::new(4);
         for kind in [Kind::Balanced, Kind::Thin, Kind::Prism, Kind::RandomHull] {
             let bodies = bodies(4, kind, 200, 0);
@@ -207,9 +209,9 @@ mod tests {
         }
     }
 
-    /// Edges that are parallel, as those of boxes are.
+    /// Parallel edges, as of boxes.
     #[test]
-    fn differences_of_squares() {
+    fn difference_of_squares_merges_parallel_edges() {
         let square = |side: f64| {
             let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0]];
             Shadow::hull(corners.map(|c| (DVec2::from(c) - 0.5) * side).to_vec())

@@ -1,9 +1,9 @@
-//! The paper's bodies, vertices on ellipsoids in a regular arrangement (section V), and others; built
-//! once per run.
+//! The bodies of the paper, with vertices on ellipsoids in a regular arrangement (section V), and others.
+//! Each is built once in a run.
 //!
-//! Notation. A body has `rings` parallels with `around` vertices each, between two poles. On a unit
-//! sphere a meridian's edges have the length `pi / rings`, and those of the parallels, on average
-//! over all rings, `4 / around`; the *stretch* of the faces is the second over the first.
+//! A body has `rings` parallels with `around` vertices each, between two poles. On a unit sphere, edges of
+//! meridians have the length `pi / rings`, and edges of parallels `4 / around` on average over all rings. The
+//! *stretch* of the faces is the second length over the first.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -23,40 +23,40 @@ use colltrans_testkit::shapes::{
 /// A kind of body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
-    /// Ellipsoids with nearly all faces trapezoids, as long as wide on average.
+    /// Ellipsoids whose faces are nearly all trapezoids, as long as wide on average.
     Balanced,
-    /// Ellipsoids with nearly all faces trapezoids, [`THIN`] times as long as wide (less below a
-    /// thousand or so vertices: no fewer than [`FEWEST_AROUND`] meridians). The paper says "very thin
-    /// and stretched out" and not how thin: this is one reading.
+    /// Ellipsoids whose faces are nearly all trapezoids, [`THIN`] times as long as wide. Below about a
+    /// thousand vertices they are less thin, because there are at least [`FEWEST_AROUND`] meridians. This is
+    /// one reading of the paper's "very thin and stretched out".
     Thin,
-    /// The other reading: [`MERIDIANS`] meridians however many vertices, so that faces become ever
-    /// thinner.
+    /// The other reading: [`MERIDIANS`] meridians for any number of vertices, so that larger bodies have
+    /// thinner faces.
     ThinMeridians,
-    /// As `Balanced`, but every other ring turned by half a step: all faces are triangles.
+    /// As `Balanced`, with every other ring rotated by half a step: all faces are triangles.
     Triangles,
     /// Two equal unit spheres with balanced faces.
     Spheres,
-    /// `|x|^4 + |y|^4 + |z|^4 = 1`, stretched: box-like, with triangles.
+    /// `|x|^4 + |y|^4 + |z|^4 = 1`, scaled: box-like, with triangles.
     Superellipsoid,
-    /// Half ellipsoids: a flat base, a round top.
+    /// Half ellipsoids with a flat base.
     HalfEllipsoid,
-    /// Hulls of random points on ellipsoids: triangles in no arrangement.
+    /// Hulls of random points on ellipsoids: irregular triangles.
     RandomHull,
-    /// Prisms over regular polygons: two faces of very many corners.
+    /// Prisms over regular polygons: two faces with very many corners.
     Prism,
 }
 
-/// The stretch of thin faces.
+/// Stretch of thin faces.
 const THIN: f64 = 100.0;
 
-/// The meridians of bodies whose faces become ever thinner.
+/// Number of meridians of [`Kind::ThinMeridians`].
 const MERIDIANS: f64 = 16.0;
 
-/// With fewer meridians a body is a prism more than an ellipsoid.
+/// Minimum number of meridians; with fewer, a body resembles a prism.
 const FEWEST_AROUND: f64 = 8.0;
 
 impl Kind {
-    /// Its name in legends.
+    /// Returns the name in legends.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Balanced => "balanced",
@@ -71,7 +71,7 @@ impl Kind {
         }
     }
 
-    /// Vertices around and rings of a body with about `n` vertices.
+    /// Returns the number of vertices around and the number of rings of a body with about `n` vertices.
     fn arrangement(self, n: usize) -> [u32; 2] {
         let inner = n.saturating_sub(2) as f64;
         let even = |stretch: f64| (inner * 4.0 / (PI * stretch)).sqrt().round();
@@ -83,6 +83,7 @@ impl Kind {
         [around as u32, (inner / around).round().max(1.0) as u32]
     }
 
+    /// Builds a body with about `n` vertices and random semi-axes.
     fn build(self, n: usize, random: &mut Random) -> ConvexPolyhedron {
         let semi_axes = match self {
             Self::Spheres => DVec3::ONE,
@@ -103,30 +104,29 @@ impl Kind {
         let built = if faces.is_empty() {
             ConvexPolyhedron::from_points(&vertices)
         } else {
-            // The corners of a face are rounded: it is flat to a few units in the last place.
+            // The corners of a face are rounded, so that the face is flat to a few units in the last place.
             ConvexPolyhedron::from_mesh(&vertices, &faces, 64.0 * f64::EPSILON)
         };
         built.expect("points of an ellipsoid, and its faces, make a convex body")
     }
 }
 
-/// A moving and a fixed body, with what the solvers make of them before any query.
+/// A moving and a fixed body, with the data that solvers compute before any query.
 #[derive(Debug)]
 pub struct Bodies {
-    /// The moving and the fixed one.
+    /// The moving and the fixed body.
     pub pair: [ConvexPolyhedron; 2],
-    /// `D`: the mean of both diameters, a diameter being twice the largest distance of a vertex
-    /// from the centre.
+    /// `D`: the mean of both diameters. A diameter is twice the largest distance of a vertex from the centre.
     pub diameter: f64,
-    /// The means of the vertices.
+    /// Means of the vertices.
     pub(crate) middles: [DVec3; 2],
     soups: OnceLock<[Soup; 2]>,
     hierarchies: OnceLock<[Hierarchy; 2]>,
 }
 
 impl Bodies {
-    /// With their diameter, and the sections that the paper's algorithm needs: queries are timed, and
-    /// none is to pay for what is made of a body once.
+    /// Computes the diameter, and the sections that the paper's algorithm needs, so that timed queries do not
+    /// include this work.
     pub fn new(pair: [ConvexPolyhedron; 2]) -> Self {
         pair.iter().for_each(ConvexPolyhedron::prepare_sections);
         let mean = |body: &ConvexPolyhedron| {
@@ -138,44 +138,45 @@ impl Bodies {
         Self { pair, diameter, middles, soups, hierarchies }
     }
 
-    /// The bodies triangulated, with bounding volumes.
+    /// Returns the triangulated bodies with bounding volumes.
     pub(crate) fn soups(&self) -> &[Soup; 2] {
-        self.soups.get_or_init(|| both(|i| Soup::of_polyhedron(&self.pair[i])))
+        self.soups.get_or_init(|| compute_both(|i| Soup::of_polyhedron(&self.pair[i])))
     }
 
-    /// The bodies in layers.
+    /// Returns the layers of the bodies.
     pub(crate) fn hierarchies(&self) -> &[Hierarchy; 2] {
-        self.hierarchies
-            .get_or_init(|| both(|i| Hierarchy::new(&self.pair[i]).expect("an ellipsoid is solid")))
+        self.hierarchies.get_or_init(|| {
+            compute_both(|i| Hierarchy::new(&self.pair[i]).expect("an ellipsoid is solid"))
+        })
     }
 
-    /// Vertices of a body, on average.
+    /// Returns the mean number of vertices.
     pub fn vertices(&self) -> f64 {
         self.pair.iter().map(|body| body.vertices().len() as f64).sum::<f64>() / 2.0
     }
 }
 
-/// Two things of the same kind, made at the same time.
-fn both<T: Send>(make: impl Fn(usize) -> T + Sync) -> [T; 2] {
+/// Computes two values in parallel.
+fn compute_both<T: Send>(make: impl Fn(usize) -> T + Sync) -> [T; 2] {
     thread::scope(|scope| {
         let other = scope.spawn(|| make(1));
         let first = make(0);
-        // A panic of `make` goes on here.
+        // A panic of `make` continues here.
         [first, other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))]
     })
 }
 
-/// What tells the bodies of a run from each other: seed, kind, size, and which pair.
+/// Key of bodies in a run: seed, kind, size, and number of the pair.
 type Key = (u64, Kind, usize, u64);
 
-/// All bodies of an experiment, and smaller ones of the run: figures share them.
+/// The bodies of an experiment, and smaller ones of the run, which figures share.
 static BUILT: Mutex<BTreeMap<Key, Arc<Bodies>>> = Mutex::new(BTreeMap::new());
 
-/// The `which`-th pair of bodies of a kind with about `n` vertices.
+/// Returns the `which`-th pair of bodies of a kind with about `n` vertices.
 pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies> {
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let build = || {
-        let pair = both(|i| {
+        let pair = compute_both(|i| {
             let mut random = Random::stream(seed, &[kind as u64, n as u64, which, i as u64]);
             kind.build(n, &mut random)
         });
@@ -184,17 +185,17 @@ pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies>
     Arc::clone(built.entry((seed, kind, n, which)).or_insert_with(build))
 }
 
-/// Bodies beyond this size are built anew for each experiment and pass: with trees and layers all those of a
-/// run would take several gigabytes.
+/// Maximum number of vertices of bodies that are kept between passes. With trees and layers, all bodies of a
+/// run would need several gigabytes.
 const MOST_KEPT: usize = 5_000;
 
-/// A pass of an experiment is over: its large bodies go.
+/// Discards large bodies at the end of a pass.
 pub(crate) fn forget_large() {
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     built.retain(|(_, _, n, _), _| *n <= MOST_KEPT);
 }
 
-/// The largest distance of a vertex from the mean of all.
+/// Returns the largest distance of a vertex from the mean of all.
 fn radius(body: &ConvexPolyhedron, middle: DVec3) -> f64 {
     body.vertices().iter().map(|v| v.distance(middle)).fold(0.0, f64::max)
 }
@@ -204,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bodies_have_the_vertices_and_faces_asked_for() {
+    fn bodies_have_requested_vertices_and_faces() {
         for kind in
             [Kind::Balanced, Kind::Thin, Kind::ThinMeridians, Kind::Triangles, Kind::Spheres]
         {
@@ -229,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn thin_faces_are_thin_and_balanced_ones_are_not() {
+    fn faces_have_requested_stretch() {
         for (kind, n, expected) in [(Kind::Balanced, 12_800, 1.0), (Kind::Thin, 12_800, 100.0)] {
             let [around, rings] = kind.arrangement(n).map(f64::from);
             let stretch = (4.0 / around) / (PI / rings);

@@ -1,4 +1,4 @@
-//! The solvers compared: every algorithm behind one trait.
+//! The compared solvers: every algorithm behind one trait.
 
 use colltrans::observe::Observer;
 use colltrans::{Focus, Options, Outcome, QueryError, Solver, Steps, Tracker, cta};
@@ -10,106 +10,107 @@ use colltrans_baselines::raycast::{RayCast, RayCastAnswer};
 use crate::settings::Setting;
 use crate::shapes::Bodies;
 
-/// An algorithm and its choices.
+/// An algorithm with its options.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Who {
-    /// The paper's algorithm from scratch: from the centre of the levels.
+    /// The paper's algorithm without coherence, starting at the centre of the levels.
     Cta(Until),
-    /// The paper's incremental algorithm: from the region of the last solution, a fixed half-side
-    /// being in diameters.
+    /// The paper's incremental algorithm, starting in the region of the last solution. A fixed half side is
+    /// in diameters.
     CtaRegion(cta::Region, Until),
-    /// The same to the end, each planar problem from nothing: what its section V-F says of the paper's.
+    /// The paper's incremental algorithm with each planar problem solved from scratch, as its section V-F
+    /// describes.
     CtaCold(cta::Region),
-    /// What `colltrans` does by default from scratch: portal refinement.
+    /// The default of `colltrans` for single queries: portal refinement.
     Portal,
-    /// What `colltrans` does by default from query to query: feature focus.
+    /// The default of `colltrans` for sequences of queries: feature focus.
     Tracker,
     /// Distance by enhanced GJK.
     Egjk(SupportSearch),
     /// Distance by swept sphere trees over triangles.
     Pqp,
-    /// Distance by H-Walk, features being picked on this layer: the paper's `l`, as a share of the
-    /// way from the finest layer to the coarsest.
+    /// Distance by H-Walk with a start layer: the paper's `l`, as a share of the range from the finest to the
+    /// coarsest layer.
     HWalk(f64),
-    /// Collision translation by GJK ray cast, to `1e-6` of the size: not exact.
+    /// Collision translation by GJK ray cast, to `1e-6` of the size; not exact.
     RayCast,
 }
 
-/// How far the collision translation algorithm goes before portal refinement takes over.
+/// Stage at which portal refinement replaces the collision translation algorithm (CTA).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Until {
-    /// Most of the way: down to [`PAPER_GAP`]. Portal refinement finds the last feature. This *hybrid* is not
-    /// the paper's, and nothing is judged by it.
+    /// At a gap of [`PAPER_GAP`]. Portal refinement finds the last feature. This *hybrid* is not the paper's,
+    /// and no claim is judged by it.
     Near,
-    /// All the way, as published: to the exit test. Portal refinement has nothing left but to confirm.
+    /// At the exit test, as published. Portal refinement only confirms the result.
     End,
-    /// All the way, and not as published: where little is left of the region, the shift goes on from
-    /// cell to cell, which takes fewer planar problems.
+    /// At the exit test, with a modification: where little of the region remains, the shift continues from
+    /// cell to cell, which needs fewer planar problems.
     EndAcrossCells,
 }
 
-/// The gap between upper and lower bound at which the collision translation algorithm hands over,
-/// as a share of the bodies' extent along the direction.
+/// Gap between upper and lower bound at which the hybrid changes to portal refinement, as a share of the
+/// bodies' extent along the direction.
 pub(crate) const PAPER_GAP: f64 = 1e-2;
 
 impl Until {
-    /// The paper's minimisation, down to here.
+    /// Returns the options of the paper's minimisation down to this stage.
     pub(crate) fn options(self) -> Options {
         let until = match self {
             Self::Near => colltrans::cta::Until::Gap(PAPER_GAP),
             Self::End | Self::EndAcrossCells => colltrans::cta::Until::Exit,
         };
         let keeps_to_cell = self != Self::EndAcrossCells;
-        cta(cta::Options::new(cta::Start::Center, until).with_keeps_to_cell(keeps_to_cell))
+        cta_options(cta::Options::new(cta::Start::Center, until).with_keeps_to_cell(keeps_to_cell))
     }
 }
 
-/// The paper's minimisation with these choices.
-fn cta(narrowing: cta::Options) -> Options {
+/// Returns the options of the paper's minimisation.
+fn cta_options(narrowing: cta::Options) -> Options {
     Options::default().with_solver(Solver::Cta).with_narrowing(narrowing)
 }
 
-/// To the end with cuts through the centroid, which are not shifted.
+/// Returns options of the complete minimisation with unshifted cuts through the centroid.
 pub(crate) fn centroid_cuts() -> Options {
-    cta(cta::Options::default().with_cuts(cta::Cuts::Centroid))
+    cta_options(cta::Options::default().with_cuts(cta::Cuts::Centroid))
 }
 
-/// What a solver said.
+/// Answer of a solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
     /// The bodies meet after this translation.
     Meet(f64),
-    /// The bodies meet, and come within a tolerance of each other at a known translation.
+    /// The bodies come within a tolerance of each other.
     MeetNearly,
-    /// They do not meet.
+    /// The bodies do not meet.
     Pass,
-    /// How far they are apart.
+    /// Distance of the bodies.
     Distance(f64),
-    /// None.
+    /// The solver failed.
     Failed,
 }
 
-/// The answer to one query and the work it took.
+/// Answer to a query, and the work for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Work {
     pub(crate) answer: Answer,
-    /// The algorithm's own steps: planar problems of the collision translation algorithm, portals,
-    /// simplices, pairs of bounding volumes or features.
+    /// Steps of the algorithm: planar problems of CTA, portals, simplices, or pairs of bounding volumes or
+    /// features.
     pub(crate) steps: u32,
     /// Iterations of all loops, outer and inner, where they are counted (`docs/laboratory.md`).
     pub(crate) iterations: u32,
 }
 
-/// An algorithm at work on two bodies.
+/// An algorithm for queries on two bodies.
 pub(crate) trait Algorithm {
-    /// The next query starts from scratch.
+    /// Discards coherence: the next query starts from scratch.
     fn forget(&mut self);
-    /// A query; it may start from the one before.
+    /// Answers a query, possibly starting from the previous one.
     fn ask(&mut self, setting: &Setting) -> Work;
 }
 
 impl Who {
-    /// Its name in legends.
+    /// Returns the name in legends.
     pub(crate) fn name(self) -> String {
         match self {
             Self::Cta(Until::Near) => "hybrid".into(),
@@ -129,7 +130,7 @@ impl Who {
         }
     }
 
-    /// Ready to answer. What is made of the bodies beforehand is made here.
+    /// Prepares the algorithm for two bodies, including data structures that are computed once.
     pub(crate) fn enter(self, bodies: &Bodies) -> Box<dyn Algorithm + '_> {
         let [moving, fixed] = &bodies.pair;
         match self {
@@ -139,7 +140,7 @@ impl Who {
                 Box::new(Tracked::in_region(bodies, region, until.options()))
             }
             Self::CtaCold(region) => {
-                let cold = cta(cta::Options::default().with_starts_cold(true));
+                let cold = cta_options(cta::Options::default().with_starts_cold(true));
                 Box::new(Tracked::in_region(bodies, region, cold))
             }
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
@@ -159,7 +160,7 @@ impl Who {
     }
 }
 
-/// Casts that know nothing of each other.
+/// Casts without coherence.
 struct Scratch<'a> {
     bodies: &'a Bodies,
     options: Options,
@@ -169,11 +170,13 @@ impl Algorithm for Scratch<'_> {
     fn forget(&mut self) {}
 
     fn ask(&mut self, setting: &Setting) -> Work {
-        work(&setting.cast(self.bodies, &self.options).and_then(|cast| cast.first_contact()))
+        work_of_outcome(
+            &setting.cast(self.bodies, &self.options).and_then(|cast| cast.first_contact()),
+        )
     }
 }
 
-/// Casts that start from the one before.
+/// Casts with coherence.
 pub(crate) struct Tracked<'a> {
     bodies: &'a Bodies,
     tracker: Tracker<'a>,
@@ -181,7 +184,7 @@ pub(crate) struct Tracked<'a> {
 }
 
 impl<'a> Tracked<'a> {
-    /// The paper's incremental algorithm; a fixed half-side of the region is in diameters.
+    /// Creates the paper's incremental algorithm; a fixed half side of the region is in diameters.
     pub(crate) fn in_region(bodies: &'a Bodies, region: cta::Region, options: Options) -> Self {
         let region = match region {
             cta::Region::Fixed(delta) => cta::Region::Fixed(delta * bodies.diameter),
@@ -190,7 +193,7 @@ impl<'a> Tracked<'a> {
         Self::new(bodies, Focus::NONE.with_region(region), options)
     }
 
-    /// A query, with somebody who looks on.
+    /// Answers a query with an observer.
     pub(crate) fn watched(
         &mut self,
         setting: &Setting,
@@ -200,6 +203,7 @@ impl<'a> Tracked<'a> {
         self.tracker.first_contact_observed(&cast, observer)
     }
 
+    /// Creates a tracker with a focus.
     fn new(bodies: &'a Bodies, focus: Focus, options: Options) -> Self {
         let tracker = Tracker::new().with_focus(focus).expect("half-sides are positive");
         Self { bodies, tracker, options }
@@ -213,11 +217,12 @@ impl Algorithm for Tracked<'_> {
 
     fn ask(&mut self, setting: &Setting) -> Work {
         let cast = setting.cast(self.bodies, &self.options);
-        work(&cast.and_then(|cast| self.tracker.first_contact(&cast)))
+        work_of_outcome(&cast.and_then(|cast| self.tracker.first_contact(&cast)))
     }
 }
 
-fn work<E>(outcome: &Result<Outcome, E>) -> Work {
+/// Converts an outcome.
+fn work_of_outcome<E>(outcome: &Result<Outcome, E>) -> Work {
     let Ok(outcome) = outcome else {
         return Work { answer: Answer::Failed, steps: 0, iterations: 0 };
     };

@@ -1,18 +1,15 @@
-//! What many measurements come to, and how far chance may have moved it: the bootstrap.
+//! Statistics of many measurements with intervals by the bootstrap (Efron and Tibshirani, "An Introduction to the
+//! Bootstrap", 1993, chapters 8 and 13; for clusters Davison and Hinkley, "Bootstrap Methods and their Application",
+//! 1997, section 3.8).
 //!
-//! Notation. A *sample* holds values in groups, and groups in passes. What belongs to one setting, or to
-//! one sequence of settings, is one group. A *pass* is one pair of bodies of each size, measured in one
-//! stretch of time: in it are what the bodies do to a number, and what else the machine did meanwhile.
-//! A *replicate* draws as many passes as there are, with replacement, and of each as many groups as it has,
-//! and computes the statistic anew; the middle 95 % of the replicates are the interval. Few passes spread less
-//! than they should: the interval is as much wider as Student's is than that of the normal distribution.
-//!
-//! Invariant. Replicate `r` draws the same passes in all samples with equally many of them, and the same
-//! groups in those with equally many of these: what was measured on the same bodies, at the same time or on the
-//! same settings stays together.
-//!
-//! Source: Efron and Tibshirani, "An Introduction to the Bootstrap", 1993, chapters 8 and 13; of clusters
-//! Davison and Hinkley, "Bootstrap Methods and their Application", 1997, section 3.8.
+//! - A *sample* contains values in groups, and groups in passes. Values of one setting, or of one sequence of
+//!   settings, form a group. A *pass* is one pair of bodies of each size, measured in one period of time. It captures
+//!   the effects of the bodies and of other activity of the machine.
+//! - A *replicate* draws with replacement as many passes as there are, and from each as many groups as it has, and
+//!   computes the statistic. The middle 95 % of the replicates are the interval. Few passes underestimate the spread,
+//!   so the interval is widened by the ratio of Student's distribution and the normal distribution.
+//! - Invariant: replicate `r` draws the same passes in all samples with the same number of passes, and the same
+//!   groups in those with the same number of groups. Values from the same bodies, time or settings stay together.
 
 use std::collections::BTreeMap;
 
@@ -22,15 +19,15 @@ use colltrans_testkit::timing::quantile;
 /// A number with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// From all measurements.
+    /// Value from all measurements.
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: f64,
 }
 
-/// What is drawn together: a pass, and in it a setting or a sequence of settings.
+/// Unit of drawing: a pass, and in it a setting or a sequence of settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Group {
     pub(crate) pass: u32,
@@ -41,11 +38,11 @@ pub(crate) struct Group {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Sample(Vec<Vec<Vec<f64>>>);
 
-/// How often a statistic is computed anew.
+/// Number of replicates.
 const REPLICATES: u64 = 200;
 
 impl Sample {
-    /// From values with their groups.
+    /// Creates a sample from values with their groups.
     pub(crate) fn of(values: impl Iterator<Item = (Group, f64)>) -> Self {
         let mut passes: BTreeMap<u32, BTreeMap<u32, Vec<f64>>> = BTreeMap::new();
         for (group, value) in values {
@@ -55,17 +52,18 @@ impl Sample {
         Self(passes.into_values().map(|pass| pass.into_values().collect()).collect())
     }
 
-    /// All values.
+    /// Returns all values.
     pub(crate) fn values(&self) -> Vec<f64> {
         self.0.iter().flatten().flatten().copied().collect()
     }
 
-    /// The mean of every group.
+    /// Returns the mean of every group.
     pub(crate) fn group_means(&self) -> Vec<f64> {
         self.0.iter().flatten().map(|group| mean(group)).collect()
     }
 
-    fn drawn(&self, replicate: u64) -> Vec<f64> {
+    /// Returns the values of a replicate.
+    fn replicate_values(&self, replicate: u64) -> Vec<f64> {
         let passes = self.0.len() as u64;
         let mut random = Random::stream(replicate, &[passes]);
         let mut values = Vec::with_capacity(self.0.iter().flatten().map(Vec::len).sum());
@@ -80,17 +78,18 @@ impl Sample {
     }
 }
 
-/// A statistic of samples, with its interval.
+/// Computes a statistic of samples with its interval.
 pub(crate) fn estimate(samples: &[Sample], statistic: impl Fn(&[Vec<f64>]) -> f64) -> Estimate {
     let value = statistic(&samples.iter().map(Sample::values).collect::<Vec<_>>());
-    let replicate = |r| statistic(&samples.iter().map(|s| s.drawn(r)).collect::<Vec<_>>());
+    let replicate =
+        |r| statistic(&samples.iter().map(|s| s.replicate_values(r)).collect::<Vec<_>>());
     let mut replicates: Vec<f64> = (0..REPLICATES).map(replicate).collect();
     replicates.retain(|r| r.is_finite());
     let [low, high] = [0.025, 0.975].map(|share| quantile(&replicates, share));
-    // Statistics over samples with more and with fewer passes vary as something between.
+    // For samples with different numbers of passes, the mean number is used.
     let passes: usize = samples.iter().map(|sample| sample.0.len()).sum();
-    let wider = widening(passes / samples.len().max(1));
-    // Ratios and times are as likely twice as large as half as large.
+    let wider = widening_factor(passes / samples.len().max(1));
+    // Ratios and times vary by factors, so their intervals are widened as powers.
     let ends = if low > 0.0 && value > 0.0 {
         [low, high].map(|end| value * (end / value).powf(wider))
     } else {
@@ -99,9 +98,10 @@ pub(crate) fn estimate(samples: &[Sample], statistic: impl Fn(&[Vec<f64>]) -> f6
     Estimate { value, low: ends[0].min(value), high: ends[1].max(value) }
 }
 
-/// By how much an interval from a few passes is to be wider: Student's quantile of 97.5 % over that of the normal
-/// distribution, and the root of what a variance of few lacks. One pass says nothing of others.
-fn widening(passes: usize) -> f64 {
+/// Returns the factor that widens an interval from few passes: the 97.5 % quantile of Student's distribution
+/// over that of the normal distribution, times the square root that corrects a variance of few values. A
+/// single pass is not widened.
+fn widening_factor(passes: usize) -> f64 {
     const STUDENT: [f64; 10] = [12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23];
     if passes < 2 {
         return 1.0;
@@ -111,7 +111,7 @@ fn widening(passes: usize) -> f64 {
     quantile / 1.96 * (passes / (passes - 1.0)).sqrt()
 }
 
-/// The mean; NaN if there are no values.
+/// Returns the mean; NaN without values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -123,7 +123,7 @@ impl std::fmt::Display for Estimate {
     }
 }
 
-/// A number with about three digits.
+/// Formats a number with about three digits.
 pub(crate) fn short(value: f64) -> String {
     match value.abs() {
         size if size >= 99.5 => format!("{value:.0}"),
@@ -140,10 +140,10 @@ mod tests {
         Group { pass, number }
     }
 
-    /// In one pass the interval of a mean is that of the normal distribution, and holds the truth as
-    /// often as it says.
+    /// In one pass, the interval of a mean is that of the normal distribution and contains the true value
+    /// with the stated frequency.
     #[test]
-    fn intervals_of_means() {
+    fn mean_interval_of_one_pass_is_normal_interval() {
         let mut random = Random::new(1);
         let (mut inside, runs) = (0, 200);
         for _ in 0..runs {
@@ -156,10 +156,10 @@ mod tests {
         assert!((180..=198).contains(&inside), "{inside} of {runs}");
     }
 
-    /// Where passes differ, intervals of few of them hold the truth as often as they say, and two runs
-    /// nearly always overlap.
+    /// If passes differ, intervals from few passes contain the true value with the stated frequency, and two
+    /// runs nearly always overlap.
     #[test]
-    fn intervals_over_passes() {
+    fn intervals_of_few_passes_contain_true_value() {
         let mut random = Random::new(3);
         for passes in [4, 8] {
             let mut run = || {
@@ -180,10 +180,10 @@ mod tests {
         }
     }
 
-    /// Values of one group are one draw: a hundred copies of each of four values know no more than
-    /// four values.
+    /// Values of one group are drawn together: a hundred copies of each of four values contain no more
+    /// information than four values.
     #[test]
-    fn groups_stay_together() {
+    fn values_of_a_group_are_drawn_together() {
         let apart = Sample::of((0..400).map(|k| (at(0, k), f64::from(k % 4))));
         let together = Sample::of((0..400).map(|k| (at(0, k % 4), f64::from(k % 4))));
         let width = |sample| {
@@ -193,9 +193,9 @@ mod tests {
         assert!(width(together) > 5.0 * width(apart));
     }
 
-    /// Twice the same settings: their ratio is known exactly, however they scatter.
+    /// Two samples of the same settings have an exact ratio, whatever their spread.
     #[test]
-    fn samples_of_the_same_settings_are_drawn_together() {
+    fn samples_of_equal_settings_have_exact_ratio() {
         let mut random = Random::new(2);
         let values: Vec<f64> = (0..50).map(|_| random.range(1.0, 9.0)).collect();
         let sample = |by: f64| {
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_for_people() {
+    fn short_numbers_have_three_digits() {
         for (value, expected) in [(0.123, "0.12"), (-4.5, "-4.50"), (12.34, "12.3"), (123.4, "123")]
         {
             assert_eq!(short(value), expected);

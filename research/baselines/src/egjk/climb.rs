@@ -1,19 +1,19 @@
 //! Support points by hill climbing over the edges (Cameron 1997).
 //!
-//! `d` is the direction and `x_v` the position of vertex `v`. Climbing moves to the neighbour with the
-//! largest gain `d . (x_w - x_v)` until no gain is positive. A convex polyhedron is inside the cone of the
-//! edges of each vertex, therefore such a vertex is a support point.
+//! `d` is the direction and `x_v` the position of vertex `v`. Climbing moves to the neighbour with the largest gain
+//! `d . (x_w - x_v)` until no gain is positive. A convex polyhedron is inside the cone of the edges of each vertex,
+//! therefore such a vertex is a support point.
 //!
-//! Rounding: two rounded heights `d . x` differ by about `u |d| |x|` without a true difference. On a short
-//! edge this error is a steep slope, which a long body amplifies. The gain of the edge vector has an error of
-//! only `4 u sum |d_i| |e_i|`, a slope of a few `u` for any edge length. Therefore the missed height is a few
-//! `u |d|` times the width of the body. Climbing requires a gain above this error, so that the true height
-//! increases with every step and plateaus cause no cycle.
+//! Rounding: two rounded heights `d . x` differ by about `u |d| |x|` without a true difference. On a short edge this
+//! error is a steep slope, which a long body amplifies. The gain of the edge vector has an error of only `4 u sum
+//! |d_i| |e_i|`, a slope of a few `u` for any edge length. Therefore the missed height is a few `u |d|` times the
+//! width of the body. Climbing requires a gain above this error, so that the true height increases with every step
+//! and plateaus cause no cycle.
 //!
-//! The error is amplified only at vertices whose edges almost cancel, inside a longer edge or a larger face
-//! up to `64 u` of the size; the hull removes such vertices. If the corners of a larger face deviate as much
-//! from a plane, next to short edges, climbing may end too low. The library searches the surroundings there;
-//! this implementation does not.
+//! The error is amplified only at vertices whose edges almost cancel, inside a longer edge or a larger face up to `64
+//! u` of the size; the hull removes such vertices. If the corners of a larger face deviate as much from a plane, next
+//! to short edges, climbing may end too low. The library searches the surroundings there; this implementation does
+//! not.
 
 use colltrans::ConvexPolyhedron;
 use glam::DVec3;

@@ -1,21 +1,20 @@
-//! Enhanced GJK: Cameron, "Enhancing GJK: computing minimum and penetration distances between convex
-//! polyhedra", ICRA 1997.
+//! Enhanced GJK: Cameron, "Enhancing GJK: computing minimum and penetration distances between convex polyhedra", ICRA
+//! 1997.
 //!
 //! - `M = {q - p}` is the Minkowski difference in the fixed body's frame.
-//! - `v` is the point of the simplex of GJK (Gilbert, Johnson, Keerthi 1988) nearest to the origin; `w` is
-//!   the lowest point of `M` along `v`.
-//! - `S` is the size: the largest distance of a vertex from its frame's origin for both bodies, plus the
-//!   distance of the origins.
+//! - `v` is the point of the simplex of GJK (Gilbert, Johnson, Keerthi 1988) nearest to the origin; `w` is the lowest
+//!   point of `M` along `v`.
+//! - `S` is the size: the largest distance of a vertex from its frame's origin for both bodies, plus the distance of
+//!   the origins.
 //!
-//! Invariant: `|v|` is an upper bound of the distance, because `v` is a point of `M`. `v . w / |v|` is a
-//! lower bound, because `M` lies beyond the plane through `w` with normal `v`. The *gap* between the best
-//! bounds limits the error of the answer, whatever the rounding of `v`. The search ends if the gap is at most
-//! the rounding error of a point of `M`, or if rounding stalls it. On more than 200,000 tied, touching, thin
-//! and coherent settings it stalled 9 times, on bodies at least a thousand times longer than thick, with gaps
-//! up to `2.9e-13 S`.
+//! Invariant: `|v|` is an upper bound of the distance, because `v` is a point of `M`. `v . w / |v|` is a lower bound,
+//! because `M` lies beyond the plane through `w` with normal `v`. The *gap* between the best bounds limits the error
+//! of the answer, whatever the rounding of `v`. The search ends if the gap is at most the rounding error of a point
+//! of `M`, or if rounding stalls it. On more than 200,000 tied, touching, thin and coherent settings it stalled 9
+//! times, on bodies at least a thousand times longer than thick, with gaps up to `2.9e-13 S`.
 //!
-//! Cameron's enhancement: hill climbing (`climb`) starts at the last support point, and the simplex is kept
-//! between queries. Signed volumes yield the nearest point of the simplex (`simplex`).
+//! Cameron's enhancement: hill climbing (`climb`) starts at the last support point, and the simplex is kept between
+//! queries. Signed volumes yield the nearest point of the simplex (`simplex`).
 
 mod climb;
 mod difference;

@@ -2,20 +2,19 @@
 //! "Improving the GJK algorithm for faster and more reliable distance queries between convex objects", ACM
 //! Transactions on Graphics 36(3), 2017).
 //!
-//! `a, b, c, d` are corners relative to the given point, which becomes the origin. Its *foot* is the
-//! projection onto the plane or line of some corners. The weights of the foot are quotients of signed
-//! volumes, areas or lengths: the simplex with a corner replaced by the foot, over the whole simplex,
-//! measured in the coordinate plane or axis in which the whole is largest. If all weights are positive, the
-//! foot is the nearest point. If a weight has the wrong sign, the origin is beyond the face without its
-//! corner; the nearest point is then that of the nearest such face.
+//! `a, b, c, d` are corners relative to the given point, which becomes the origin. Its *foot* is the projection onto
+//! the plane or line of some corners. The weights of the foot are quotients of signed volumes, areas or lengths: the
+//! simplex with a corner replaced by the foot, over the whole simplex, measured in the coordinate plane or axis in
+//! which the whole is largest. If all weights are positive, the foot is the nearest point. If a weight has the wrong
+//! sign, the origin is beyond the face without its corner; the nearest point is then that of the nearest such face.
 //!
 //! Additions for accuracy:
-//! - If rounding leaves the sign of a weight open, its face is examined too; if it leaves that of the whole
-//!   open, all faces are. They cover a flat simplex.
+//! - If rounding leaves the sign of a weight open, its face is examined too; if it leaves that of the whole open, all
+//!   faces are. They cover a flat simplex.
 //! - Newton steps correct the weights of thin simplices.
-//! - A nearest point of length `|v|` with error `u S` has a direction with error `u S / |v|`, which enters
-//!   the bound of GJK. Therefore the foot on a plane is a multiple of the normal, and the foot on a line is
-//!   made orthogonal to it twice.
+//! - A nearest point of length `|v|` with error `u S` has a direction with error `u S / |v|`, which enters the bound
+//!   of GJK. Therefore the foot on a plane is a multiple of the normal, and the foot on a line is made orthogonal to
+//!   it twice.
 
 use colltrans::VertexPair;
 use glam::DVec3;

@@ -1,16 +1,14 @@
-//! V-Clip: distance of convex polyhedra by a walk over pairs of features. B. Mirtich, "V-Clip: fast and
-//! robust polyhedral collision detection", ACM Transactions on Graphics 17(3), 1998.
+//! V-Clip: distance of convex polyhedra by a walk over pairs of features. B. Mirtich, "V-Clip: fast and robust
+//! polyhedral collision detection", ACM Transactions on Graphics 17(3), 1998.
 //!
-//! Two features are closest if each has its nearest point in the Voronoi region of the other. A walk starts
-//! at the closest features of the last query and repeatedly replaces one feature by a nearer neighbour
-//! (`walk`, `view`).
+//! Two features are closest if each has its nearest point in the Voronoi region of the other. A walk starts at the
+//! closest features of the last query and repeatedly replaces one feature by a nearer neighbour (`walk`, `view`).
 //!
-//! The implementation follows the publication except for its end. Rounded decisions can cause a cycle among
-//! tied features, which is detected, or hide that a neighbour is nearer. Therefore every result is compared
-//! with the supporting planes perpendicular to it (`proof`), which examines the neighbours of a few vertices.
-//! An unproven result is improved first by distances among the surrounding features. Then walks restart at
-//! the vertices on the supporting planes, with enlarged Voronoi regions. [`Steps::gap`] is the remaining
-//! uncertainty.
+//! The implementation follows the publication except for its end. Rounded decisions can cause a cycle among tied
+//! features, which is detected, or hide that a neighbour is nearer. Therefore every result is compared with the
+//! supporting planes perpendicular to it (`proof`), which examines the neighbours of a few vertices. An unproven
+//! result is improved first by distances among the surrounding features. Then walks restart at the vertices on the
+//! supporting planes, with enlarged Voronoi regions. [`Steps::gap`] is the remaining uncertainty.
 
 pub(crate) mod proof;
 mod segment;

@@ -1,17 +1,15 @@
-//! What the paper claims, before anything is measured: each with its number, its place, and by what it
-//! is judged here.
+//! The claims of the paper, fixed before anything is measured: each with its number, its place, and the criteria by
+//! which it is judged here.
 //!
-//! A claim has one or more *criteria*: a number to be measured, and the band of its values with which
-//! the claim holds. Where the paper gives a number "about", the band is a quarter of it either way; where
-//! it gives a range or a limit, the band is that. Criteria without a limit are quoted, not judged.
+//! A claim has one or more *criteria*: a measured number and the band of its values for which the claim holds. For a
+//! number "about" in the paper, the band is a quarter in either direction; for a range or limit, it is that. Criteria
+//! without limits are quoted, not judged.
 //!
-//! The verdict on a criterion, from the 95 % interval of its number: it *holds* if the interval lies in
-//! the band, or beyond it only on the side that is better for the algorithm; it is *better than the
-//! paper* if all of the interval lies there; it *does not hold* if the interval has nothing of the
-//! band and is not better; else it is *undecided*. A claim is as good as the worst of its criteria,
-//! and better than the paper if one of them is and the others hold.
-//!
-//! Places are sections of the paper: its text carries no page numbers here.
+//! The verdict on a criterion depends on the 95 % interval of its number:
+//! - *holds*: the interval is in the band, or extends beyond it only on the side that is better for the algorithm.
+//! - *better than the paper*: the whole interval is on that side. *Does not hold*: it is outside on the other side.
+//! - *undecided*: otherwise. A claim has the verdict of its worst criterion; it is better than the paper if one
+//!   criterion is and the others hold.
 
 mod list;
 
@@ -23,28 +21,28 @@ pub use list::CLAIMS;
 /// A claim of the paper.
 #[derive(Debug, PartialEq)]
 pub struct PaperClaim {
-    /// Short name, beginning with the number of the figure.
+    /// Short name that begins with the number of the figure.
     pub id: &'static str,
-    /// What is claimed.
+    /// The claim.
     pub statement: &'static str,
     /// The paper's number, or its words.
     pub paper: &'static str,
-    /// Section and figure.
+    /// Section and figure; the text of the paper used here has no page numbers.
     pub place: &'static str,
-    /// By what it is judged.
+    /// Criteria by which the claim is judged.
     pub criteria: &'static [Criterion],
 }
 
-/// A number and the band in which it supports a claim.
+/// A number, and the band in which it supports a claim.
 #[derive(Debug, PartialEq)]
 pub struct Criterion {
-    /// What is measured.
+    /// Measured quantity.
     pub what: &'static str,
     /// Lower end of the band.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the band.
     pub high: f64,
-    /// On which side of the band the algorithm does better than the paper says.
+    /// Side of the band on which the algorithm is better than the paper states.
     pub better: Better,
 }
 
@@ -59,16 +57,16 @@ pub enum Better {
     Neither,
 }
 
-/// What the data say about a claim.
+/// Verdict of the data on a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// It holds.
+    /// The claim holds.
     Holds,
-    /// The algorithm does better than the paper says.
+    /// The algorithm is better than the paper states.
     Better,
-    /// The interval reaches over the edge of the band.
+    /// The interval extends over an end of the band.
     Undecided,
-    /// It does not hold.
+    /// The claim does not hold.
     Fails,
 }
 
@@ -84,14 +82,14 @@ impl fmt::Display for Verdict {
 }
 
 impl Verdict {
-    /// Whether the paper's algorithm does what it is claimed to do, or better.
+    /// Checks whether the paper's algorithm performs as claimed, or better.
     pub fn is_kept(self) -> bool {
         matches!(self, Self::Holds | Self::Better)
     }
 }
 
 impl Criterion {
-    /// The verdict on a number.
+    /// Returns the verdict on a number.
     pub fn judge(&self, measured: &Estimate) -> Verdict {
         let Estimate { low, high, .. } = *measured;
         let (less, more) = (self.better == Better::Less, self.better == Better::More);
@@ -110,7 +108,7 @@ impl Criterion {
         }
     }
 
-    /// The band in words.
+    /// Returns the band as text.
     pub fn band(&self) -> String {
         let side = match self.better {
             Better::Less if self.low > f64::NEG_INFINITY => ", less is better",
@@ -126,16 +124,17 @@ impl Criterion {
         }
     }
 
-    /// Whether there is anything to be judged.
+    /// Checks whether the band has a limit.
     pub fn is_judged(&self) -> bool {
         self.low > f64::NEG_INFINITY || self.high < f64::INFINITY
     }
 }
 
-/// The claim with this id, held against numbers, one for each of its criteria.
+/// Returns the claim with this identifier, judged by one number for each of its criteria. `why` is called
+/// unless the claim holds.
 ///
 /// # Panics
-/// If there is no such claim, or it has more or fewer criteria.
+/// If the claim does not exist, or the number of criteria differs.
 pub(crate) fn judged(
     id: &str,
     measured: Vec<Estimate>,
@@ -149,45 +148,46 @@ pub(crate) fn judged(
     Claim { paper, measured, details, verdict, why }
 }
 
-/// Something the paper says, held against the data.
+/// A claim of the paper, compared with the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
-    /// What is claimed, and by what it is judged.
+    /// The claim, and its criteria.
     pub paper: &'static PaperClaim,
-    /// What was measured, one number for each of the claim's criteria.
+    /// Measured numbers, one for each criterion.
     pub measured: Vec<Estimate>,
-    /// More about it: other numbers, and circumstances.
+    /// Further numbers and circumstances.
     pub details: String,
-    /// Computed from the numbers and the criteria.
+    /// Verdict from the numbers and the criteria.
     pub verdict: Verdict,
-    /// Why it does not hold here, or is undecided, as far as the data of this run tell.
+    /// Reason why the claim does not hold or is undecided, as far as the data of this run show; `None` if it
+    /// holds.
     pub why: Option<Why>,
 }
 
-/// Why a claim does not hold.
+/// Reason why a claim does not hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Why {
-    /// What the reason lies in.
+    /// Kind of the reason.
     pub reason: Reason,
-    /// The counts that show it.
+    /// The numbers that show it.
     pub text: String,
 }
 
-/// What the reason lies in that a claim does not hold here.
+/// Kind of reason why a claim does not hold here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
-    /// The paper's sentence: it does not say all that it depends on, or more than follows from its data.
+    /// The paper's sentence: it omits a dependence, or states more than its data show.
     Sentence,
-    /// Today's machines: caches, or what an instruction costs beside another.
+    /// Current machines: caches, or relative costs of instructions.
     Machine,
     /// Our implementation of the paper's algorithm.
     Implementation,
-    /// Our implementation of what it is compared with.
+    /// Our implementation of the compared algorithm.
     Rival,
 }
 
 impl Reason {
-    /// With the counts that show it.
+    /// Returns the reason with the numbers that show it.
     pub(crate) fn because(self, text: impl Into<String>) -> Why {
         Why { reason: self, text: text.into() }
     }
@@ -205,36 +205,38 @@ impl fmt::Display for Reason {
 }
 
 impl PaperClaim {
-    /// The verdict on its numbers.
+    /// Returns the verdict on the numbers: the worst one of the criteria.
     pub fn judge(&self, measured: &[Estimate]) -> Verdict {
         let each = self.criteria.iter().zip(measured).map(|(criterion, m)| criterion.judge(m));
         each.max().unwrap_or(Verdict::Undecided)
     }
 }
 
+/// Creates a criterion with a band.
 const fn band(what: &'static str, [low, high]: [f64; 2], better: Better) -> Criterion {
     Criterion { what, low, high, better }
 }
 
-/// The paper's number, give or take a quarter.
+/// Creates a criterion whose band is the paper's number, plus or minus a quarter.
 const fn about(what: &'static str, number: f64, better: Better) -> Criterion {
     band(what, [0.75 * number, 1.25 * number], better)
 }
 
+/// Creates a criterion with an upper limit.
 const fn at_most(what: &'static str, limit: f64) -> Criterion {
     band(what, [f64::NEG_INFINITY, limit], Better::Neither)
 }
 
+/// Creates a criterion with a lower limit.
 const fn at_least(what: &'static str, limit: f64) -> Criterion {
     band(what, [limit, f64::INFINITY], Better::Neither)
 }
 
-/// The claims about thin faces come twice, once for each reading of "thin": the same id with one of these
-/// endings.
+/// Identifier suffixes and names of both readings of "thin". Claims about thin faces exist once for each.
 pub const READINGS: [(&str, &str); 2] =
     [("-stretch", "a fixed stretch of 100"), ("-meridians", "16 meridians at any size")];
 
-/// Quoted beside the others.
+/// Creates a criterion that is quoted without a limit.
 const fn quoted(what: &'static str) -> Criterion {
     band(what, [f64::NEG_INFINITY, f64::INFINITY], Better::Neither)
 }
@@ -245,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn verdicts() {
+    fn verdict_depends_on_interval_and_band() {
         let at = |low, high| Estimate { value: f64::midpoint(low, high), low, high };
         let ratio = about("", 4.0, More);
         for (low, high, expected) in [
@@ -267,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn a_claim_is_as_good_as_its_worst_criterion() {
+    fn claim_has_verdict_of_worst_criterion() {
         let claim = CLAIMS.iter().find(|claim| claim.id == "18-range").unwrap();
         let at = |value: f64| Estimate { value, low: 0.99 * value, high: 1.01 * value };
         for (values, expected) in [
@@ -281,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_is_sound() {
+    fn claims_have_unique_ids_and_valid_bands() {
         for (k, claim) in CLAIMS.iter().enumerate() {
             assert!(claim.statement.ends_with('.'), "{}", claim.id);
             assert!(claim.criteria.iter().any(Criterion::is_judged), "{}", claim.id);

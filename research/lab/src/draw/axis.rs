@@ -1,31 +1,30 @@
-//! Which part of an axis is shown, and how its ticks are written.
+//! The visible range of an axis, and the labels of its ticks.
 
 use crate::finding::Axis;
 
-/// What the plotting crate can place: its logarithms end at `1e-10`, and beyond `2^53` neighbouring
-/// ticks would be the same number. Far from anything that is measured here.
+/// Smallest value on a logarithmic axis. The plotting crate's logarithms end at `1e-10`.
 const LEAST_ON_LOG_AXIS: f64 = 1e-9;
+/// Largest absolute value on an axis. Beyond `2^53` neighbouring ticks would be equal numbers.
 const MOST: f64 = 1e15;
 
-/// Empty room at each end, as a share of what the data span.
+/// Margin at each end, as a share of the range of the data.
 const ROOM: f64 = 0.04;
 
-/// Whether a number has a place on the axis.
+/// Checks whether an axis can show a value.
 pub(super) fn has_place(axis: &Axis, value: f64) -> bool {
     value.abs() <= MOST && (!axis.log || value >= LEAST_ON_LOG_AXIS)
 }
 
-/// The part of the axis that shows all values (each of which has a place) with some room around;
-/// `None` if there are no values.
-pub(super) fn range(axis: &Axis, values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+/// Returns a range of the axis that contains all values with a margin; `None` without values.
+pub(super) fn visible_range(axis: &Axis, values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (low, high) = values.fold(None, |ends: Option<(f64, f64)>, v| {
         Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
     })?;
     Some(if axis.log { log_range(low, high) } else { linear_range(low, high) })
 }
 
-/// Room is a factor here. Ticks are at 1, 2 and 5 times powers of ten: with fewer than two of them
-/// in sight nobody could read the axis.
+/// Returns a range for a logarithmic axis, whose margin is a factor. Ticks are at 1, 2 and 5 times powers of
+/// ten, and at least two of them are visible.
 fn log_range(low: f64, high: f64) -> (f64, f64) {
     let factor = (high / low).powf(ROOM).max(1.05);
     let (low, high) = (low / factor, high * factor);
@@ -47,7 +46,8 @@ fn log_range(low: f64, high: f64) -> (f64, f64) {
     (below(low), above(high))
 }
 
-/// Zero is in sight unless the data span a small part of the way from it.
+/// Returns a range for a linear axis. It includes zero unless the data span a small part of their distance
+/// from zero.
 fn linear_range(low: f64, high: f64) -> (f64, f64) {
     let span = high - low;
     if span == 0.0 {
@@ -60,7 +60,7 @@ fn linear_range(low: f64, high: f64) -> (f64, f64) {
     (from, to)
 }
 
-/// A tick's label: `0.05`, `20`, `2,000`, `5×10⁶`.
+/// Formats a tick label: `0.05`, `20`, `2,000`, `5×10⁶`.
 pub(super) fn label(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
@@ -69,7 +69,7 @@ pub(super) fn label(value: f64) -> String {
     if !(1e-4..1e6).contains(&size) {
         return scientific(value);
     }
-    // Ticks are short decimal numbers up to rounding; 12 digits hide the rounding.
+    // Ticks are short decimal numbers up to rounding, which 12 digits hide.
     let digits = (12 - size.log10().floor() as i32).clamp(0, 16) as usize;
     let text = format!("{value:.digits$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -82,6 +82,7 @@ pub(super) fn label(value: f64) -> String {
     label
 }
 
+/// Inserts separators between thousands.
 fn group_thousands(whole: &str) -> String {
     let (sign, digits) = whole.strip_prefix('-').map_or(("", whole), |digits| ("\u{2212}", digits));
     let mut grouped = String::from(sign);
@@ -94,6 +95,7 @@ fn group_thousands(whole: &str) -> String {
     grouped
 }
 
+/// Formats a number with a power of ten.
 fn scientific(value: f64) -> String {
     const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let text = format!("{value:.6e}");
@@ -111,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels() {
+    fn tick_labels_are_short() {
         for (value, expected) in [
             (0.0, "0"),
             (0.05, "0.05"),
@@ -128,9 +130,9 @@ mod tests {
         }
     }
 
-    /// On every range there are at least two ticks of the 1-2-5 kind, and all data inside.
+    /// Every range contains all data and at least two ticks.
     #[test]
-    fn log_ranges() {
+    fn log_ranges_contain_data_and_two_ticks() {
         for low in [1e-6, 0.3, 1.0, 1.9, 2.0, 70.0, 99.0, 1e6] {
             for ratio in [1.0, 1.01, 1.5, 2.0, 4.9, 5.1, 30.0, 1e6] {
                 let (from, to) = log_range(low, low * ratio);

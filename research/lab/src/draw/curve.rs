@@ -1,4 +1,4 @@
-//! What of a series can be drawn, and what has to be said about the rest.
+//! The drawable parts of series, and notes about the other points.
 
 use super::axis::has_place;
 use crate::finding::{Figure, Point, Series};
@@ -7,11 +7,11 @@ use crate::finding::{Figure, Point, Series};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Curve<'f> {
     pub(super) name: &'f str,
-    /// Stretches of neighbouring points; between them are points that cannot be drawn.
+    /// Runs of neighbouring drawable points.
     pub(super) stretches: Vec<Vec<Mark>>,
 }
 
-/// A point that has a place in the plot.
+/// A drawable point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mark {
     pub(super) x: f64,
@@ -19,27 +19,27 @@ pub(super) struct Mark {
     pub(super) spread: Spread,
 }
 
-/// The spread of a mark as it can be drawn.
+/// The drawable spread of a mark.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Spread {
-    /// There is none, or none that makes sense.
+    /// No spread, or an invalid one.
     None,
-    /// From where to where.
+    /// Lower and upper end.
     Between(f64, f64),
-    /// Its lower end lies below everything on a logarithmic axis.
+    /// Upper end; the lower end is below the range of a logarithmic axis.
     UpTo(f64),
 }
 
-/// Curves with more points than this have a band instead of bars: bars would be a hatching.
+/// Maximum number of points with bars; longer curves have a band.
 const MOST_BARS: usize = 24;
 
 impl Curve<'_> {
-    /// Whether it is drawn without marks, its spread as a band.
+    /// Checks whether the curve is drawn without marks, with its spread as a band.
     pub(super) fn is_dense(&self) -> bool {
         self.marks().count() > MOST_BARS
     }
 
-    /// With its marks moved aside, unless there are so many that they are not marked.
+    /// Returns the curve with displaced marks, unless it is dense.
     pub(super) fn moved(&self, aside: impl Fn(f64) -> f64) -> Self {
         let mut moved = self.clone();
         if !self.is_dense() {
@@ -48,12 +48,13 @@ impl Curve<'_> {
         moved
     }
 
+    /// Iterates over all marks.
     pub(super) fn marks(&self) -> impl Iterator<Item = Mark> {
         self.stretches.iter().flatten().copied()
     }
 }
 
-/// What went wrong with points, counted.
+/// Numbers of points with each kind of defect.
 #[derive(Debug, Default)]
 struct Trouble {
     no_place: usize,
@@ -62,14 +63,14 @@ struct Trouble {
     cut_spread: usize,
 }
 
-/// Measured curves, and sentences about what they lack.
+/// Returns the measured curves, and sentences about their defects.
 pub(super) fn measured(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
-    sort_out(figure, &figure.series, |_, _| ())
+    drawable_curves(figure, &figure.series, |_, _| ())
 }
 
-/// Curves to compare with: they have no spreads, and a point alone is nothing to compare with.
+/// Returns the curves for comparison, without spreads and isolated points.
 pub(super) fn references(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
-    sort_out(figure, &figure.references, |curve, trouble| {
+    drawable_curves(figure, &figure.references, |curve, trouble| {
         *trouble = Trouble { no_place: trouble.no_place, ..Trouble::default() };
         trouble.alone = curve.stretches.iter().filter(|stretch| stretch.len() == 1).count();
         curve.stretches.retain(|stretch| stretch.len() > 1);
@@ -77,7 +78,8 @@ pub(super) fn references(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
     })
 }
 
-fn sort_out<'f>(
+/// Converts series to curves, and collects sentences about their defects.
+fn drawable_curves<'f>(
     figure: &Figure,
     all: &'f [Series],
     adapt: impl Fn(&mut Curve, &mut Trouble),
@@ -93,6 +95,7 @@ fn sort_out<'f>(
     (curves, sentences)
 }
 
+/// Converts a series to a curve.
 fn curve<'f>(figure: &Figure, series: &'f Series, trouble: &mut Trouble) -> Curve<'f> {
     let mut stretches = vec![Vec::new()];
     for point in &series.points {
@@ -105,6 +108,7 @@ fn curve<'f>(figure: &Figure, series: &'f Series, trouble: &mut Trouble) -> Curv
     Curve { name: &series.name, stretches }
 }
 
+/// Converts a point to a mark; `None` if the axes cannot show it.
 fn mark(figure: &Figure, point: &Point, trouble: &mut Trouble) -> Option<Mark> {
     let &Point { x, y, low, high, .. } = point;
     if !has_place(&figure.x, x) || !has_place(&figure.y, y) {
@@ -126,6 +130,7 @@ fn mark(figure: &Figure, point: &Point, trouble: &mut Trouble) -> Option<Mark> {
 }
 
 impl Trouble {
+    /// Describes the defects.
     fn sentences(&self, figure: &Figure, series: &Series) -> Vec<String> {
         let (name, all) = (&series.name, series.points.len());
         let place = if figure.x.log || figure.y.log {

@@ -1,8 +1,7 @@
 //! Figures as pictures.
 //!
-//! `curve` sorts out what can be drawn, `axis` how much of the axes is shown; here the plotting
-//! crate is told to draw it. Everything in a picture is computed from the [`Figure`]: the same
-//! figure gives the same bytes.
+//! `curve` selects the drawable points, `axis` the visible ranges. This module passes them to the plotting
+//! crate. A picture depends only on the [`Figure`]: equal figures yield equal bytes.
 
 mod axis;
 mod curve;
@@ -21,32 +20,34 @@ use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 use crate::finding::{Axis, Figure};
 use curve::{Curve, Spread};
 
-/// A figure, drawn.
+/// A drawn figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// A complete SVG document, 720 px wide.
     pub svg: String,
-    /// The same as PNG, with twice as many pixels.
+    /// The same picture as PNG, with twice the resolution.
     pub png: Vec<u8>,
-    /// Sentences about what of the data could not be drawn.
+    /// Sentences about points that are not drawn.
     pub notes: Vec<String>,
 }
 
-/// Pixels of the SVG.
+/// Width of the SVG in pixels.
 const WIDTH: f64 = 720.0;
+/// Height of the SVG in pixels.
 const HEIGHT: f64 = 500.0;
-/// Where the label of the vertical axis begins.
+/// Position of the label of the vertical axis.
 const LABEL_AT: [f64; 2] = [16.0, 66.0];
-/// Room for the title and that label.
+/// Margin for the title and the label of the vertical axis.
 const TOP: f64 = 82.0;
-/// Room for the ticks' labels.
+/// Margin for the labels of ticks.
 const LEFT: f64 = 64.0;
-/// Pixels of the PNG for each of the SVG.
+/// Pixels of the PNG for each pixel of the SVG.
 const PNG_SCALE: f32 = 2.0;
 
-/// Colours that people with any colour vision can tell apart (Okabe and Ito), and shapes.
+/// Colours that are distinct for any colour vision (Okabe and Ito).
 const COLOURS: [&str; 7] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7a5195", "#e69f00", "#56b4e9"];
+/// Shapes of marks.
 const SHAPES: [MarkerShape; 7] = [
     MarkerShape::Circle,
     MarkerShape::Square,
@@ -56,30 +57,28 @@ const SHAPES: [MarkerShape; 7] = [
     MarkerShape::Pentagon,
     MarkerShape::Star,
 ];
-/// Greys and dashes of curves to compare with. In PNG the dashes have pixels for their unit: short
-/// ones would flow together.
+/// Greys and dashes of curves for comparison. In the PNG the unit of dashes is a pixel, so that short dashes
+/// would merge.
 const GREYS: [(&str, &str); 4] =
     [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "9 4 2 4"), ("#aaaaaa", "16 4")];
 
 /// Draws a figure.
 ///
 /// # Errors
-///
 /// The message of the PNG encoder.
 pub fn draw(figure: &Figure) -> Result<Picture, String> {
     let (measured, mut notes) = curve::measured(figure);
     let (references, more) = curve::references(figure);
     notes.extend(more);
     let mut scene = scene(figure, &measured, &references, !notes.is_empty());
-    lay_down_labels(&mut scene);
+    place_vertical_label_above_axis(&mut scene);
     let png = RasterBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;
     Ok(Picture { svg: svg(figure, &scene), png, notes })
 }
 
-/// The label of the vertical axis lies above it. Standing along it, as the plotting crate puts it, the
-/// crate's rasteriser (0.6.0) copies it without the soft edges of its letters, so that they look as if
-/// they were printed twice.
-fn lay_down_labels(scene: &mut Scene) {
+/// Places the label of the vertical axis above it. The plotting crate draws it rotated along the axis, which
+/// its rasteriser (0.6.0) renders without smooth edges.
+fn place_vertical_label_above_axis(scene: &mut Scene) {
     for element in &mut scene.elements {
         if let Primitive::Text { x, y, anchor, rotate, .. } = element
             && rotate.take().is_some()
@@ -89,10 +88,11 @@ fn lay_down_labels(scene: &mut Scene) {
     }
 }
 
+/// Builds the plot of all curves.
 fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: bool) -> Scene {
     let marks = || measured.iter().chain(references).flat_map(Curve::marks);
-    let x = axis::range(&figure.x, marks().map(|mark| mark.x));
-    let y = axis::range(
+    let x = axis::visible_range(&figure.x, marks().map(|mark| mark.x));
+    let y = axis::visible_range(
         &figure.y,
         marks().flat_map(|mark| match mark.spread {
             Spread::None => [mark.y; 2],
@@ -131,24 +131,28 @@ fn aside(figure: &Figure, x: (f64, f64), k: usize, count: usize) -> impl Fn(f64)
     move |at| if log { at * (x.1 / x.0).powf(share) } else { at + (x.1 - x.0) * share }
 }
 
+/// Iterates over pairs of colours and shapes.
 fn styles() -> impl Iterator<Item = (&'static &'static str, &'static MarkerShape)> {
     COLOURS.iter().zip(&SHAPES).cycle()
 }
 
+/// Returns a line plot.
 fn line(points: impl Iterator<Item = (f64, f64)>, colour: &str, width: f64) -> LinePlot {
     LinePlot::new().with_data(points).with_color(colour).with_stroke_width(width)
 }
 
+/// Returns the legend entry of a curve.
 fn entry(curve: &Curve, colour: &str, shape: LegendShape, dash: Option<&str>) -> LegendEntry {
     let missing = if curve.stretches.is_empty() { " (no points)" } else { "" };
     LegendEntry {
-        label: literally(curve.name) + missing,
+        label: without_formulas(curve.name) + missing,
         color: colour.into(),
         shape,
         dasharray: dash.map(str::to_owned),
     }
 }
 
+/// Adds a curve for comparison.
 fn add_reference(plots: &mut Vec<Plot>, curve: &Curve, grey: &str, dash: &str) {
     plots.extend(curve.stretches.iter().map(|stretch| {
         line(stretch.iter().map(|mark| (mark.x, mark.y)), grey, 1.0)
@@ -157,7 +161,7 @@ fn add_reference(plots: &mut Vec<Plot>, curve: &Curve, grey: &str, dash: &str) {
     }));
 }
 
-/// A line through the marks with their spreads: bars at each, or a band where there are many.
+/// Adds a line through the marks with their spreads: bars at each mark, or a band for dense curves.
 fn add_measured(
     plots: &mut Vec<Plot>,
     curve: &Curve,
@@ -192,16 +196,17 @@ fn add_measured(
     }
 }
 
+/// Returns the layout for these ranges.
 fn layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
     let ticks = || TickFormat::Custom(std::sync::Arc::new(axis::label));
     let mut layout = Layout::new(x, y)
         .with_width(WIDTH)
         .with_height(HEIGHT)
-        .with_title(literally(&figure.title))
+        .with_title(without_formulas(&figure.title))
         .with_title_wrap(80)
         .with_title_size(15)
-        .with_x_label(literally(&figure.x.label))
-        .with_y_label(literally(&figure.y.label))
+        .with_x_label(without_formulas(&figure.x.label))
+        .with_y_label(without_formulas(&figure.y.label))
         .with_x_axis_min(x.0)
         .with_x_axis_max(x.1)
         .with_y_axis_min(y.0)
@@ -212,7 +217,7 @@ fn layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
         .with_legend_box(false);
     layout.log_x = figure.x.log;
     layout.log_y = figure.y.log;
-    // Half a label such as `200,000` may stand out beyond the last tick.
+    // Half of a label such as `200,000` may extend beyond the last tick.
     layout.force_margin_right = Some(34.0);
     layout.force_margin_top = Some(TOP);
     layout.force_margin_left = Some(LEFT);
@@ -220,7 +225,7 @@ fn layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
     layout
 }
 
-/// A frame around the statement that there is nothing to see.
+/// Returns a frame with the note that there are no points.
 fn empty_scene(figure: &Figure) -> Scene {
     let nothing = TextAnnotation::new("No point of this figure can be drawn.", 0.5, 0.5);
     let plain = Axis { label: String::new(), log: false };
@@ -233,13 +238,13 @@ fn empty_scene(figure: &Figure) -> Scene {
     render_multiple(vec![ScatterPlot::new().into()], layout)
 }
 
-/// Text as it is: between dollars the plotting crate would look for formulas.
-fn literally(text: &str) -> String {
+/// Escapes dollar signs, between which the plotting crate would expect formulas.
+fn without_formulas(text: &str) -> String {
     text.replace('$', "\\$")
 }
 
-/// The scene as SVG that scales, with the same bytes each time: the plotting crate numbers clipping
-/// paths over the whole life of the process.
+/// Returns a scalable SVG with reproducible bytes. The plotting crate numbers clipping paths globally in the
+/// process; these numbers are replaced.
 fn svg(figure: &Figure, scene: &Scene) -> String {
     const NUMBERED: &str = "kuva-clip-";
     let mut svg = SvgBackend::new().with_pretty(true).render_scene(scene);

@@ -1,4 +1,4 @@
-//! Figures 13 and 14: what it saves to start from the solution of a similar configuration.
+//! Figures 13 and 14: the savings of starting from the solution of a similar configuration.
 
 use colltrans::cta;
 
@@ -37,18 +37,18 @@ const SCRATCH: [usize; 2] = [0, 1];
 const REGION: [usize; 2] = [2, 3];
 const TRACKER: usize = 4;
 
-/// Names of both ways to count: see [`Until`].
+/// Names of both stages at which steps are counted: see [`Until`].
 const UNTIL: [&str; 2] = ["CTA", "hybrid (to a gap of 1 %)"];
 const END: usize = 0;
 const HYBRID: usize = 1;
 
-/// The changes of figure 13, in diameters.
+/// Changes of figure 13, in diameters.
 const CHANGES: [f64; 2] = [0.01, 0.0025];
 
-/// Configurations in a sequence.
+/// Number of configurations in a sequence.
 const CONFIGURATIONS: usize = 100;
 
-/// Sequences of each motion, at both changes.
+/// Sequences of each motion, for both changes.
 type Sequences = [[Results; MOTIONS.len()]; 2];
 
 fn sequences(plan: &Plan, progress: &mut dyn Progress) -> Finding {
@@ -81,7 +81,7 @@ fn sequences(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     Finding { figures, tables: Vec::new(), claims }
 }
 
-/// One sequence, query by query.
+/// Draws one sequence, query by query.
 fn sequence_figure(n: usize, change: usize, results: &Results) -> Figure {
     let first = results.lanes[0].first().map(|m| m.group);
     let curve = |who: usize| {
@@ -94,7 +94,7 @@ fn sequence_figure(n: usize, change: usize, results: &Results) -> Figure {
     };
     let percent = 100.0 * CHANGES[change];
     let scratch = curve(SCRATCH[END]);
-    // From end to end: dashes of many short pieces would flow together.
+    // A single line from end to end, because the dashes of many short lines would merge.
     let at: Vec<_> = scratch.iter().take(1).chain(scratch.last()).map(|p| p.x).collect();
     Figure {
         id: ["figure-13-1", "figure-13-0.25"][change].into(),
@@ -112,7 +112,7 @@ fn sequence_figure(n: usize, change: usize, results: &Results) -> Figure {
     }
 }
 
-/// The steps of all motions at a change.
+/// Returns the steps of all motions for a change.
 fn steps(all: &Sequences, change: usize, who: usize) -> Vec<Sample> {
     all[change].iter().map(|results| results.steps(who)).collect()
 }
@@ -189,7 +189,7 @@ fn motions(all: &Sequences) -> Claim {
     })
 }
 
-/// The changes of figure 14, in diameters, each about half of the next.
+/// Changes of figure 14, in diameters, each about half of the next one.
 const DELTAS: [f64; 7] = [0.000_625, 0.001_25, 0.002_5, 0.005, 0.01, 0.02, 0.04];
 
 fn average(plan: &Plan, progress: &mut dyn Progress) -> Finding {
@@ -205,7 +205,7 @@ fn average(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     Finding { figures, tables: vec![floors(&measured)], claims }
 }
 
-/// Pairs of configurations that differ by `delta`: the second is measured, after the first.
+/// Measures pairs of configurations that differ by `delta`: the second one, after the first.
 fn pairs(plan: &Plan, n: usize, delta: f64, pass: u32) -> Results {
     let race = Race {
         plan,
@@ -223,7 +223,7 @@ fn pairs(plan: &Plan, n: usize, delta: f64, pass: u32) -> Results {
     })
 }
 
-/// What was measured at one size, by change.
+/// Results at one size, by change.
 struct At {
     n: f64,
     results: [Results; DELTAS.len()],
@@ -270,7 +270,7 @@ fn figure(id: &str, until: usize, measured: &[At]) -> Figure {
     }
 }
 
-/// All samples, size by size, and a number of the means at each size.
+/// Estimates a number of the means at each size, combined over the sizes.
 fn of_sizes(
     measured: &[At],
     who: usize,
@@ -323,7 +323,7 @@ fn one(measured: &[At]) -> Claim {
     })
 }
 
-/// `R^2` of the law above its floor, the mean of all sizes.
+/// Judges `R^2` of the law above its floor, as the mean of all sizes.
 fn logarithmic(measured: &[At]) -> Claim {
     let fit = of_sizes(measured, REGION[END], |means| Law::fitted(means).explained, mean);
     let straight = of_sizes(
@@ -346,8 +346,8 @@ fn logarithmic(measured: &[At]) -> Claim {
     })
 }
 
-/// The paper's estimate, `log C - 2 log(1/gamma)`, above the least there can be: steps are
-/// `1 + slope log2(change / floor)`, and 1 below the floor.
+/// The paper's estimate `log C - 2 log(1/gamma)`, above its minimum: steps are `1 + slope log2(change /
+/// floor)`, and 1 below the floor.
 #[derive(Debug, Clone, Copy)]
 struct Law {
     /// The change, in diameters, below which one step is to be expected.

@@ -1,4 +1,4 @@
-//! Figure 11: how steps and time grow with the size of the bodies, and what thin faces cost.
+//! Figure 11: growth of steps and time with the size of the bodies, and the cost of thin faces.
 
 use super::{
     Coherence, Gathered, Race, Results, against_size, axis, fitted, in_passes, listed, medians,
@@ -29,14 +29,14 @@ const HYBRID: usize = 1;
 const PORTAL: usize = 2;
 const ACROSS_CELLS: usize = 3;
 
-/// What was measured at all sizes, for one kind of body.
+/// Results at all sizes, for one kind of body.
 struct Grown(Vec<Measured>);
 
-/// What was measured on one kind of body at one size.
+/// Results for one kind of body at one size.
 struct Measured {
     race: Results,
-    /// Times of CTA when every query is asked twice and the second time counts: what it needs of the bodies
-    /// is in the processor's caches by then.
+    /// Times of CTA for the second of two equal queries, with the needed parts of the bodies in the processor's
+    /// caches.
     again: Vec<(Group, f64)>,
 }
 
@@ -107,17 +107,17 @@ impl Grown {
         self.0.iter().map(|at| at.race.time_sample(who)).collect()
     }
 
-    /// The times of queries that are asked at once again.
+    /// Returns the times of repeated queries.
     fn again(&self) -> Vec<Sample> {
         self.0.iter().map(|at| Sample::of(at.again.iter().copied())).collect()
     }
 
-    /// Mean steps with quartiles.
+    /// Returns the mean steps with quartiles.
     fn step_points(&self, who: usize) -> Vec<Point> {
         self.points(&self.steps(who), Point::mean)
     }
 
-    /// Median times with quartiles, in microseconds.
+    /// Returns the median times with quartiles, in microseconds.
     fn time_points(&self, who: usize) -> Vec<Point> {
         self.in_microseconds(&self.times(who))
     }
@@ -136,16 +136,16 @@ impl Grown {
             .collect()
     }
 
-    /// `k` in time ~ `(log n)^k`.
+    /// Returns the statistic `k` in time ~ `(log n)^k`.
     fn logarithms(&self) -> impl Fn(&[Vec<f64>]) -> f64 {
         let logs: Vec<f64> = self.sizes().iter().map(|n| n.ln()).collect();
         move |times| exponent(logs.iter().copied().zip(medians(times)))
     }
 }
 
-/// Asks queries of CTA twice and times the second.
+/// Asks queries of CTA twice, and times the second ones.
 fn ask_again(race: &Race, pass: u32) -> Vec<(Group, f64)> {
-    let bodies = race.bodies(pass);
+    let bodies = race.pass_bodies(pass);
     let labels = [race.figure, race.kind as u64, race.n as u64, u64::from(pass)];
     let mut random = Random::stream(race.plan.seed, &labels);
     let mut cta = WHO[CTA].enter(&bodies);
@@ -204,7 +204,7 @@ fn time_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
     figure
 }
 
-/// Times on thin faces over the median time on balanced ones.
+/// Returns the ratios of times on thin faces and the median time on balanced ones.
 fn cost(balanced: &Grown, thin: &Grown, who: usize) -> Vec<Point> {
     let ratio = |(balanced, thin): (&Measured, &Measured)| {
         let usual = median(&balanced.race.times(who));

@@ -1,4 +1,4 @@
-//! Figure 18: from query to query, beside enhanced GJK.
+//! Figure 18: sequences of queries, compared with enhanced GJK.
 
 use colltrans::cta;
 use colltrans::observe::Clock;
@@ -38,10 +38,10 @@ const HYBRID: usize = 2;
 const TRACKER: usize = 3;
 const COLD: usize = 4;
 
-/// The paper's changes from query to query, in diameters.
+/// Changes from query to query as in the paper, in diameters.
 const DELTAS: [f64; 4] = [0.01, 0.005, 0.002_5, 0.001_3];
 
-/// All sizes and changes, for one kind of face.
+/// Results for all sizes and changes, for one kind of face.
 struct Raced(Vec<[Results; DELTAS.len()]>);
 
 const KINDS: [Kind; 3] = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
@@ -88,7 +88,7 @@ fn sequences(plan: &Plan, kind: Kind, n: usize, delta: f64, pass: u32) -> Result
 }
 
 impl Raced {
-    /// `time(who) / time(EGJK)`: for each size the samples of all changes.
+    /// Returns the samples of `time(who) / time(EGJK)` for all sizes and changes.
     fn ratios(&self, who: usize) -> Vec<Sample> {
         self.0.iter().flatten().map(|r| r.ratios(who, EGJK)).collect()
     }
@@ -101,7 +101,7 @@ impl Raced {
         self.0.iter().map(point).collect()
     }
 
-    /// Median ratios: sizes, and at each the changes.
+    /// Formats median ratios by change and size.
     fn text(&self, who: usize) -> String {
         let at = |k: usize| {
             let ratios: Vec<_> =
@@ -111,7 +111,8 @@ impl Raced {
         (0..DELTAS.len()).map(at).collect::<Vec<_>>().join("; ")
     }
 
-    /// Iterations and times at the middle size, at the largest and smallest change.
+    /// Explains the result by iterations and times at the middle size, for the largest and the smallest
+    /// change.
     fn why(&self) -> Why {
         let middle = &self.0[self.0.len() / 2];
         let at = |r: &Results| {
@@ -160,8 +161,8 @@ fn figure(balanced: &Raced, thin: [&Raced; 2]) -> Figure {
     figure
 }
 
-/// Where the time of queries goes that start from the solution of one nearly the same, so that one planar problem
-/// solves most: what no query with region focus can do without.
+/// Returns the table of phases for queries that start from the solution of nearly the same one, of which most
+/// need one planar problem: the minimum cost of a query with region focus.
 fn floor(plan: &Plan) -> Table {
     let sizes = [200, 3_200, 51_200].map(|n| plan.size(n));
     let columns = std::iter::once("phase".to_owned())
@@ -183,7 +184,7 @@ fn floor(plan: &Plan) -> Table {
     Table { id: "figure-18-floor".into(), title, columns: columns.collect(), rows }
 }
 
-/// The median nanoseconds of each phase.
+/// Returns the median nanoseconds of each phase.
 fn profile(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
     let bodies = bodies(plan.seed, Kind::Balanced, n, 0);
     let mut random = Random::stream(plan.seed, &[18, n as u64]);

@@ -1,10 +1,10 @@
-//! The experiments, one file per family, and what they have in common: sizes, races, figures.
+//! The experiments, one file for each family, and their common parts: sizes, races, figures.
 //!
-//! A *race*: on the same blocks of settings of the same bodies every solver takes its turn,
-//! block by block, the order rotating; each query is timed alone. Queries from scratch are each a
-//! group of their own for the intervals, those of a sequence are one group. An experiment goes over all its
-//! races once in every *pass*, each time with other bodies: what the machine did in a stretch of time
-//! is in one pass of all of them ([`crate::statistics`]).
+//! In a *race* every solver answers the same blocks of settings of the same bodies, block by block in
+//! rotating order, and each query is timed separately. For the intervals, each query from scratch is a group,
+//! and the queries of a sequence are one group. In every *pass* an experiment runs all its races once with
+//! other bodies. Therefore temporary effects of the machine are in one pass of all races
+//! ([`crate::statistics`]).
 
 mod beyond;
 mod focus;
@@ -28,11 +28,12 @@ use crate::statistics::{Group, Sample, mean};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::{Stopwatch, exponent, median};
 
-/// All experiments, in the paper's order.
+/// Returns all experiments in the paper's order.
 pub fn experiments() -> &'static [Experiment] {
     &EXPERIMENTS
 }
 
+/// All experiments in the paper's order.
 const EXPERIMENTS: [Experiment; 12] = [
     minimisation::SECTION_3,
     growth::FIGURE_11,
@@ -48,9 +49,9 @@ const EXPERIMENTS: [Experiment; 12] = [
     beyond::BEYOND,
 ];
 
-/// What is told apart by scale.
+/// Parameters that depend on the scale.
 impl Plan {
-    /// One of three values.
+    /// Returns one of three values by scale.
     fn by_scale<T>(&self, tiny: T, quick: T, full: T) -> T {
         match self.scale {
             Scale::Tiny => tiny,
@@ -59,35 +60,36 @@ impl Plan {
         }
     }
 
-    /// Numbers of vertices, ascending.
+    /// Returns the numbers of vertices, ascending.
     fn sizes(&self) -> &'static [usize] {
         let all = &[200, 800, 3_200, 12_800, 51_200, 200_000];
         self.by_scale(&[50, 200], all, all)
     }
 
-    /// A number of vertices of the paper's, or a few at the smallest scale.
+    /// Returns the paper's number of vertices, or few at the smallest scale.
     fn size(&self, n: usize) -> usize {
         self.by_scale(200, n, n)
     }
 
-    /// Passes over bodies of `n` vertices, each with a pair of its own: fewer where these take seconds to make, but
-    /// in a full run, or as many as were asked for.
+    /// Returns the number of passes over bodies of `n` vertices, each with another pair. A quick run has
+    /// fewer passes over large bodies, which take seconds to build. A requested number replaces this one.
     fn passes(&self, n: usize) -> u32 {
         self.passes.unwrap_or(self.by_scale(1, if n < 20_000 { 4 } else { 2 }, 8))
     }
 }
 
-/// Measures each of `items` once in every pass over its bodies; `told` says how many vertices these have and
-/// what is going on.
+/// Measures each of `items` once in every pass over its bodies. `describe` returns the number of vertices of
+/// these and the current activity.
 fn in_passes<I, T: Gathered>(
     plan: &Plan,
     progress: &mut dyn Progress,
     items: &[I],
-    told: impl Fn(&I) -> (usize, String),
+    describe: impl Fn(&I) -> (usize, String),
     measure: impl Fn(&I, u32) -> T,
 ) -> Vec<T> {
-    let passes = |item: &I| plan.passes(told(item).0);
-    let all = items.iter().map(|item| f64::from(passes(item)) * share(told(item).0)).sum();
+    let passes = |item: &I| plan.passes(describe(item).0);
+    let all =
+        items.iter().map(|item| f64::from(passes(item)) * expected_share(describe(item).0)).sum();
     let mut done = 0.0;
     let mut found: Vec<Option<T>> = items.iter().map(|_| None).collect();
     for pass in 0..items.iter().map(passes).max().unwrap_or(0) {
@@ -95,9 +97,9 @@ fn in_passes<I, T: Gathered>(
             if pass >= passes(item) {
                 continue;
             }
-            let (n, doing) = told(item);
+            let (n, doing) = describe(item);
             progress.at(done, all, &doing);
-            done += share(n);
+            done += expected_share(n);
             let more = measure(item, pass);
             match found {
                 Some(found) => found.gather(more),
@@ -109,8 +111,9 @@ fn in_passes<I, T: Gathered>(
     found.into_iter().flatten().collect()
 }
 
-/// What a pass adds to those before.
+/// Results that several passes extend.
 trait Gathered {
+    /// Adds the results of another pass.
     fn gather(&mut self, more: Self);
 }
 
@@ -127,45 +130,45 @@ impl<A: Gathered, B: Gathered> Gathered for (A, B) {
     }
 }
 
-/// Whether queries start from the ones before.
+/// Whether queries start from previous ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Coherence {
-    /// No: each from scratch.
+    /// Each query starts from scratch.
     Scratch,
-    /// Yes, within a block; the first query of a block, from scratch, does not count.
+    /// Queries start from the previous one of a block. The first query of a block does not count.
     Blocks,
 }
 
-/// One query of one solver.
+/// A query of one solver.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
     nanoseconds: f64,
     work: Work,
-    /// What belongs together when settings are drawn anew.
+    /// Group for the bootstrap.
     group: Group,
 }
 
-/// Who races on what.
+/// Solvers and settings of a race.
 struct Race<'a> {
     plan: &'a Plan,
-    /// Number of the figure: its settings are drawn from a stream of their own.
+    /// Number of the figure, which selects the stream of random settings.
     figure: u64,
     kind: Kind,
-    /// Vertices.
+    /// Number of vertices.
     n: usize,
-    /// These bodies in place of some of that kind and size.
+    /// Bodies to use instead of those of the kind and size.
     given: Option<Arc<Bodies>>,
     who: &'a [Who],
     coherence: Coherence,
-    /// Settings in a block.
+    /// Number of settings in a block.
     length: usize,
-    /// Blocks in a pass.
+    /// Number of blocks in a pass.
     blocks: usize,
 }
 
-/// What a race brought: for each solver its queries, in the same order.
+/// Results of a race: for each solver its queries, in the same order.
 struct Results {
-    /// Of all passes: vertices of a body and mean diameter of the bodies, on average.
+    /// For each pass, the mean number of vertices and the mean diameter of the bodies.
     bodies: Vec<[f64; 2]>,
     lanes: Vec<Vec<Measured>>,
 }
@@ -178,7 +181,7 @@ impl Gathered for Results {
 }
 
 impl Race<'_> {
-    /// One pass on blocks of settings that `draw` makes; `purpose` tells its random numbers from
+    /// Runs one pass on blocks of settings made by `draw`. `purpose` distinguishes its random numbers from
     /// those of other races of the figure.
     fn run(
         &self,
@@ -191,15 +194,15 @@ impl Race<'_> {
         results
     }
 
-    /// As [`run`](Self::run) for `N` variants of settings, which `draw` is told: a block of each in
-    /// turn, so that whatever disturbs the machine disturbs all alike.
+    /// Runs one pass for `N` variants of settings, whose index `draw` receives. Blocks of all variants
+    /// alternate, so that disturbances of the machine affect all of them equally.
     fn run_in_turns<const N: usize>(
         &self,
         pass: u32,
         purpose: u64,
         draw: impl Fn(usize, &Bodies, usize, &mut Random) -> Vec<Setting>,
     ) -> [Results; N] {
-        let bodies = self.bodies(pass);
+        let bodies = self.pass_bodies(pass);
         let mut all = [(); N].map(|()| Results {
             bodies: vec![[bodies.vertices(), bodies.diameter]],
             lanes: vec![Vec::new(); self.who.len()],
@@ -214,20 +217,21 @@ impl Race<'_> {
                 for k in 0..field.len() {
                     let who = (turn + k) % field.len();
                     let lane = &mut results.lanes[who];
-                    self.follow(field[who].as_mut(), &block, first, lane);
+                    self.measure_block(field[who].as_mut(), &block, first, lane);
                 }
             }
         }
         all
     }
 
-    fn bodies(&self, pass: u32) -> Arc<Bodies> {
+    /// Returns the bodies of a pass.
+    fn pass_bodies(&self, pass: u32) -> Arc<Bodies> {
         let build = || shapes::bodies(self.plan.seed, self.kind, self.n, u64::from(pass));
         self.given.clone().unwrap_or_else(build)
     }
 
-    /// One solver's turn at a block.
-    fn follow(
+    /// Measures one solver on a block.
+    fn measure_block(
         &self,
         who: &mut dyn Algorithm,
         block: &[Setting],
@@ -238,7 +242,7 @@ impl Race<'_> {
         let scratch = self.coherence == Coherence::Scratch;
         who.forget();
         if scratch && let Some(first) = block.first() {
-            // Warms up: code and tables that the solver before has pushed out of the caches.
+            // A warm-up loads code and tables that the previous solver displaced from the caches.
             who.ask(first);
         }
         for (k, setting) in block.iter().enumerate() {
@@ -256,41 +260,43 @@ impl Race<'_> {
 }
 
 impl Results {
-    /// Vertices of a body, on average.
+    /// Returns the mean number of vertices of a body.
     fn vertices(&self) -> f64 {
         mean(&self.bodies.iter().map(|[vertices, _]| *vertices).collect::<Vec<_>>())
     }
 
-    /// The times of a solver, in nanoseconds.
+    /// Returns the times of a solver in nanoseconds.
     fn times(&self, who: usize) -> Vec<f64> {
         self.lanes[who].iter().map(|m| m.nanoseconds).collect()
     }
 
-    /// A number of every query of a solver, in groups.
+    /// Returns a number of every query of a solver, by group.
     fn sample(&self, who: usize, number: impl Fn(&Measured) -> f64) -> Sample {
         Sample::of(self.lanes[who].iter().map(|m| (m.group, number(m))))
     }
 
+    /// Returns the steps of a solver.
     fn steps(&self, who: usize) -> Sample {
         self.sample(who, |m| f64::from(m.work.steps))
     }
 
-    /// Iterations of all loops, on average.
+    /// Returns the mean number of iterations of all loops.
     fn iterations(&self, who: usize) -> f64 {
         mean(&self.sample(who, |m| f64::from(m.work.iterations)).values())
     }
 
+    /// Returns the times of a solver in nanoseconds, by group.
     fn time_sample(&self, who: usize) -> Sample {
         self.sample(who, |m| m.nanoseconds)
     }
 
-    /// Query by query, how many times as long one solver took as another.
+    /// Returns for each query the ratio of the times of two solvers.
     fn ratios(&self, who: usize, other: usize) -> Sample {
         let pairs = self.lanes[who].iter().zip(&self.lanes[other]);
         Sample::of(pairs.map(|(a, b)| (a.group, a.nanoseconds / b.nanoseconds)))
     }
 
-    /// How often a solver failed or contradicted the first who answered the same question.
+    /// Counts the queries in which a solver failed or contradicted another one.
     fn contradictions(&self, who: usize) -> usize {
         let diameter = mean(&self.bodies.iter().map(|[_, diameter]| *diameter).collect::<Vec<_>>());
         let differs = |query: usize| {
@@ -303,10 +309,11 @@ impl Results {
     }
 }
 
-/// How far two exact answers may differ, in diameters, after the rounding of either.
+/// Maximum difference of two exact answers, in diameters.
 const AGREEMENT: f64 = 1e-9;
 
 impl Answer {
+    /// Checks whether two answers exclude each other.
     fn contradicts(self, other: Self, diameter: f64) -> bool {
         let apart = |a: f64, b: f64| (a - b).abs() > AGREEMENT * diameter;
         match (self, other) {
@@ -318,27 +325,29 @@ impl Answer {
     }
 }
 
-/// The time a race over bodies of `n` vertices is expected to take, beside others: queries, which
-/// grow slowly, and the making of bodies and settings, which grow with `n`.
-fn share(n: usize) -> f64 {
+/// Returns the relative duration of a race over bodies of `n` vertices: queries, whose time grows slowly, and
+/// the construction of bodies and settings, whose time grows with `n`.
+fn expected_share(n: usize) -> f64 {
     1.0 + n as f64 / 20_000.0
 }
 
+/// Creates an axis.
 fn axis(label: &str, log: bool) -> Axis {
     Axis { label: label.into(), log }
 }
 
-/// A figure with a logarithmic axis of sizes.
+/// Creates a figure with a logarithmic axis of sizes.
 fn against_size(id: &str, title: &str, y: Axis, series: Vec<Series>) -> Figure {
     let x = axis("vertices of each body", true);
     Figure { id: id.into(), title: title.into(), x, y, series, references: Vec::new() }
 }
 
+/// Creates a curve.
 fn series(name: impl Into<String>, points: Vec<Point>) -> Series {
     Series { name: name.into(), points }
 }
 
-/// A curve to compare with: no measurements, no spread.
+/// Creates a curve for comparison, without spread.
 fn reference(name: &str, at: impl Iterator<Item = f64>, curve: impl Fn(f64) -> f64) -> Series {
     let point = |x| {
         let y = curve(x);
@@ -347,14 +356,14 @@ fn reference(name: &str, at: impl Iterator<Item = f64>, curve: impl Fn(f64) -> f
     series(name, at.map(point).collect())
 }
 
-/// `curve`, scaled to pass through the middle of the points.
+/// Creates a reference of `curve`, scaled to the mean of the points on a logarithmic scale.
 fn fitted(name: &str, points: &[Point], curve: impl Fn(f64) -> f64) -> Series {
     let logs: f64 = points.iter().map(|p| (p.y / curve(p.x)).ln()).sum();
     let scale = (logs / points.len() as f64).exp();
     reference(name, points.iter().map(|p| p.x), |x| scale * curve(x))
 }
 
-/// A time for people.
+/// Formats a time.
 fn time(nanoseconds: f64) -> String {
     if nanoseconds < 1e3 {
         format!("{nanoseconds:.0} ns")
@@ -365,33 +374,35 @@ fn time(nanoseconds: f64) -> String {
     }
 }
 
-/// Numbers of a curve for people, from the first to the last point.
+/// Formats the values of a curve from the first to the last point.
 fn listed(points: &[Point], digits: usize) -> String {
     let text: Vec<_> =
         points.iter().map(|p| format!("{:.digits$} ({})", p.y, thousands(p.x))).collect();
     text.join(", ")
 }
 
-/// A number of vertices with its thousands apart.
+/// Formats a number of vertices with a separator of thousands.
 fn thousands(n: f64) -> String {
     let n = n.round() as u64;
     if n < 10_000 { n.to_string() } else { format!("{},{:03}", n / 1_000, n % 1_000) }
 }
 
-/// The middle of the medians.
+/// Returns the median of the medians.
 fn middle(samples: &[Vec<f64>]) -> f64 {
     median(&samples.iter().map(|values| median(values)).collect::<Vec<_>>())
 }
 
+/// Returns the means of samples.
 fn means(samples: &[Vec<f64>]) -> Vec<f64> {
     samples.iter().map(|values| mean(values)).collect()
 }
 
+/// Returns the medians of samples.
 fn medians(samples: &[Vec<f64>]) -> Vec<f64> {
     samples.iter().map(|values| median(values)).collect()
 }
 
-/// The exponent of medians as a power of the sizes.
+/// Returns the exponent of medians as a power of the sizes.
 fn exponent_of(sizes: &[f64], samples: &[Vec<f64>]) -> f64 {
     exponent(sizes.iter().copied().zip(medians(samples)))
 }

@@ -1,4 +1,4 @@
-//! Table I: where the time of a query goes.
+//! Table I: the shares of the phases in the time of a query.
 
 use std::hint::black_box;
 
@@ -22,10 +22,10 @@ pub(super) const TABLE_1: Experiment = Experiment {
     run,
 };
 
-/// Where the time of queries about bodies of one size goes.
+/// Profiles of queries about bodies of one size.
 struct Profiled {
     vertices: Vec<f64>,
-    /// Query by query, the nanoseconds of each phase.
+    /// For each query, the nanoseconds of each phase.
     queries: Vec<(Group, Profile)>,
 }
 
@@ -36,8 +36,9 @@ impl Gathered for Profiled {
     }
 }
 
+/// Runs the experiment.
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    // Each once, also where all sizes are the same few vertices.
+    // Equal sizes are measured once, as at the smallest scale.
     let mut sizes = [800, 12_800, 200_000].map(|n| plan.size(n)).to_vec();
     sizes.dedup();
     let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
@@ -61,27 +62,29 @@ fn measure(plan: &Plan, n: usize, pass: u32) -> Profiled {
             (Group { pass, number }, clock.profile())
         })
         .collect();
-    // Other programs on the machine disturb some queries, in whatever phase they are.
+    // Other programs on the machine disturb some queries, in any phase. The slowest twentieth is discarded.
     queries.sort_by(|(_, a), (_, b)| a.total().total_cmp(&b.total()));
     queries.truncate((queries.len() * 19).div_ceil(20));
     Profiled { vertices: vec![bodies.vertices()], queries }
 }
 
-/// Name of the phases in [`colltrans::observe`] that the claims are about.
+/// Name in [`colltrans::observe`] of the phase of planar problems.
 const PLANAR: &str = "planar problems";
+/// Name in [`colltrans::observe`] of the phase of the search region.
 const REGION: &str = "search region";
 
 impl Profiled {
+    /// Returns the mean number of vertices.
     fn vertices(&self) -> f64 {
         self.vertices.iter().sum::<f64>() / self.vertices.len() as f64
     }
 
-    /// The part of the time that a phase takes.
+    /// Returns the share of a phase in the time.
     fn part(&self, name: &str) -> f64 {
         self.estimated(name).value / 100.0
     }
 
-    /// The same in per cent, with its interval.
+    /// Returns the share of a phase in per cent, with its interval.
     fn estimated(&self, name: &str) -> Estimate {
         let of = |p: &Profile| p.phases().iter().filter(|(n, _)| *n == name).map(|(_, t)| t).sum();
         let sample = |time: &dyn Fn(&Profile) -> f64| {
@@ -91,13 +94,14 @@ impl Profiled {
         estimate(&samples, |s| 100.0 * s[0].iter().sum::<f64>() / s[1].iter().sum::<f64>())
     }
 
-    /// The phases of the minimisation, without the frame around it: the certificate and the answer.
+    /// Returns the share of a phase in the minimisation, without the certificate and the answer.
     fn part_of_minimisation(&self, name: &str) -> f64 {
         let around = ["portal refinement", "answer"].map(|phase| self.part(phase));
         self.part(name) / (1.0 - around.iter().sum::<f64>())
     }
 }
 
+/// Returns the table of all shares.
 fn table(profiled: &[Profiled]) -> Table {
     let head = |p: &Profiled| format!("{} vertices", thousands(p.vertices()));
     let columns = std::iter::once("phase".into()).chain(profiled.iter().map(head)).collect();
@@ -116,12 +120,13 @@ fn table(profiled: &[Profiled]) -> Table {
     Table { id: "table-1".into(), title, columns, rows }
 }
 
+/// Formats a share at all sizes.
 fn parts(profiled: &[Profiled], part: impl Fn(&Profiled) -> f64) -> String {
     let text = |p: &Profiled| format!("{:.1} % ({})", 100.0 * part(p), thousands(p.vertices()));
     profiled.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// Judged at the middle size.
+/// Judges the share of planar problems, at the middle size.
 fn planar_problems(profiled: &[Profiled]) -> Claim {
     let middle = &profiled[profiled.len() / 2];
     let details = format!(
@@ -151,7 +156,8 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
     })
 }
 
-/// The paper's "negligible", taken as less than a twentieth, at the size where it is most.
+/// Judges the share of the search region at the size where it is largest. The paper's "negligible" is taken
+/// as less than a twentieth.
 fn region(profiled: &[Profiled]) -> Claim {
     let each = profiled.iter().map(|p| p.estimated(REGION));
     let most = each.max_by(|a, b| a.value.total_cmp(&b.value)).expect("three sizes");

@@ -1,4 +1,4 @@
-//! Figure 12: what it costs to find that bodies pass each other.
+//! Figure 12: the cost of detecting that bodies pass each other.
 
 use super::{
     Coherence, Gathered, Race, Results, against_size, axis, in_passes, listed, median, reference,
@@ -21,12 +21,12 @@ const CTA: usize = 0;
 const HYBRID: usize = 1;
 const PORTAL: usize = 2;
 
-/// The paper's least distances during the motion, in diameters: from very close to far.
+/// Least distances during the motion as in the paper, in diameters: from very close to far.
 const GAPS: [f64; 4] = [0.005, 0.05, 0.5, 1.5];
 const NEAR: usize = 0;
 const FAR: usize = 3;
 
-/// At every size, the settings that collide, and those that pass, by least distance.
+/// For each size, the settings that collide, and those that pass, by least distance.
 struct Measured {
     colliding: Results,
     passing: [Results; GAPS.len()],
@@ -39,10 +39,11 @@ impl Gathered for Measured {
     }
 }
 
+/// Runs the experiment.
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
     let all = in_passes(plan, progress, plan.sizes(), told, |&n, pass| measure(plan, n, pass));
-    // All distances for the paper's algorithm, the least and largest for others.
+    // For the paper's algorithm all distances are drawn, for others the smallest and the largest one.
     let drawn =
         [(CTA, 0), (CTA, 1), (CTA, 2), (CTA, 3), (HYBRID, NEAR), (PORTAL, NEAR), (PORTAL, FAR)];
     let lines = drawn.map(|(who, gap)| {
@@ -60,10 +61,12 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         reference("the paper, 0.005 D: half", at(), |_| 0.5),
         reference("the paper, 1.5 D: a third", at(), |_| 1.0 / 3.0),
     ];
-    let claims = vec![passes(&all, "12-near", NEAR), passes(&all, "12-far", FAR)];
+    let claims =
+        vec![separation_claim(&all, "12-near", NEAR), separation_claim(&all, "12-far", FAR)];
     Finding { figures: vec![figure], tables: Vec::new(), claims }
 }
 
+/// Measures one pass at one size.
 fn measure(plan: &Plan, n: usize, pass: u32) -> Measured {
     let race = Race {
         plan,
@@ -86,7 +89,7 @@ fn measure(plan: &Plan, n: usize, pass: u32) -> Measured {
     Measured { colliding, passing: [a, b, c, d] }
 }
 
-/// Times of separations over the median time of collisions, at every size.
+/// Returns the times of separations over the median time of collisions, for every size.
 fn ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
     let point = |m: &Measured| {
         let usual = median(&m.colliding.times(who));
@@ -96,8 +99,8 @@ fn ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
     all.iter().map(point).collect()
 }
 
-/// The ratio of medians, the mean over all sizes.
-fn passes(all: &[Measured], id: &str, gap: usize) -> Claim {
+/// Judges the ratio of medians, as the mean over all sizes.
+fn separation_claim(all: &[Measured], id: &str, gap: usize) -> Claim {
     let of = |who: usize| {
         let passing = all.iter().map(|m| m.passing[gap].time_sample(who));
         let colliding = all.iter().map(|m| m.colliding.time_sample(who));
@@ -121,11 +124,11 @@ fn passes(all: &[Measured], id: &str, gap: usize) -> Claim {
         others.join(", "),
         of(HYBRID)
     );
-    judged(id, vec![of(CTA)], details, || why(all))
+    judged(id, vec![of(CTA)], details, || explanation(all))
 }
 
-/// What the planar problems say, at the middle size.
-fn why(all: &[Measured]) -> Why {
+/// Explains the result by the planar problems at the middle size.
+fn explanation(all: &[Measured]) -> Why {
     let m = &all[all.len() / 2];
     let each = |r: &Results| {
         let steps = mean(&r.steps(CTA).values());

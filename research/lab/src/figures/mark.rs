@@ -1,14 +1,14 @@
-//! The mark of `phi`: all cells in which the same features decide.
+//! The mark of `phi`: all cells in which the same features determine the contact.
 
 use colltrans::observe::Touch;
 use glam::DVec2;
 
 use super::planar::{Face, Features, View};
 
-/// Levels of either body that are looked at.
-const LOOKS: usize = 120;
+/// Number of samples along each axis of levels.
+const SAMPLES: usize = 120;
 
-/// A cell where sections meet.
+/// A cell in which the sections meet.
 #[derive(Debug, Clone)]
 pub(super) struct Cell {
     pub(super) faces: [Face; 2],
@@ -16,35 +16,35 @@ pub(super) struct Cell {
     pub(super) corners: Vec<DVec2>,
 }
 
-/// Cells, and what bounds those where sections miss each other.
+/// Cells, and the boundaries of those in which the sections do not meet.
 #[derive(Debug)]
 pub(super) struct Mark {
     pub(super) cells: Vec<Cell>,
-    /// Between neighbouring cells outside of the domain: short lines.
+    /// Boundaries between neighbouring cells outside of the domain, as short lines.
     pub(super) lines: Vec<[DVec2; 2]>,
-    /// A point well inside of each cell outside of the domain.
+    /// A point well inside each cell outside of the domain.
     pub(super) outside: Vec<DVec2>,
 }
 
 impl Mark {
-    /// From many looks. Cells with contact are whole, however few of them fell into one.
+    /// Finds the cells by samples. Cells with contact are complete, even if they contain few samples.
     pub(super) fn new(view: &View, [low, high]: [DVec2; 2]) -> Self {
         let place = |i: usize, j: usize| {
-            let share = |k: usize| (k as f64 + 0.5) / LOOKS as f64;
+            let share = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
             low + (high - low) * DVec2::new(share(i), share(j))
         };
         let seen = |at: DVec2| view.instance(at).map(|found| (found.features, found.touch));
-        let mut looks = Vec::with_capacity(LOOKS * LOOKS);
-        for i in 0..LOOKS {
-            for j in 0..LOOKS {
+        let mut looks = Vec::with_capacity(SAMPLES * SAMPLES);
+        for i in 0..SAMPLES {
+            for j in 0..SAMPLES {
                 looks.push(seen(place(i, j)));
             }
         }
-        let look = |i: usize, j: usize| looks[i * LOOKS + j];
+        let look = |i: usize, j: usize| looks[i * SAMPLES + j];
         let mut cells: Vec<Cell> = Vec::new();
         let mut groups: Vec<(Features, Vec<(usize, usize)>)> = Vec::new();
-        for i in 0..LOOKS {
-            for j in 0..LOOKS {
+        for i in 0..SAMPLES {
+            for j in 0..SAMPLES {
                 let Some((features, touch)) = look(i, j) else { continue };
                 if let Features::Touching(faces) = features {
                     if cells.iter().all(|cell| cell.faces != faces) {
@@ -62,8 +62,8 @@ impl Mark {
         let outside =
             groups.iter().filter_map(|(_, all)| deepest(all)).map(|(i, j)| place(i, j)).collect();
         let mut lines = Vec::new();
-        for i in 0..LOOKS - 1 {
-            for j in 0..LOOKS - 1 {
+        for i in 0..SAMPLES - 1 {
+            for j in 0..SAMPLES - 1 {
                 let square = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
                 let corners = square.map(|(i, j)| (place(i, j), look(i, j)));
                 lines.extend(borders(&corners, &seen));
@@ -73,10 +73,10 @@ impl Mark {
     }
 }
 
-/// The one of some looks that is farthest from where they end; none of very few.
+/// Returns the sample that is farthest from the boundary of some samples; `None` for very few samples.
 fn deepest(all: &[(usize, usize)]) -> Option<(usize, usize)> {
     let depth = |&(i, j): &(usize, usize)| {
-        (1..LOOKS).find(|&far| {
+        (1..SAMPLES).find(|&far| {
             let ends =
                 [(i.wrapping_sub(far), j), (i + far, j), (i, j.wrapping_sub(far)), (i, j + far)];
             ends.iter().any(|end| !all.contains(end))
@@ -85,11 +85,12 @@ fn deepest(all: &[(usize, usize)]) -> Option<(usize, usize)> {
     all.iter().max_by_key(|at| depth(at)).filter(|at| depth(at) >= Some(4)).copied()
 }
 
-type Look = Option<(Features, Touch)>;
+/// Sample of a pair of levels.
+type Sample = Option<(Features, Touch)>;
 
-/// The border between different cells within a small square, where sections miss each other.
-fn borders(corners: &[(DVec2, Look); 4], seen: &impl Fn(DVec2) -> Look) -> Vec<[DVec2; 2]> {
-    let meets = |look: &Look| look.is_none_or(|(_, touch)| touch.meets());
+/// Returns the boundary between different cells within a small square in which the sections do not meet.
+fn borders(corners: &[(DVec2, Sample); 4], seen: &impl Fn(DVec2) -> Sample) -> Vec<[DVec2; 2]> {
+    let meets = |look: &Sample| look.is_none_or(|(_, touch)| touch.meets());
     if corners.iter().any(|(_, look)| meets(look)) {
         return Vec::new();
     }

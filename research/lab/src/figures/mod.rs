@@ -1,8 +1,8 @@
-//! Figures 1 to 6 and 8 to 10 of the paper, drawn anew: two cubes, and what the algorithm does with them as
-//! it tells an observer (figure 7 is the pseudocode, [line by line](../../../docs/paper.md)).
+//! Figures 1 to 6 and 8 to 10 of the paper, reproduced with two cubes: the steps of the algorithm as reported
+//! to an observer. Figure 7 is the pseudocode ([line by line](../../../docs/paper.md)).
 //!
-//! Data flow: `setting` (two cubes, a run of the algorithm) -> `planar` (two sections and where they touch,
-//! the slow and obvious way) -> `mark` (all cells) -> `levels`, `instances` (pictures) on a `sheet`.
+//! Modules: `setting` (cubes, and a run of the algorithm), `planar` (two sections and their contact by brute
+//! force), `mark` (all cells), `levels` and `instances` (pictures) on a `sheet`.
 
 mod instances;
 mod levels;
@@ -25,19 +25,25 @@ pub use setting::Error;
 pub(crate) use setting::below;
 use setting::{Run, Setting, middle};
 
-/// Where the moving cube is, how it is turned, and the direction; the fixed one is at home.
+/// Position of the moving cube; the fixed one is at the origin.
 const AT: [f64; 3] = [-1.1, 1.0, 5.0];
+/// Orientation of the moving cube.
 const TURN: [f64; 4] = [-0.7, -0.3, 0.2, 0.7];
+/// Direction of motion.
 const TOWARDS: [f64; 3] = [0.42, -0.3, -1.0];
-/// For figure 10 another pair, whose search leaves the neighbourhood of the last solution: where the moving
-/// cube is, where it was before, how it is turned, the direction, and the half side of `N(p)`, a length.
+/// Position of the moving cube of figure 10, in which the search leaves the neighbourhood of the last
+/// solution.
 const AFTER: [f64; 3] = [-1.4, 1.6, 5.0];
+/// Previous position of the moving cube of figure 10.
 const BEFORE: [f64; 3] = [-1.6, 2.2, 5.0];
+/// Orientation of the moving cube of figure 10.
 const TURN_AFTER: [f64; 4] = [-0.8, -0.2, -0.4, 0.5];
+/// Direction of figure 10.
 const TOWARDS_AFTER: [f64; 3] = [0.38, -0.12, -1.0];
+/// Half side of `N(p)` of figure 10, a length.
 const HALF: f64 = 0.9;
 
-/// A setting, what the algorithm did, and all cells.
+/// A setting, the run of the algorithm, and all cells.
 struct Scene {
     run: Run,
     view: View,
@@ -45,6 +51,7 @@ struct Scene {
 }
 
 impl Scene {
+    /// Runs the algorithm and finds all cells.
     fn new(setting: &Setting) -> Result<Self, Error> {
         let run = setting.run()?;
         let view = View::new(setting, &run.sections);
@@ -52,7 +59,7 @@ impl Scene {
         Ok(Self { run, view, mark })
     }
 
-    /// The planar problem in the largest cell where sections meet so.
+    /// Returns the planar problem in the largest cell with this kind of contact; `None` if there is none.
     fn sample(&self, touch: Touch) -> Option<Instance> {
         let met = self.mark.cells.iter().filter(|cell| cell.touch == touch);
         let size = |corners: &[DVec2]| {
@@ -65,11 +72,10 @@ impl Scene {
     }
 }
 
-/// Draws all of them into a folder, which is made if it does not exist; what was written.
+/// Draws all figures into a folder, which is created if necessary, and returns a summary.
 ///
 /// # Errors
-///
-/// A file that cannot be written, or cubes that do not show what they should.
+/// [`LabError`] if a file cannot be written, or if the cubes do not show the expected situations.
 pub fn write(folder: &Path) -> Result<String, LabError> {
     let at_folder = |source| LabError::Folder { path: folder.into(), source };
     std::fs::create_dir_all(folder).map_err(at_folder)?;
@@ -81,11 +87,10 @@ pub fn write(folder: &Path) -> Result<String, LabError> {
     Ok(format!("{} pictures are in {}\n", drawn.len(), folder.display()))
 }
 
-/// The figures by their numbers, as SVG documents. The same on every machine.
+/// Returns the figures by number, as SVG documents. They are equal on every machine.
 ///
 /// # Errors
-///
-/// None unless the library has changed what it does with the cubes.
+/// [`Error`] if the library's results for the cubes have changed.
 pub fn figures() -> Result<Vec<(u32, String)>, Error> {
     let setting = Setting::new(AT, TURN, TOWARDS)?;
     let scene = Scene::new(&setting)?;

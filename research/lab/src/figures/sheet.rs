@@ -1,21 +1,21 @@
-//! A sheet of lines, areas and words, written as SVG: legible on a light ground and, where the reader's
-//! system is dark, on a dark one. Coordinates are pixels, `y` downwards.
+//! A sheet of lines, areas and texts, written as SVG for light and dark backgrounds. Coordinates are pixels
+//! with `y` downwards.
 
 use std::fmt::Write as _;
 
 use glam::DVec2;
 
-/// What classes look like: fills, lines, words.
+/// Styles of the classes.
 const STYLE: &str = include_str!("sheet.css");
 
-/// An SVG document that grows.
+/// An SVG document under construction.
 #[derive(Debug)]
 pub(super) struct Sheet {
     size: DVec2,
     body: String,
 }
 
-/// Where a word stands beside its place.
+/// Alignment of a text at its position.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -24,6 +24,7 @@ pub(super) enum Anchor {
 }
 
 impl Sheet {
+    /// Creates a sheet with a title and a background.
     pub(super) fn new(title: &str, wide: f64, high: f64) -> Self {
         let mut sheet = Self { size: DVec2::new(wide, high), body: String::new() };
         sheet.put(&format!("<title>{title}</title>\n<style>{STYLE}</style>\n"));
@@ -31,10 +32,12 @@ impl Sheet {
         sheet
     }
 
+    /// Appends SVG source.
     fn put(&mut self, text: &str) {
         self.body.push_str(text);
     }
 
+    /// Appends a path through points.
     fn path(&mut self, class: &str, points: &[DVec2], end: &str) {
         let mut d = String::new();
         for (k, at) in points.iter().enumerate() {
@@ -44,17 +47,19 @@ impl Sheet {
         self.put(&format!("<path class=\"{class}\" d=\"{d}{end}\"/>\n"));
     }
 
+    /// Draws a polygon with at least three points.
     pub(super) fn polygon(&mut self, class: &str, points: &[DVec2]) {
         if points.len() > 2 {
             self.path(class, points, "Z");
         }
     }
 
+    /// Draws a line.
     pub(super) fn line(&mut self, class: &str, from: DVec2, to: DVec2) {
         self.path(class, &[from, to], "");
     }
 
-    /// Many lines of one kind.
+    /// Draws many lines of one class.
     pub(super) fn lines(&mut self, class: &str, lines: &[[DVec2; 2]]) {
         let all: Vec<String> =
             lines.iter().map(|[a, b]| format!("M{}L{}", place(*a), place(*b))).collect();
@@ -63,12 +68,13 @@ impl Sheet {
         }
     }
 
+    /// Draws a dot.
     pub(super) fn dot(&mut self, class: &str, at: DVec2, radius: f64) {
         let (x, y) = (number(at.x), number(at.y));
         self.put(&format!("<circle class=\"{class}\" cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
     }
 
-    /// A line with a head at its end.
+    /// Draws a line with an arrow head at its end.
     pub(super) fn arrow(&mut self, [class, head]: [&str; 2], from: DVec2, to: DVec2) {
         let way = (to - from).normalize_or_zero();
         let neck = to - way * 8.0;
@@ -76,6 +82,7 @@ impl Sheet {
         self.polygon(head, &[to, neck + way.perp() * 3.6, neck - way.perp() * 3.6]);
     }
 
+    /// Draws a text.
     pub(super) fn text(&mut self, class: &str, at: DVec2, anchor: Anchor, words: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
@@ -87,7 +94,7 @@ impl Sheet {
         self.put(&format!("<text class=\"{class}\" {attributes}>{words}</text>\n"));
     }
 
-    /// Entries side by side: a sign for each class, and what it means.
+    /// Draws legend entries side by side: a symbol for each class, and its meaning.
     pub(super) fn legend(&mut self, mut at: DVec2, entries: &[(&str, &str, f64)]) {
         for &(class, words, room) in entries {
             let middle = at + DVec2::new(9.0, -4.0);
@@ -107,6 +114,7 @@ impl Sheet {
         }
     }
 
+    /// Returns the document.
     pub(super) fn finish(self) -> String {
         let Self { size: DVec2 { x, y }, body } = self;
         format!(
@@ -116,20 +124,22 @@ impl Sheet {
     }
 }
 
+/// Returns the corners of a rectangle.
 pub(super) fn rectangle(low: DVec2, high: DVec2) -> [DVec2; 4] {
     [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]
 }
 
-/// A tenth of a pixel is as fine as it gets; no negative zero.
+/// Rounds to a tenth of a pixel, without negative zeros.
 fn number(x: f64) -> f64 {
     (x * 10.0).round() / 10.0 + 0.0
 }
 
+/// Formats a point.
 fn place(at: DVec2) -> String {
     format!("{} {}", number(at.x), number(at.y))
 }
 
-/// Maps an area, `y` upwards, into a rectangle of the sheet.
+/// A map from an area with `y` upwards to a rectangle of the sheet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Map {
     from: DVec2,
@@ -138,7 +148,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// As large as fits, in the middle, the same scale for both axes.
+    /// Fits an area into the middle of a rectangle, with the same scale for both axes.
     pub(super) fn fitting(points: &[DVec2], [left, right]: [DVec2; 2]) -> Self {
         let low = points.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
         let high = points.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p));
@@ -150,15 +160,17 @@ impl Map {
         }
     }
 
+    /// Maps a point.
     pub(super) fn at(&self, p: DVec2) -> DVec2 {
         self.to + (p - self.from) * self.scale
     }
 
+    /// Maps points.
     pub(super) fn all(&self, points: &[DVec2]) -> Vec<DVec2> {
         points.iter().map(|&p| self.at(p)).collect()
     }
 
-    /// A direction of the area on the sheet, of length 1.
+    /// Maps a direction to a direction of length 1 on the sheet.
     pub(super) fn way(&self, v: DVec2) -> DVec2 {
         (v * self.scale).normalize_or_zero()
     }

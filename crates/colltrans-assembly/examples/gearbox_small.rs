@@ -1,5 +1,5 @@
-//! Makes `data/gearbox_small`: a shaft with a gear, a spacer, a bush and a ball bearing in a housing
-//! with a bolted cover; 16 parts, fits without clearance, in millimetres.
+//! Writes `data/gearbox_small`: a shaft with a gear, a spacer, a bush and a ball bearing in a housing with a bolted
+//! cover; 16 parts, fits without clearance, in millimetres.
 //!
 //! `cargo run --release -p colltrans-assembly --example gearbox_small -- data/gearbox_small`
 
@@ -10,7 +10,7 @@ use std::path::Path;
 use colltrans_mesh::{Mesh, write};
 use glam::DVec3;
 
-/// Sides of everything round: the same everywhere, so that fits are exact.
+/// Number of sides of round shapes, equal for all so that fits are exact.
 const SIDES: usize = 32;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -22,6 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Returns all parts with their names.
 fn parts() -> Vec<(String, Mesh)> {
     let mut parts: Vec<(String, Mesh)> = vec![
         ("housing".into(), block(0.0, 30.0, Hole::new(10.0, 26.0), Hole::new(2.0, 14.0))),
@@ -29,7 +30,7 @@ fn parts() -> Vec<(String, Mesh)> {
         ("rear_bush".into(), ring(4.0, 10.0, 4.0, 9.0)),
         (
             "shaft".into(),
-            turned(&[
+            solid_of_revolution(&[
                 (0.0, 4.0),
                 (4.0, 4.0),
                 (4.0, 9.0),
@@ -49,7 +50,10 @@ fn parts() -> Vec<(String, Mesh)> {
         let [x, y] = [[16.0, 16.0], [-16.0, 16.0], [-16.0, -16.0], [16.0, -16.0]][k];
         let profile =
             [(0.0, 18.0), (2.0, 18.0), (2.0, 34.0), (3.5, 34.0), (3.5, 37.0), (0.0, 37.0)];
-        parts.push((format!("bolt_{k}"), moved(turned(&profile), DVec3::new(x, y, 0.0))));
+        parts.push((
+            format!("bolt_{k}"),
+            moved(solid_of_revolution(&profile), DVec3::new(x, y, 0.0)),
+        ));
     }
     for k in 0..4 {
         let (s, c) = (TAU * f64::from(k) / 4.0).sin_cos();
@@ -61,15 +65,17 @@ fn parts() -> Vec<(String, Mesh)> {
     parts
 }
 
+/// Returns a displaced mesh.
 fn moved(mesh: Mesh, by: DVec3) -> Mesh {
     let Mesh { mut vertices, faces, .. } = mesh;
     for v in &mut vertices {
         *v += by;
     }
-    made(vertices, faces)
+    outward_mesh(vertices, faces)
 }
 
-fn made(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Mesh {
+/// Creates a mesh, reversed if it is inside out.
+fn outward_mesh(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Mesh {
     let mut mesh = Mesh::default();
     (mesh.vertices, mesh.faces) = (vertices, faces);
     if mesh.signed_volume() < 0.0 {
@@ -78,13 +84,14 @@ fn made(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Mesh {
     mesh
 }
 
+/// Returns cosine and sine of the `k`-th side.
 fn circle(k: usize) -> (f64, f64) {
     let (s, c) = (TAU * (k % SIDES) as f64 / SIDES as f64).sin_cos();
     (c, s)
 }
 
-/// A closed profile of radii and heights, turned about z; ends on the axis, or a ring.
-fn turned(profile: &[(f64, f64)]) -> Mesh {
+/// Rotates a closed profile of radii and heights about z. The profile ends on the axis, or forms a ring.
+fn solid_of_revolution(profile: &[(f64, f64)]) -> Mesh {
     let (mut vertices, mut rows) = (Vec::new(), Vec::new());
     for &(r, z) in profile {
         let first = vertices.len() as u32;
@@ -107,14 +114,15 @@ fn turned(profile: &[(f64, f64)]) -> Mesh {
             }
         }
     }
-    made(vertices, faces)
+    outward_mesh(vertices, faces)
 }
 
+/// Returns a ring with rectangular profile.
 fn ring(inner: f64, outer: f64, low: f64, high: f64) -> Mesh {
-    turned(&[(inner, low), (outer, low), (outer, high), (inner, high)])
+    solid_of_revolution(&[(inner, low), (outer, low), (outer, high), (inner, high)])
 }
 
-/// A ring from a radius to the shoulders of a groove of radius 2 around the balls' centres at 7.
+/// Returns a ring from a radius to the shoulders of a groove of radius 2 around the centres of the balls at radius 7.
 fn raceway(away: f64, shoulder: f64, low: f64, high: f64) -> Mesh {
     let middle = f64::midpoint(low, high);
     let side = (7.0 - shoulder).signum();
@@ -125,18 +133,19 @@ fn raceway(away: f64, shoulder: f64, low: f64, high: f64) -> Mesh {
         profile.push((7.0 - side * 2.0 * angle.cos(), middle - 2.0 * angle.sin()));
     }
     profile.extend([(shoulder, high), (away, high)]);
-    turned(&profile)
+    solid_of_revolution(&profile)
 }
 
+/// Returns a sphere.
 fn ball(radius: f64) -> Mesh {
     let at = |k: u32| (f64::from(k) / 12.0 * TAU / 2.0).sin_cos();
     let mut profile: Vec<(f64, f64)> = vec![(0.0, -radius)];
     profile.extend((1..12).map(at).map(|(s, c)| (radius * s, -radius * c)));
     profile.push((0.0, radius));
-    turned(&profile)
+    solid_of_revolution(&profile)
 }
 
-/// Teeth are every other pair of sides.
+/// Returns a gear, with a tooth on every other pair of sides.
 fn gear(bore: f64, root: f64, tip: f64, low: f64, high: f64) -> Mesh {
     let radius = |k: usize| if k % 4 < 2 { tip } else { root };
     let Mesh { mut vertices, faces, .. } = ring(bore, tip, low, high);
@@ -147,9 +156,10 @@ fn gear(bore: f64, root: f64, tip: f64, low: f64, high: f64) -> Mesh {
         let r = radius(k % SIDES);
         (v.x, v.y) = (r * c, r * s);
     }
-    made(vertices, faces)
+    outward_mesh(vertices, faces)
 }
 
+/// A hole from above.
 #[derive(Clone, Copy)]
 struct Hole {
     radius: f64,
@@ -157,15 +167,16 @@ struct Hole {
 }
 
 impl Hole {
+    /// Creates a hole.
     const fn new(radius: f64, depth: f64) -> Self {
         Self { radius, depth }
     }
 }
 
-/// Where the square plate is divided.
+/// Coordinates of the divisions of a square plate.
 const GRID: [f64; 4] = [-20.0, -12.0, 12.0, 20.0];
 
-/// A square block with a hole in the middle and one in each corner, from above.
+/// Returns a square block with a hole in the middle and one in each corner, from above.
 fn block(low: f64, high: f64, middle: Hole, corner: Hole) -> Mesh {
     let mut vertices = Vec::new();
     let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -193,13 +204,13 @@ fn block(low: f64, high: f64, middle: Hole, corner: Hole) -> Mesh {
         let bottom = (high - hole.depth).max(low);
         let top_rim = rim(&mut vertices, center, hole.radius, high);
         let low_rim = rim(&mut vertices, center, hole.radius, bottom);
-        around(&mut faces, below, top_rim, false);
+        triangulate_square_with_hole(&mut faces, below, top_rim, false);
         for k in 0..SIDES as u32 {
             let l = (k + 1) % SIDES as u32;
             faces.push(vec![top_rim + k, top_rim + l, low_rim + l, low_rim + k]);
         }
         if bottom == low {
-            around(&mut faces, square, low_rim, true);
+            triangulate_square_with_hole(&mut faces, square, low_rim, true);
         } else {
             faces.push((0..SIDES as u32).map(|k| low_rim + k).collect());
             faces.push(square.iter().rev().copied().collect());
@@ -210,9 +221,10 @@ fn block(low: f64, high: f64, middle: Hole, corner: Hole) -> Mesh {
         let (a, b) = (border[k], border[(k + 1) % 12]);
         faces.push(vec![a, b, b + 16, a + 16]);
     }
-    made(vertices, faces)
+    outward_mesh(vertices, faces)
 }
 
+/// Adds the vertices of a circle, and returns the first index.
 fn rim(vertices: &mut Vec<DVec3>, [x, y]: [f64; 2], radius: f64, z: f64) -> u32 {
     let first = vertices.len() as u32;
     vertices
@@ -220,8 +232,13 @@ fn rim(vertices: &mut Vec<DVec3>, [x, y]: [f64; 2], radius: f64, z: f64) -> u32 
     first
 }
 
-/// The square (from its lower left corner, counter-clockwise) without the round, as triangles.
-fn around(faces: &mut Vec<Vec<u32>>, square: [u32; 4], first: u32, reversed: bool) {
+/// Triangulates a square (from its lower left corner, counter-clockwise) without a circle.
+fn triangulate_square_with_hole(
+    faces: &mut Vec<Vec<u32>>,
+    square: [u32; 4],
+    first: u32,
+    reversed: bool,
+) {
     let quarter = SIDES / 4;
     let mut add = |mut face: Vec<u32>| {
         if reversed {

@@ -1,10 +1,10 @@
-//! Whether all algorithms find the same distance: enhanced GJK, PQP, H-Walk and V-Clip on random
-//! pairs of solids, separated, near, touching and overlapping.
+//! Compares the distances of enhanced GJK, PQP, H-Walk and V-Clip on random pairs of solids: separated, near,
+//! touching and overlapping.
 //!
 //! ```text
 //! cargo run --release -p colltrans-baselines --example agreement -- [PAIRS] [SEED]
 //! ```
-//! Prints the worst disagreement as a share of the size; exit code 1 if it is above 1e-9.
+//! Prints the largest difference as a share of the size; the exit code is 1 if it exceeds 1e-9.
 
 use std::process::ExitCode;
 
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
     if holds { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Points on an ellipsoid, round or stretched; some in rings, with many parallel edges.
+/// Returns points on an ellipsoid, round or stretched; some in rings, with many parallel edges.
 fn solid(rng: &mut Random) -> ConvexPolyhedron {
     let axes = DVec3::from_array([0; 3].map(|_| 10.0_f64.powf(rng.range(-1.0, 0.3))));
     let count = rng.int(4, 60);
@@ -98,7 +98,7 @@ impl<'a> Contest<'a> {
         }
     }
 
-    /// Lets all algorithms measure some places, each keeping what it keeps from query to query.
+    /// Measures some placements with all algorithms, each with its coherence.
     fn place(&mut self, rng: &mut Random, mut note: impl FnMut(usize, f64, &[f64], bool)) {
         let [p, q] = self.bodies;
         let (mut egjk, mut vclip) = (Egjk::new(p, q), VClip::new(&self.shells[0], &self.shells[1]));

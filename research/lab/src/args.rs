@@ -28,7 +28,7 @@ Exit codes:
   2  the command line is wrong
   5  the results cannot be written";
 
-/// The experiments of the paper, run anew on this machine
+/// The experiments of the paper, repeated on this machine
 #[derive(Debug, Parser)]
 #[command(name = "colltrans-lab", version, after_help = RESULTS)]
 pub(crate) struct Arguments {
@@ -77,11 +77,11 @@ pub(crate) enum Command {
         #[command(flatten)]
         options: Options,
     },
-    /// The paper's figures 1 to 10 drawn anew: two cubes, and what the algorithm does with them
+    /// The paper's figures 1 to 10, reproduced: two cubes, and the steps of the algorithm
     ///
-    /// Nothing is measured: the same pictures on every machine. They are those of docs/paper.md.
+    /// Nothing is measured, so the pictures are equal on every machine. They are those of docs/paper.md.
     Pictures {
-        /// The folder of the pictures, made if it does not exist
+        /// The folder of the pictures, created if it does not exist
         #[arg(short, long, value_name = "DIR", default_value = "docs/figures")]
         output: PathBuf,
     },
@@ -98,9 +98,9 @@ pub(crate) struct Options {
     /// Small bodies, for tests
     #[arg(long, hide = true, conflicts_with_all = ["quick", "full"])]
     tiny: bool,
-    /// What everything random is drawn from
+    /// Seed of all random numbers
     ///
-    /// The same seed draws the same bodies, positions and directions. Times differ all the same.
+    /// The same seed draws the same bodies, positions and directions. Times still differ.
     #[arg(long, value_name = "S", default_value_t = 2007)]
     seed: u64,
     /// Pairs of bodies of each size, measured in passes one after the other: more make intervals narrower
@@ -108,10 +108,10 @@ pub(crate) struct Options {
     /// Quick runs take 4, and 2 from 20,000 vertices, full ones 8.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     passes: Option<u32>,
-    /// A folder with mesh files of real parts, to be measured beside other shapes (`beyond`)
+    /// A folder with mesh files of real parts, which `beyond` measures in addition to other shapes
     #[arg(long, value_name = "DIR", value_parser = existing_folder)]
     parts: Option<PathBuf>,
-    /// The folder of the results, made if it does not exist
+    /// The folder of the results, created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "lab-results")]
     pub(crate) output: PathBuf,
 }

@@ -78,9 +78,9 @@ fn every_figure_has_data_and_every_claim_a_verdict() {
     assert_eq!(judged, CLAIMS.iter().map(|claim| claim.id).collect::<Vec<_>>(), "each claim once");
 }
 
-/// Files that are no meshes, no solids, or in folders of folders.
+/// Files that are not meshes or not solids, and nested folders.
 #[test]
-fn real_parts_are_measured_and_others_left_out() {
+fn real_parts_are_measured_and_other_files_skipped() {
     let folder = TemporaryFolder::new();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     std::fs::create_dir(folder.path().join("deeper")).unwrap();
@@ -98,9 +98,9 @@ fn real_parts_are_measured_and_others_left_out() {
     assert!(parts.title.contains("2 files hold no solid"), "{}", parts.title);
 }
 
-/// Steps are counted, not timed: figure 13 is made of nothing else.
+/// Figure 13 contains only steps, which are counted and not timed.
 #[test]
-fn the_same_seed_gives_the_same_steps() {
+fn equal_seeds_yield_equal_steps() {
     let experiment = experiments().iter().find(|e| e.id == "figure-13").expect("figure 13");
     let run = |seed| (experiment.run)(&Plan { seed, ..TINY }, &mut Rising(0.0));
     assert_eq!(run(1), run(1));
@@ -108,7 +108,7 @@ fn the_same_seed_gives_the_same_steps() {
 }
 
 #[test]
-fn all_figures_of_the_paper_are_there_in_its_order() {
+fn experiments_are_in_order_of_paper() {
     let ids: Vec<_> = experiments().iter().map(|e| e.id).collect();
     let mut expected: Vec<_> = (11..=19).map(|k| format!("figure-{k}")).collect();
     expected.insert(1, "table-1".into());

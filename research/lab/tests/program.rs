@@ -1,4 +1,4 @@
-//! The program: what can be asked for, and where the results go.
+//! The program: its options and its output.
 
 use colltrans_testkit::TemporaryFolder;
 use std::path::Path;
@@ -21,7 +21,7 @@ fn stderr(output: &Output) -> String {
 }
 
 #[test]
-fn help_says_what_there_is() {
+fn help_lists_figures_and_tables() {
     let folder = TemporaryFolder::new();
     let help = |arguments: &[&str]| {
         let output = lab(folder.path()).args(arguments).output().unwrap();
@@ -47,7 +47,7 @@ fn help_says_what_there_is() {
 }
 
 #[test]
-fn what_there_is_not() {
+fn invalid_arguments_are_rejected() {
     let folder = TemporaryFolder::new();
     for arguments in [
         &["figure", "10"][..],
@@ -75,9 +75,9 @@ fn what_there_is_not() {
     }
 }
 
-/// What it is going to do stands first on standard error, then how far it is; what it found on standard output.
+/// The announcement and the progress are on standard error, the results on standard output.
 #[test]
-fn it_says_what_it_does() {
+fn announcement_and_results_are_printed() {
     let folder = TemporaryFolder::new();
     let arguments = ["section", "3", "--tiny", "--passes", "2"];
     let output = lab(folder.path()).args(arguments).output().unwrap();
@@ -91,13 +91,13 @@ fn it_says_what_it_does() {
 }
 
 #[test]
-fn folders_that_cannot_be_written_to() {
+fn unwritable_folder_is_an_error() {
     let folder = TemporaryFolder::new();
     std::fs::write(folder.path().join("file"), "").unwrap();
     let output = lab(folder.path()).args(["all", "--tiny", "-o", "file/results"]).output().unwrap();
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
     let said = stderr(&output);
     let last = said.lines().last().unwrap_or_default();
-    assert!(last.starts_with("error: file/results: the folder cannot be made: "), "{said}");
+    assert!(last.starts_with("error: file/results: cannot create the folder: "), "{said}");
     assert_eq!(stdout(&output), "");
 }

@@ -25,7 +25,7 @@ fn random(rng: &mut Random) -> Triangle {
     [0; 3].map(|_| rng.vector())
 }
 
-/// A triangle that is a needle: along an edge, at a corner, or a segment up to rounding.
+/// Returns a triangle that is a needle: along an edge, at a corner, or a segment up to rounding.
 fn sliver(rng: &mut Random) -> Triangle {
     let (start, end) = (rng.vector(), rng.vector());
     let at = rng.pick(&[0.0, 0.3, 0.5, 1.0]);
@@ -33,7 +33,7 @@ fn sliver(rng: &mut Random) -> Triangle {
     [start, end, start.lerp(end, at) + rng.vector() * width]
 }
 
-/// Two triangles that are hard together.
+/// Returns two triangles in a difficult configuration.
 fn pair(rng: &mut Random) -> (Triangle, Triangle) {
     let (mut a, mut b) = match rng.int(0, 3) {
         0 => (random(rng), random(rng)),
@@ -73,13 +73,13 @@ fn pair(rng: &mut Random) -> (Triangle, Triangle) {
 }
 
 #[test]
-fn triangles_are_as_far_apart_as_exactly() {
+fn distance_of_triangles_is_exact() {
     let mut rng = Random::new(1);
     for case in 0..20_000 {
         let (a, b) = pair(&mut rng);
         let scale = scale(&a, &b);
         let exact = exactly(&a, &b);
-        let found = triangle::nearest(&a, &b, scale);
+        let found = triangle::nearest_of_triangles(&a, &b, scale);
         let error = (found.squared.sqrt() - exact).abs();
         assert!(
             error <= 0.125 * scale.noise(),
@@ -95,14 +95,14 @@ fn triangles_are_as_far_apart_as_exactly() {
 }
 
 #[test]
-fn triangles_intersect_if_they_do_exactly() {
+fn intersection_of_triangles_is_exact() {
     let mut rng = Random::new(2);
     let mut counts = [0; 2];
     for case in 0..20_000 {
         let (a, b) = pair(&mut rng);
         let scale = scale(&a, &b);
         let exact = exactly(&a, &b);
-        let found = triangle::intersect(&a, &b, scale);
+        let found = triangle::triangles_intersect(&a, &b, scale);
         if exact == 0.0 || exact > 2.0 * scale.noise() {
             assert_eq!(found, exact == 0.0, "{case}: {exact:e} {a:?} {b:?}");
             counts[usize::from(found)] += 1;
@@ -193,7 +193,7 @@ fn swept_spheres_contain_their_triangles_and_bound_distances_from_below() {
     assert!(tight * 2 > apart, "{tight} of {apart}");
 }
 
-/// Rectangles, also degenerate ones, at random and aligned.
+/// Returns random and aligned rectangles, also degenerate ones.
 fn rectangles(rng: &mut Random) -> [Rss; 2] {
     let aligned = rng.one_in(3);
     let first = DMat3::from_quat(rng.rotation());
@@ -205,7 +205,7 @@ fn rectangles(rng: &mut Random) -> [Rss; 2] {
 }
 
 #[test]
-fn rectangles_are_as_far_apart_as_exactly() {
+fn gap_of_rectangles_is_exact() {
     let mut rng = Random::new(5);
     for case in 0..20_000 {
         let [a, b] = rectangles(&mut rng);

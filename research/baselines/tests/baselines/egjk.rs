@@ -1,9 +1,10 @@
 //! Enhanced GJK against the exact distance.
 //!
-//! What is asked of every answer, with `noise = 32 u S` the rounding error of a point of the
-//! Minkowski difference: the distance and that of the nearest points err by no more than the gap
-//! the answer states and two noises, one for either bound; the nearest points are no more than one
-//! noise off their bodies; and the gap is at most [`GOAL`] of the size.
+//! Requirements on every answer, with the rounding error `noise = 32 u S` of a point of the Minkowski difference:
+//! - The distance and that of the nearest points have errors of at most the stated gap and two noises, one for each
+//!   bound.
+//! - The nearest points are within one noise of their bodies.
+//! - The gap is at most [`GOAL`] of the size.
 
 use std::f64::consts::TAU;
 
@@ -55,7 +56,7 @@ fn check_from_scratch(name: &str, moving: Placed, fixed: Placed) -> Distance {
     check(name, &egjk().distance(moving.1, fixed.1), moving, fixed)
 }
 
-/// From 4 to 20 points, in a box or on an ellipsoid, stretched by up to `stretch`.
+/// Returns the hull of 4 to 20 points in a box or on an ellipsoid, stretched by up to `stretch`.
 fn cloud(rng: &mut Random, stretch: f64) -> ConvexPolyhedron {
     let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.3) * rng.pick(&[1.0, stretch])));
     let (n, round) = (rng.int(4, 20), rng.one_in(2));
@@ -68,13 +69,13 @@ fn pose(rng: &mut Random, away: f64) -> Pose {
     Pose::new(rng.rotation(), rng.direction() * away).unwrap()
 }
 
-/// Vertices of an ellipsoid in rings.
+/// Returns an ellipsoid with vertices in rings.
 fn rings(count: u32, semi_axes: DVec3) -> ConvexPolyhedron {
     let points = ring_sphere(count, count).mapped(|v| v * semi_axes).vertices;
     body(&points)
 }
 
-/// Moves `moving` along the shortest vector until only `gap` is left of it, up to rounding.
+/// Moves `moving` along the shortest vector until the distance is `gap`, up to rounding.
 fn brought_near(moving: Placed, fixed: Placed, gap: f64) -> Option<Pose> {
     let exact = distance_of_bodies(moving, fixed);
     (!exact.intersects()).then(|| {
@@ -84,7 +85,7 @@ fn brought_near(moving: Placed, fixed: Placed, gap: f64) -> Option<Pose> {
 }
 
 #[test]
-fn every_family_of_settings() {
+fn distances_of_all_families_are_exact() {
     for (family, _) in FAMILIES {
         for seed in 0..150 {
             let setting = setting(family, seed);
@@ -96,9 +97,9 @@ fn every_family_of_settings() {
     }
 }
 
-/// Every support point costs a look at all vertices.
+/// With linear search every support point visits all vertices.
 #[test]
-fn linear_search_looks_at_all_vertices() {
+fn linear_search_visits_all_vertices() {
     let mut rng = Random::new(9);
     for count in [5, 40] {
         let (p, q) = (rings(count, DVec3::ONE), rings(count, DVec3::ONE));
@@ -112,7 +113,7 @@ fn linear_search_looks_at_all_vertices() {
 }
 
 #[test]
-fn random_bodies_apart_near_touching_and_overlapping() {
+fn random_bodies_at_all_distances() {
     let mut rng = Random::new(1);
     let (mut apart, mut near, mut met) = (0, 0, 0);
     for case in 0..1000 {
@@ -154,7 +155,7 @@ fn one_inside_the_other() {
     }
 }
 
-/// Faces, edges and corners on each other, exactly.
+/// Faces, edges and corners in exact contact.
 #[test]
 fn boxes_on_a_grid() {
     let mut rng = Random::new(3);
@@ -194,9 +195,9 @@ fn points_segments_and_polygons() {
     }
 }
 
-/// A common displacement costs the distance nothing.
+/// A common displacement does not change the accuracy of the distance.
 #[test]
-fn far_from_the_origin_of_the_world() {
+fn common_displacement_costs_no_accuracy() {
     let mut rng = Random::new(5);
     for case in 0..100 {
         let (p, q) = (cloud(&mut rng, 1.0), cloud(&mut rng, 1.0));
@@ -207,9 +208,9 @@ fn far_from_the_origin_of_the_world() {
     }
 }
 
-/// What a query leaves behind may save time, not change the answer.
+/// The remembered state may save time, but not change the answer.
 #[test]
-fn coherent_sequences() {
+fn coherence_does_not_change_answers() {
     let mut rng = Random::new(6);
     for case in 0..60 {
         let stretch = rng.pick(&[1.0, 1000.0]);
@@ -233,7 +234,7 @@ fn coherent_sequences() {
 }
 
 #[test]
-fn the_same_query_again_takes_one_iteration_and_reset_forgets() {
+fn repeated_query_takes_one_iteration_until_reset() {
     let (p, q) = (rings(20, DVec3::new(1.0, 0.7, 1.3)), rings(20, DVec3::ONE));
     let at = Pose::new(DQuat::from_rotation_x(0.4), DVec3::new(3.0, 1.0, 0.5)).unwrap();
     let mut egjk = Egjk::new(&p, &q);

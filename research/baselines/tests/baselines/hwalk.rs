@@ -1,7 +1,8 @@
 //! H-Walk against the exact distance, and against V-Clip on large bodies.
 
 use crate::walks::{
-    Placed, coherent, hard_settings, large, pairs_anew_and_after, random_settings, wide_settings,
+    Placed, coherent, hard_settings, large, pairs_from_scratch_and_coherent, random_settings,
+    wide_settings,
 };
 use colltrans_baselines::Proximity;
 use colltrans_baselines::hwalk::{HWalk, Hierarchy, Steps};
@@ -11,8 +12,7 @@ fn hierarchies(placed: &Placed) -> [Hierarchy; 2] {
     [&placed.moving, &placed.fixed].map(|body| Hierarchy::new(body).unwrap())
 }
 
-/// From scratch with little patience, so that small bodies take shortcuts as well; then again from
-/// where that ended.
+/// Answers from scratch with a small patience, so that small bodies use shortcuts too, and again from the result.
 fn twice(placed: &Placed) -> [Proximity<Steps>; 2] {
     let [moving, fixed] = hierarchies(placed);
     let mut solver = HWalk::new(&moving, &fixed).with_patience(2);
@@ -40,7 +40,7 @@ fn random_solids_at_all_distances() {
 }
 
 #[test]
-fn ties_needles_plates_and_what_else_is_hard() {
+fn hard_families_are_exact() {
     check(hard_settings(60), 1e-14);
 }
 
@@ -50,13 +50,13 @@ fn wide_faces_and_crowded_vertices() {
 }
 
 #[test]
-fn a_query_after_another_gives_the_same_with_fewer_steps() {
+fn coherent_query_agrees_with_fewer_steps() {
     for (seed, patience) in [(0, 1), (1, 4), (2, 16), (3, 64), (4, 16)] {
         let placed = large(500, seed);
         let [moving, fixed] = hierarchies(&placed);
         let solver = HWalk::new(&moving, &fixed).with_patience(patience);
         let (mut fresh, mut carried) = (solver.clone(), solver);
-        let [fresh_pairs, carried_pairs] = pairs_anew_and_after(&placed, seed, |pose| {
+        let [fresh_pairs, carried_pairs] = pairs_from_scratch_and_coherent(&placed, seed, |pose| {
             fresh.reset();
             [&mut fresh, &mut carried].map(|solver| {
                 let found = solver.distance(pose, &placed.fixed_pose);
@@ -68,7 +68,7 @@ fn a_query_after_another_gives_the_same_with_fewer_steps() {
 }
 
 #[test]
-fn large_bodies_as_v_clip_says_in_fewer_steps() {
+fn large_bodies_agree_with_v_clip_in_fewer_steps() {
     let (mut walks, mut hierarchical) = (0, 0);
     for (n, seed) in [(2_000, 1), (2_000, 2), (20_000, 3)] {
         let placed = large(n, seed);
@@ -93,9 +93,9 @@ fn large_bodies_as_v_clip_says_in_fewer_steps() {
     assert!(hierarchical < walks, "{hierarchical} against {walks}");
 }
 
-/// Half a turn between two queries: a walk on layer 0 would cross the body.
+/// Half a turn between two queries, after which a walk on layer 0 would cross the body.
 #[test]
-fn shortcuts_are_taken_when_bodies_jump() {
+fn large_rotations_cause_shortcuts() {
     let placed = large(5_000, 9);
     let [moving, fixed] = hierarchies(&placed);
     let mut solver = HWalk::new(&moving, &fixed);
@@ -107,10 +107,9 @@ fn shortcuts_are_taken_when_bodies_jump() {
     assert!(error <= 1e-14, "{error:e}");
 }
 
-/// Along a motion the answer is the same from every layer; the coarser it is, the less a query starts
-/// from the one before.
+/// Along a motion, the answer does not depend on the start layer. Coarser layers use less of the last result.
 #[test]
-fn start_layers_change_the_work_and_not_the_answer() {
+fn start_layers_change_work_but_not_answers() {
     let placed = large(2_000, 11);
     let [moving, fixed] = hierarchies(&placed);
     let poses = coherent(&placed, 0.001, 60, 5);
@@ -137,7 +136,7 @@ fn start_layers_change_the_work_and_not_the_answer() {
     assert_eq!(weak, beyond);
 }
 
-/// On ties, needles and plates, from scratch and again, from every layer there is.
+/// Hard settings from scratch and again, with every start layer.
 #[test]
 fn start_layers_on_hard_settings() {
     for placed in hard_settings(6) {

@@ -1,4 +1,4 @@
-//! What colltrans is measured against, in one program.
+//! Tests of the algorithms with which colltrans is compared, as one program.
 
 mod egjk;
 mod hwalk;

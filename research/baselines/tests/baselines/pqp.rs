@@ -1,7 +1,7 @@
 //! PQP against exact distances: all pairs of triangles for soups, whole bodies for convex ones.
 //!
-//! With `S` the reach of both soups plus the distance of their frames, a distance may err by
-//! [`GOAL`] `S`, and points may be as far off their soups.
+//! `S` is the size of both soups. Distances may have errors of [`GOAL`] `S`, and points may be this far from their
+//! soups.
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::pqp::{Pqp, Soup, SoupError};
@@ -46,7 +46,7 @@ impl Mesh {
     }
 }
 
-/// The exact distance of the surfaces: all pairs of triangles.
+/// Returns the exact distance of the surfaces over all pairs of triangles.
 fn brute_force((moving, at): (&Mesh, &Pose), (fixed, fixed_at): (&Mesh, &Pose)) -> f64 {
     let (moving, fixed) = (moving.placed(at), fixed.placed(fixed_at));
     let pairs = moving.iter().flat_map(|s| fixed.iter().map(move |t| (s, t)));
@@ -58,7 +58,7 @@ fn size((moving, at): (&[DVec3], &Pose), (fixed, fixed_at): (&[DVec3], &Pose)) -
     reach(moving) + reach(fixed) + at.translation().distance(fixed_at.translation())
 }
 
-/// All queries about two soups whose exact distance is known.
+/// Checks all queries on two soups with a known exact distance.
 fn check(name: &str, pqp: &mut Pqp, at: &Pose, fixed_at: &Pose, truth: f64, size: f64) {
     let answer = pqp.distance(at, fixed_at);
     let report = format!("{name}: {answer:?}, exactly {truth:e}");
@@ -113,7 +113,7 @@ fn any_pose(rng: &mut Random, away: f64) -> Pose {
 }
 
 #[test]
-fn soups_are_as_far_apart_as_their_nearest_triangles() {
+fn distance_of_soups_is_that_of_nearest_triangles() {
     let mut rng = Random::new(11);
     let mut touching = 0;
     for case in 0..400 {
@@ -136,7 +136,7 @@ fn soups_are_as_far_apart_as_their_nearest_triangles() {
 }
 
 #[test]
-fn a_tree_finds_what_all_pairs_of_single_triangles_find() {
+fn tree_search_equals_brute_force() {
     let mut rng = Random::new(12);
     for case in 0..4 {
         let mut mesh = || {
@@ -217,8 +217,7 @@ fn needles_and_plates() {
     }
 }
 
-/// All pairs of triangles of two parallel faces are equally far apart: the search must not look at
-/// all of them.
+/// All pairs of triangles of two parallel faces are equally far apart. The search must not visit all of them.
 #[test]
 fn parallel_faces_take_few_steps() {
     for sides in [16, 128, 1024] {
@@ -238,8 +237,8 @@ fn parallel_faces_take_few_steps() {
     }
 }
 
-/// Faces of very many corners beside each other in any position: cut into fans, volumes around their
-/// triangles would all overlap, and nearly all pairs be looked at.
+/// Faces with very many corners next to each other. With fans, the volumes of triangles would overlap, and nearly all
+/// pairs would be visited.
 #[test]
 fn large_faces_take_few_steps() {
     for sides in [64, 512, 4096] {
@@ -257,7 +256,7 @@ fn large_faces_take_few_steps() {
 }
 
 #[test]
-fn a_sequence_gives_what_single_queries_give() {
+fn coherence_does_not_change_answers() {
     let mut rng = Random::new(15);
     let cloud = |rng: &mut Random, n| body(&(0..n).map(|_| rng.direction()).collect::<Vec<_>>());
     for case in 0..20 {
@@ -284,7 +283,7 @@ fn a_sequence_gives_what_single_queries_give() {
 }
 
 #[test]
-fn a_common_displacement_costs_nothing() {
+fn common_displacement_costs_no_accuracy() {
     let cube = Soup::of_polyhedron(&body(&cuboid(DVec3::ONE).vertices));
     for displacement in [0.0, 1e6, 1e12] {
         let fixed_at = Pose::from_translation(DVec3::splat(displacement)).unwrap();
@@ -297,7 +296,7 @@ fn a_common_displacement_costs_nothing() {
 }
 
 #[test]
-fn surfaces_have_no_inside() {
+fn nested_surfaces_do_not_intersect() {
     let soups =
         [1.0, 3.0].map(|half| Soup::of_polyhedron(&body(&cuboid(DVec3::splat(half)).vertices)));
     let mut pqp = Pqp::new(&soups[0], &soups[1]);
@@ -324,7 +323,7 @@ fn flat_bodies_are_soups() {
 }
 
 #[test]
-fn wrong_soups_are_refused() {
+fn invalid_soups_are_rejected() {
     let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let refused = |vertices: &[DVec3], triangles: &[[u32; 3]]| Soup::new(vertices, triangles).err();
     assert_eq!(refused(&vertices, &[]), Some(SoupError::Empty));
@@ -358,8 +357,8 @@ fn queries_allocate_nothing() {
     assert_eq!(info.count_total, 0);
 }
 
-/// Slivers: of two volumes the one with the longer diagonal is replaced by its children, as in the authors' program,
-/// which takes 4,738 and 12,139 tests here. By the longer side alone it was 5,693 and 14,052.
+/// For slivers, the volume with the longer diagonal is replaced by its children, as in the authors' program, which
+/// takes 4,738 and 12,139 tests here. Using the longer side alone takes 5,693 and 14,052.
 #[test]
 fn searches_of_slivers_take_few_tests() {
     for (around, rings, expected) in [(16, 200, 4_700.0), (8, 400, 12_100.0)] {

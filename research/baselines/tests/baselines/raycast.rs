@@ -1,10 +1,9 @@
 //! The GJK ray cast against the exact collision translation, and large bodies against `colltrans`.
 //!
-//! An answer is right if it is what the published algorithm promises for its tolerance `e` (a
-//! length): a hit is no later than the collision, and earlier by at most `e / n . d`; a miss is
-//! one; a contact at the start is within `e`. In *clear* settings every answer must be right. The
-//! others are within `2 e` of a different outcome, or nearly parallel to the contact plane; what
-//! becomes of those is counted and printed.
+//! An answer is correct if it is what the published algorithm promises for its tolerance `e` (a length). A hit is not
+//! later than the collision, and earlier by at most `e / n . d`. A miss must be a miss. A contact at the start must
+//! be within `e`. In *clear* settings every answer must be correct. Other settings are within `2 e` of a different
+//! outcome, or nearly parallel to the contact plane; their results are counted and printed.
 
 use colltrans::{Cast, ConvexPolyhedron, Feature, Outcome, Pose, Solver};
 use colltrans_baselines::raycast::{Options, RayCast, RayCastAnswer};
@@ -62,7 +61,8 @@ impl Truth {
         }
     }
 
-    /// Two tolerances away from every other outcome, and not nearly parallel to the contact plane.
+    /// Checks whether the setting is at least two tolerances from every other outcome, and not nearly parallel to the
+    /// contact plane.
     fn is_clear(&self, tolerance: f64, direction: DVec3) -> bool {
         let near = 2.0 * tolerance * self.size;
         let start_is_clear = self.start == 0.0 || self.start > near;
@@ -92,7 +92,7 @@ impl Truth {
 }
 
 #[test]
-fn every_family_of_settings() {
+fn answers_of_all_families_keep_tolerance() {
     let mut unclear: BTreeMap<(&str, Verdict), u32> = BTreeMap::new();
     let (mut clear, mut right) = (0, 0);
     for (family, _) in FAMILIES {
@@ -124,7 +124,7 @@ fn every_family_of_settings() {
     assert!(clear > 3000, "{clear}");
 }
 
-/// The contact point belongs to the fixed body.
+/// Asserts that the contact point belongs to the fixed body.
 fn check_point(setting: &Setting, bodies: &Bodies, answer: &RayCastAnswer) {
     if let RayCastAnswer::Hit { on_fixed, .. } | RayCastAnswer::InContact { on_fixed, .. } = *answer
     {
@@ -134,14 +134,14 @@ fn check_point(setting: &Setting, bodies: &Bodies, answer: &RayCastAnswer) {
     }
 }
 
-/// Vertices of an ellipsoid in rings.
+/// Returns an ellipsoid with vertices in rings.
 fn rings(count: u32, semi_axes: DVec3) -> ConvexPolyhedron {
     let points = ring_sphere(count, count).mapped(|v| v * semi_axes).vertices;
     ConvexPolyhedron::from_points(&points).unwrap()
 }
 
-/// Against certified answers. The normal is only looked at: where a face is hit there is one normal
-/// only, and the ray cast's is that of its last plane.
+/// Compares with certified answers. The normal is only printed: it is that of the last plane of the ray cast, not
+/// that of the face in contact.
 #[test]
 fn large_bodies() {
     let mut rng = Random::new(1);
@@ -194,7 +194,7 @@ fn boxes() -> [ConvexPolyhedron; 2] {
 }
 
 #[test]
-fn every_case_has_its_name() {
+fn each_case_has_its_answer() {
     let [p, q] = boxes();
     let mut ray_cast = RayCast::new(&p, &q);
     let mut cast = |x: f64, direction: DVec3| {
@@ -215,7 +215,7 @@ fn every_case_has_its_name() {
 }
 
 #[test]
-fn running_out_of_iterations_is_no_hit() {
+fn exhausted_iterations_are_not_a_hit() {
     let (p, q) = (rings(20, DVec3::ONE), rings(20, DVec3::new(1.0, 0.7, 1.3)));
     let turn = DQuat::from_rotation_x(0.4);
     let at = Pose::new(turn, DVec3::new(-5.0, 0.3, 0.2)).unwrap();
@@ -242,9 +242,9 @@ fn running_out_of_iterations_is_no_hit() {
     panic!("never hit");
 }
 
-/// What a cast leaves behind may save climbing, not change the answer by more than the tolerance.
+/// The remembered state may save climbing, but not change the answer by more than the tolerance.
 #[test]
-fn carried_seeds_do_not_change_the_answer() {
+fn coherence_does_not_change_answers() {
     let (p, q) = (rings(20, DVec3::ONE), rings(20, DVec3::new(1.0, 0.7, 1.3)));
     let mut rng = Random::new(3);
     let mut coherent = RayCast::new(&p, &q);

@@ -1,7 +1,8 @@
 //! V-Clip against the exact distance.
 
 use crate::walks::{
-    Placed, coherent, hard_settings, large, pairs_anew_and_after, random_settings, wide_settings,
+    Placed, coherent, hard_settings, large, pairs_from_scratch_and_coherent, random_settings,
+    wide_settings,
 };
 use colltrans_baselines::Proximity;
 use colltrans_baselines::vclip::{Shell, Steps, VClip};
@@ -15,7 +16,7 @@ fn from_scratch(placed: &Placed) -> Proximity<Steps> {
     VClip::new(&moving, &fixed).distance(&placed.moving_pose, &placed.fixed_pose)
 }
 
-/// Largest errors of a share of the size, and that nothing is claimed that does not hold.
+/// Asserts the accuracy as a share of the size, and that all claims hold.
 fn check(settings: impl Iterator<Item = Placed>, accuracy: f64) {
     let mut count = 0;
     for placed in settings {
@@ -35,7 +36,7 @@ fn random_solids_at_all_distances() {
 }
 
 #[test]
-fn ties_needles_plates_and_what_else_is_hard() {
+fn hard_families_are_exact() {
     check(hard_settings(100), 1e-14);
 }
 
@@ -45,12 +46,12 @@ fn wide_faces_and_crowded_vertices() {
 }
 
 #[test]
-fn a_query_after_another_gives_the_same_with_fewer_steps() {
+fn coherent_query_agrees_with_fewer_steps() {
     for seed in 0..5 {
         let placed = large(500, seed);
         let [moving, fixed] = shells(&placed);
         let (mut fresh, mut carried) = (VClip::new(&moving, &fixed), VClip::new(&moving, &fixed));
-        let [fresh_pairs, carried_pairs] = pairs_anew_and_after(&placed, seed, |pose| {
+        let [fresh_pairs, carried_pairs] = pairs_from_scratch_and_coherent(&placed, seed, |pose| {
             fresh.reset();
             [&mut fresh, &mut carried].map(|solver| {
                 let found = solver.distance(pose, &placed.fixed_pose);
@@ -62,7 +63,7 @@ fn a_query_after_another_gives_the_same_with_fewer_steps() {
 }
 
 #[test]
-fn tied_bodies_that_move_along_their_ties() {
+fn tied_bodies_moving_along_ties_are_exact() {
     for placed in hard_settings(12) {
         let [moving, fixed] = shells(&placed);
         let mut carried = VClip::new(&moving, &fixed);

@@ -1,4 +1,4 @@
-//! What the tests of V-Clip and H-Walk share: settings, and the exact distance beside an answer.
+//! Common parts of the tests of V-Clip and H-Walk: settings, and exact distances.
 
 #![allow(unreachable_pub, reason = "shared by files of this program")]
 
@@ -12,7 +12,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::reach;
 use glam::{DQuat, DVec2, DVec3};
 
-/// Two solids in place.
+/// Two placed solids.
 #[derive(Debug, Clone)]
 pub struct Placed {
     pub name: String,
@@ -23,13 +23,13 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Reaches of both bodies and the distance of their frames.
+    /// Returns the size of the configuration.
     pub fn size(&self) -> f64 {
         let vertices = [self.moving.vertices(), self.fixed.vertices()];
         size(vertices, [&self.moving_pose, &self.fixed_pose])
     }
 
-    /// Moved along the shortest vector so that about `gap` is left of it.
+    /// Moves the body along the shortest vector until the distance is about `gap`.
     pub fn at_gap(&self, gap: f64) -> Self {
         let exact = self.exact();
         let share = 1.0 - gap / exact.to_f64();
@@ -41,13 +41,13 @@ impl Placed {
         distance_of_bodies((&self.moving, &self.moving_pose), (&self.fixed, &self.fixed_pose))
     }
 
-    /// The error of a distance, as a share of the size.
+    /// Returns the error of a distance, as a share of the size.
     pub fn error(&self, distance: f64) -> f64 {
         (distance - self.exact().to_f64()).abs() / self.size()
     }
 
-    /// How far nearest points are from their bodies, and from being `distance` apart, as a share of
-    /// the size and of where in the world it is.
+    /// Returns the largest error of nearest points, as a share of the size and of their coordinates: their distances
+    /// from the bodies, and the difference of their distance from `distance`.
     pub fn error_of_points(&self, distance: f64, on_moving: DVec3, on_fixed: DVec3) -> f64 {
         let of_point = |x, body, pose| distance_of_point(x, (body, pose)).to_f64();
         let errors = [
@@ -60,7 +60,7 @@ impl Placed {
     }
 }
 
-/// Random solids of 4 to 20 vertices: apart, at gaps down to nothing, overlapping, nested.
+/// Returns random solids of 4 to 20 vertices: apart, at gaps down to nothing, overlapping, nested.
 pub fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
     (0..count).map(|seed| {
         let mut rng = Random::new(seed);
@@ -87,7 +87,7 @@ pub fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
     })
 }
 
-/// The moving body, made a tenth of its size, about the middle of the fixed one.
+/// Places the moving body, scaled to a tenth of its size, in the middle of the fixed one.
 fn nested(apart: &Placed) -> Placed {
     let small: Vec<DVec3> = apart.moving.vertices().iter().map(|v| v * 0.1).collect();
     let vertices = apart.fixed.vertices();
@@ -101,8 +101,7 @@ fn nested(apart: &Placed) -> Placed {
     }
 }
 
-/// The hard families of the oracle, solids only, as they are and moved to a gap, to contact and
-/// beyond.
+/// Returns the hard families of the oracle, solids only, unchanged and moved to a gap, to contact and to overlap.
 pub fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
     FAMILIES
         .iter()
@@ -132,9 +131,8 @@ pub fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
         })
 }
 
-/// Prisms and double cones over a polygon of many sides: wide faces, vertices with many neighbours,
-/// one over the other and side by side, apart by a little or not at all, tilted by a little or not
-/// at all.
+/// Returns prisms and double cones over polygons with many sides: wide faces, and vertices with many neighbours. They
+/// are stacked or side by side, in contact or slightly apart, and possibly slightly tilted.
 pub fn wide_settings() -> impl Iterator<Item = Placed> {
     let ring = (0..200).map(|k| DVec3::from((DVec2::from_angle(TAU * f64::from(k) / 200.0), -0.5)));
     let prism: Vec<DVec3> = ring.clone().flat_map(|p| [p, p + DVec3::Z]).collect();
@@ -161,8 +159,7 @@ pub fn wide_settings() -> impl Iterator<Item = Placed> {
     settings.into_iter()
 }
 
-/// Ellipsoids with `n` vertices at random, semi-axes from 0.6 to 1.4, about as far apart as they
-/// are large.
+/// Returns random ellipsoids with `n` vertices and semi-axes from 0.6 to 1.4, about as far apart as they are large.
 pub fn large(n: usize, seed: u64) -> Placed {
     let mut rng = Random::new(seed);
     let mut ellipsoid = || {
@@ -177,7 +174,8 @@ pub fn large(n: usize, seed: u64) -> Placed {
     Placed { name: format!("large {seed}"), moving, fixed, moving_pose, fixed_pose }
 }
 
-/// The moving body turned about a fixed axis and moved past the other, `share` of its size a step.
+/// Returns poses of the moving body that rotate about a fixed axis and pass the other body, by `share` of its size in
+/// each step.
 pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose> {
     let mut rng = Random::new(seed);
     let (axis, along) = (rng.direction(), rng.direction());
@@ -191,9 +189,9 @@ pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose>
     poses.collect()
 }
 
-/// The pairs looked at by a solver that begins anew and by one that goes on, along a walk; `ask` gives the
-/// distance and the pairs of both at a pose. They must agree.
-pub fn pairs_anew_and_after(
+/// Returns the numbers of pairs examined by a solver from scratch and by one with coherence, along a motion. `ask`
+/// returns the distances and the pairs of both at a pose; the distances must agree.
+pub fn pairs_from_scratch_and_coherent(
     placed: &Placed,
     seed: u64,
     mut ask: impl FnMut(&Pose) -> [(f64, u32); 2],

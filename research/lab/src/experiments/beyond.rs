@@ -1,4 +1,4 @@
-//! Beyond the paper: other shapes than ellipsoids, and real parts.
+//! Beyond the paper: shapes other than ellipsoids, and real parts.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ const KINDS: [Kind; 5] =
 /// Bodies that pass at this least distance, in diameters.
 const NEAR: f64 = 0.005;
 
-/// What was measured on one kind at one size, or on one part.
+/// Results for one kind at one size, or for one part.
 struct Measured {
     name: String,
     colliding: Results,
@@ -41,7 +41,7 @@ impl Gathered for Measured {
     }
 }
 
-/// What is raced on: a kind at a size, or hulls of a part.
+/// Subject of a race: a kind at a size, or hulls of a part.
 struct Item {
     name: String,
     kind: Kind,
@@ -142,7 +142,7 @@ fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) ->
     Table { id: id.into(), title: format!("{title}: medians"), columns, rows }
 }
 
-/// The hulls of all mesh files in a folder and its folders, by name, and how many files hold none.
+/// Reads the hulls of all mesh files in a folder and its subfolders, by name, and counts the files without a hull.
 fn read_parts(folder: &Path) -> (Vec<(String, Arc<Bodies>)>, usize) {
     let (mut parts, mut refused) = (Vec::new(), 0);
     for path in files(folder) {

@@ -358,7 +358,7 @@ struct Law {
 }
 
 impl Law {
-    /// Least squares over all floors on a fine grid; the slope to each has a closed form.
+    /// Fits the law by least squares over all floors on a fine grid; the slope for each has a closed form.
     fn fitted(means: &[f64]) -> Self {
         let average = mean(means);
         let all: f64 = means.iter().map(|y| (y - average).powi(2)).sum();
@@ -387,7 +387,7 @@ impl Law {
     }
 }
 
-/// A small number with two digits.
+/// Formats a small number with two digits.
 fn significant(value: f64) -> String {
     let digits = (1.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.digits$}")
@@ -399,7 +399,7 @@ impl At {
     }
 }
 
-/// The law and its floor at every size.
+/// Returns the table of the law and its floor at every size.
 fn floors(measured: &[At]) -> Table {
     let row = |at: &At| {
         let Law { floor, slope, explained } = at.law();
@@ -413,7 +413,7 @@ fn floors(measured: &[At]) -> Table {
     }
 }
 
-/// By how much steps fall at the largest and at the smallest changes.
+/// Formats the decrease of steps at the largest and at the smallest changes.
 fn falls(measured: &[At]) -> String {
     let fall = |k: usize| {
         let each = measured.iter().map(|at| {
@@ -443,16 +443,16 @@ fn squared_correlation(xs: &[f64], ys: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A law is found again with its floor, where it is among the changes and where it is below all.
+    /// A law is recovered with its floor, among the changes or below all of them.
     #[test]
-    fn laws_are_fitted_above_their_floor() {
+    fn fit_recovers_law_and_floor() {
         for floor in [0.000_1, 0.001, 0.006] {
             let means = DELTAS.map(|delta: f64| 1.0 + 0.7 * (delta / floor).log2().max(0.0));
             let law = Law::fitted(&means);
             assert!((law.floor / floor - 1.0).abs() < 0.03, "{law:?}");
             assert!((law.slope - 0.7).abs() < 0.02 && law.explained > 0.999, "{law:?}");
         }
-        // A root of the change is no logarithm, whatever its floor.
+        // A square root of the change does not fit the law for any floor.
         let bent = Law::fitted(&DELTAS.map(|delta| 1.0 + 10.0 * delta.sqrt()));
         assert!(bent.explained < 0.94, "{bent:?}");
     }

@@ -1,9 +1,9 @@
-//! Section III: what one step of the minimisation does. How much of the region a cut leaves and how many sides it
-//! has, whether the new solution is in the neighbourhood of the last one, and what the shift of the cut line saves.
+//! Section III: the effect of a step of the minimisation. Measures the remaining share of the region and its number
+//! of sides, whether the new solution is in the neighbourhood of the last one, and the savings of shifted cut lines.
 //!
-//! The method before the paper's, its reference [3], cut through the centroid of what was left and searched the
-//! rectangles of a grid in place of the cells of the mark. Here only the cuts are its own
-//! ([`colltrans::cta::Cuts::Centroid`]): a search ends, as the paper's does, where the best point of a cell solves the
+//! The method before the paper's, its reference [3], cuts through the centroid of the remaining region and searches
+//! rectangles of a grid instead of cells of the mark. Here only its cuts are used
+//! ([`colltrans::cta::Cuts::Centroid`]). A search ends, like the paper's, where the best point of a cell solves the
 //! problem.
 
 use colltrans::observe::{Cut, Observer, PlanarProblem, Sections, Touch};
@@ -33,7 +33,7 @@ pub(super) const SECTION_3: Experiment = Experiment {
 /// Changes from one configuration to the next, in diameters.
 const CHANGES: [f64; 5] = [0.001_25, 0.002_5, 0.005, 0.01, 0.02];
 
-/// What was seen at one size.
+/// Observations at one size.
 #[derive(Default)]
 struct Seen {
     vertices: Vec<f64>,
@@ -101,7 +101,7 @@ impl Observer for Watcher {
 }
 
 impl Watcher {
-    /// Whether the solution is in the neighbourhood of the last one, if there was one and this is known.
+    /// Checks whether the solution is in the neighbourhood of the last one; `None` if either is unknown.
     fn is_inside(&self) -> Option<bool> {
         let (center, half) = self.neighbourhood?;
         let problem = self.last.filter(|_| self.is_solved)?;
@@ -110,7 +110,7 @@ impl Watcher {
     }
 }
 
-/// Twice the area of a convex polygon; only ratios matter.
+/// Returns twice the area of a convex polygon, which suffices for ratios.
 fn area(polygon: &[DVec2]) -> f64 {
     let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
     rest.windows(2).map(|pair| (pair[0] - first).perp_dot(pair[1] - first)).sum()
@@ -118,13 +118,15 @@ fn area(polygon: &[DVec2]) -> f64 {
 
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
-    let seen = in_passes(plan, progress, plan.sizes(), told, |&n, pass| look(plan, n, pass));
+    let seen =
+        in_passes(plan, progress, plan.sizes(), told, |&n, pass| observe_pass(plan, n, pass));
     let claims =
         vec![half(&seen), sides(&seen), inside(&seen), fewer_steps(&seen), fewer_calls(&seen)];
     Finding { figures: vec![figure(&seen)], tables: vec![table(&seen)], claims }
 }
 
-fn look(plan: &Plan, n: usize, pass: u32) -> Seen {
+/// Observes the queries of a pass at one size.
+fn observe_pass(plan: &Plan, n: usize, pass: u32) -> Seen {
     let bodies = bodies(plan.seed, Kind::Balanced, n, u64::from(pass));
     let mut random = Random::stream(plan.seed, &[3, n as u64, u64::from(pass)]);
     let mut seen = Seen { vertices: vec![bodies.vertices()], ..Seen::default() };
@@ -132,7 +134,7 @@ fn look(plan: &Plan, n: usize, pass: u32) -> Seen {
     for number in 0..count {
         let group = Group { pass, number };
         let setting = Setting::draw(&bodies, Meeting::Colliding, &mut random);
-        look_at_one(&bodies, &setting, group, &mut seen);
+        observe_query(&bodies, &setting, group, &mut seen);
     }
     let mut tracked = Tracked::in_region(&bodies, cta::Region::Automatic, Until::End.options());
     for (change, found) in CHANGES.iter().zip(&mut seen.inside) {
@@ -150,8 +152,8 @@ fn look(plan: &Plan, n: usize, pass: u32) -> Seen {
     seen
 }
 
-/// One query from scratch, with both kinds of cuts.
-fn look_at_one(bodies: &Bodies, setting: &Setting, group: Group, seen: &mut Seen) {
+/// Observes one query from scratch, with both kinds of cuts.
+fn observe_query(bodies: &Bodies, setting: &Setting, group: Group, seen: &mut Seen) {
     let mut watcher = Watcher::default();
     let ask = |options, watcher: &mut Watcher| {
         let cast = setting.cast(bodies, &options);
@@ -171,16 +173,17 @@ fn look_at_one(bodies: &Bodies, setting: &Setting, group: Group, seen: &mut Seen
     seen.vertex_contacts.push((group, f64::from(watcher.vertex_contacts)));
 }
 
+/// Creates a sample.
 fn sample(values: &[(Group, f64)]) -> Sample {
     Sample::of(values.iter().copied())
 }
 
-/// What was seen of one kind, by size.
+/// Returns the observations of one kind, by size.
 fn samples(seen: &[Seen], of: impl Fn(&Seen) -> &[(Group, f64)]) -> Vec<Sample> {
     seen.iter().map(|at| sample(of(at))).collect()
 }
 
-/// Means with quartiles, by size.
+/// Returns means with quartiles, by size.
 fn points(seen: &[Seen], of: impl Fn(&Seen) -> &[(Group, f64)]) -> Vec<Point> {
     let point = |at: &Seen| Point::mean(mean(&at.vertices), &sample(of(at)).values());
     seen.iter().map(point).collect()
@@ -263,7 +266,7 @@ fn inside(seen: &[Seen]) -> Claim {
     })
 }
 
-/// What the mean over the sizes of a number of shifted and unshifted steps is.
+/// Estimates the mean over the sizes of a number of shifted and unshifted steps.
 fn of_both(seen: &[Seen], number: impl Fn(f64, f64) -> f64) -> crate::statistics::Estimate {
     let all = [samples(seen, |at| &at.steps), samples(seen, |at| &at.unshifted)].concat();
     estimate(&all, |s| {

@@ -1,5 +1,5 @@
-//! Figures 15 to 17: single queries beside enhanced GJK and PQP, which compute the distance at the
-//! start of the same settings, and beside the ray cast, which asks the same question.
+//! Figures 15 to 17: single queries compared with enhanced GJK and PQP, which compute the distance at the start of
+//! the same settings, and with the ray cast, which answers the same question.
 
 use colltrans_baselines::egjk::SupportSearch;
 
@@ -56,7 +56,7 @@ const HYBRID: usize = 4;
 /// One race at every size.
 struct Field(Vec<Results>);
 
-/// Races on two kinds of bodies at every size.
+/// Runs a race on two kinds of bodies at all sizes.
 fn race(
     plan: &Plan,
     progress: &mut dyn Progress,
@@ -79,7 +79,7 @@ fn race(
             given: None,
             who: &WHO,
             coherence: Coherence::Scratch,
-            // Long blocks: an algorithm in use finds its bodies in the caches.
+            // Blocks are long, because an algorithm in use finds its bodies in the caches.
             length: plan.by_scale(5, if is_large { 40 } else { 50 }, 50),
             blocks: plan.by_scale(2, if is_large { 1 } else { 3 }, if is_large { 1 } else { 4 }),
         };
@@ -96,12 +96,12 @@ impl Field {
         self.0.iter().map(Results::vertices).collect()
     }
 
-    /// `time(who) / time(CTA)`, query by query.
+    /// Returns `time(who) / time(CTA)` for each query.
     fn ratios(&self, who: usize) -> Vec<Sample> {
         self.0.iter().map(|at| at.ratios(who, CTA)).collect()
     }
 
-    /// Its medians with quartiles.
+    /// Returns the medians of the ratios with quartiles.
     fn points(&self, who: usize) -> Vec<Point> {
         let ratios = self.ratios(who);
         ratios
@@ -111,14 +111,14 @@ impl Field {
             .collect()
     }
 
-    /// The median ratio at one size; the largest size there is if that is smaller.
+    /// Returns the median ratio at one size, or at the largest size if that is smaller.
     fn ratio_at(&self, who: usize, n: f64) -> Estimate {
         let last = self.0.len() - 1;
         let k = self.0.iter().position(|at| at.vertices() > 0.9 * n).unwrap_or(last);
         estimate(&[self.0[k].ratios(who, CTA)], |s| median(&s[0]))
     }
 
-    /// The exponent of the median time as a power of the size, from a size on.
+    /// Returns the exponent of the median time as a power of the size, from a size on.
     fn exponent(&self, who: usize, from: f64) -> Estimate {
         let few = self.0.len().saturating_sub(2);
         let first = self.0.iter().position(|at| at.vertices() > 0.9 * from).unwrap_or(few).min(few);
@@ -138,7 +138,7 @@ impl Field {
         figure
     }
 
-    /// Median times, and how often an answer contradicted another.
+    /// Returns the table of median times and numbers of contradictions.
     fn table(&self, id: &str, title: &str) -> Table {
         let head = |at: &Results| format!("{} vertices", thousands(at.vertices()));
         let columns = std::iter::once("median time (answers that contradict another)".into())
@@ -154,7 +154,7 @@ impl Field {
         Table { id: id.into(), title: title.into(), columns, rows }
     }
 
-    /// Median times of some at the smallest and largest size, for people.
+    /// Formats median times at the smallest and the largest size.
     fn times(&self, who: &[usize]) -> String {
         let ends = [self.0.first(), self.0.last()];
         let at = |at: &Results| {
@@ -166,7 +166,7 @@ impl Field {
         ends.into_iter().flatten().map(at).collect::<Vec<_>>().join("; ")
     }
 
-    /// EGJK's own steps at the smallest and at the largest size.
+    /// Returns the mean steps of a solver at the smallest and the largest size.
     fn steps_of(&self, who: usize) -> [f64; 2] {
         [0, self.0.len() - 1].map(|at| mean(&self.0[at].steps(who).values()))
     }
@@ -184,7 +184,7 @@ impl Field {
         ))
     }
 
-    /// EGJK that climbs is faster than the paper's.
+    /// Explains the result: the paper's claim is about EGJK with linear search, and the climbing one is faster.
     fn why_climbing(&self) -> Why {
         let last = &self.0[self.0.len() - 1];
         Reason::Sentence.because(format!(
@@ -200,7 +200,8 @@ impl Field {
         ))
     }
 
-    /// PQP's tests are counted, and times are others than the paper's.
+    /// Explains the result: PQP needs as many tests as the original, but today a test has another cost relative to a
+    /// planar problem.
     fn why_pqp(&self) -> Why {
         let [least, most] = self.steps_of(PQP);
         Reason::Machine.because(format!(
@@ -210,7 +211,7 @@ impl Field {
         ))
     }
 
-    /// The same of faces of one stretch.
+    /// Explains the result: faces of a fixed stretch do not become thinner as bodies grow.
     fn why_pqp_of_stretch(&self) -> Why {
         let [least, most] = self.steps_of(PQP);
         Reason::Sentence.because(format!(
@@ -280,7 +281,7 @@ fn egjk_rises(field: &Field) -> Claim {
     judged("15-egjk", measured, field.all_ratios(), || field.why_egjk())
 }
 
-/// The paper's 20,000 vertices lie between two of the sizes here: judged is the one above.
+/// Judges the claims at the size above the paper's 20,000 vertices, which are between two of the sizes here.
 fn fastest(ids: [&str; 2], field: &Field) -> [Claim; 2] {
     let at = |who: &[usize]| who.iter().map(|who| field.ratio_at(*who, 51_200.0)).collect();
     [
@@ -323,7 +324,7 @@ fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     }
 }
 
-/// The claims of figure 16, with one reading of "thin", and why those about PQP do not hold.
+/// Judges the claims of figure 16 for one reading of "thin".
 fn beside_thin(
     [egjk, pqp, growth]: [&str; 3],
     field: &Field,

@@ -1,10 +1,11 @@
-//! Figure 19: variable coherence, and what a wrong parameter costs, beside H-Walk.
+//! Figure 19: variable coherence, and the cost of wrong parameters, compared with H-Walk.
 //!
-//! Notation. *High* coherence is up to half a degree a step, *low* coherence more than 30 degrees. An
-//! algorithm's *parameter* runs from strong to weak initialisation: the half-side `delta` of CTA's
-//! square, from a thousandth of a diameter to all levels; the layer `l` of H-Walk's hierarchy where
-//! features are picked, from the finest to the coarsest. Costs are iterations of all loops. CTA is judged with
-//! planar problems that begin *cold*, from nothing, as the paper's did (V-F); *warm* ones are a curve beside.
+//! - *High* coherence is at most half a degree in a step, *low* coherence more than 30 degrees.
+//! - The *parameter* of an algorithm ranges from strong to weak initialisation. For CTA it is the half side `delta`
+//!   of the square, from a thousandth of a diameter to all levels. For H-Walk it is the start layer `l`, from the
+//!   finest to the coarsest.
+//! - Costs are iterations of all loops. CTA is judged with *cold* planar problems, which start from scratch as in the
+//!   paper (V-F). *Warm* ones are a further curve.
 
 use colltrans::cta;
 
@@ -167,19 +168,20 @@ impl Sweeps {
 }
 
 impl Sweep<'_> {
+    /// Returns the costs of a parameter at a coherence.
     fn costs(&self, alpha: usize, parameter: usize) -> Sample {
         let lane = PARAMETERS * self.which + parameter;
         self.results[alpha].sample(lane, |m| f64::from(m.work.iterations))
     }
 
-    /// The costs in a range of coherence, parameter by parameter at each.
+    /// Returns the costs in a range of coherence, by coherence and parameter.
     fn all(&self, alphas: std::ops::Range<usize>) -> Vec<Sample> {
         alphas.flat_map(|a| (0..PARAMETERS).map(move |p| self.costs(a, p))).collect()
     }
 }
 
-/// By how many per cent the mean of the worst parameter exceeds that of the best, on average over
-/// the coherences.
+/// Returns the excess in per cent of the mean of the worst parameter over that of the best, averaged over the
+/// coherences.
 fn worst_over_best(samples: &[Vec<f64>]) -> f64 {
     let each = samples.chunks(PARAMETERS).map(|of| {
         let means = means(of);
@@ -189,7 +191,7 @@ fn worst_over_best(samples: &[Vec<f64>]) -> f64 {
     mean(&each.collect::<Vec<_>>())
 }
 
-/// Deviation over mean with the best parameter in per cent, on average over the coherences.
+/// Returns deviation over mean with the best parameter in per cent, averaged over the coherences.
 fn dispersion(samples: &[Vec<f64>]) -> f64 {
     let each = samples.chunks(PARAMETERS).map(|of| {
         let stats = of.iter().map(|values| mean_and_deviation(values));
@@ -205,6 +207,7 @@ struct Statistic {
     ratio: Estimate,
 }
 
+/// Estimates a statistic of each algorithm, and the ratio of the statistics of CTA and H-Walk.
 fn of_all(
     sweeps: &Sweeps,
     alphas: std::ops::Range<usize>,
@@ -219,7 +222,7 @@ fn of_all(
     Statistic { each: samples.each_ref().map(|s| estimate(s, statistic)), ratio }
 }
 
-/// Mean iterations with the best parameter at coherences, for people.
+/// Formats the mean iterations with the best parameter by coherence.
 fn counts(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> String {
     let sweep = sweeps.sweep(which);
     let best = |alpha: usize| {
@@ -245,7 +248,7 @@ fn affects(sweeps: &[Sweeps; 2]) -> Claim {
     })
 }
 
-/// The mean with the strongest initialisation over that with the weakest, on average.
+/// Returns the mean with the strongest initialisation over that with the weakest, averaged over the coherences.
 fn strongest_over_weakest(samples: &[Vec<f64>]) -> f64 {
     let each = samples.chunks(PARAMETERS).map(|of| mean(&of[0]) / mean(&of[PARAMETERS - 1]));
     mean(&each.collect::<Vec<_>>())
@@ -266,7 +269,7 @@ fn strong(sweeps: &[Sweeps; 2]) -> Claim {
     })
 }
 
-/// CTA's half of the sentence, and H-Walk's.
+/// Judges the claim for CTA, and the one for H-Walk.
 fn worsens(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
     let Statistic { each, ratio } = of_all(sweeps, LOW, worst_over_best);
     let details = format!(
@@ -285,7 +288,7 @@ fn worsens(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
     ]
 }
 
-/// CTA's half of the sentence, and H-Walk's.
+/// Judges the claim for CTA, and the one for H-Walk.
 fn disperses(ids: [&str; 2], sweeps: &[Sweeps; 2], alphas: std::ops::Range<usize>) -> [Claim; 2] {
     let [at, other] = sweeps.each_ref().map(|s| of_all(s, alphas.clone(), dispersion));
     let details = format!(
@@ -315,8 +318,8 @@ fn disperses(ids: [&str; 2], sweeps: &[Sweeps; 2], alphas: std::ops::Range<usize
     ]
 }
 
-/// Per cent by which the means over sequences disperse with the best parameter, and by which counts of as many
-/// independent steps would: one over the root of their number. On average over the coherences.
+/// Returns in per cent the dispersion of the means over sequences with the best parameter, and that of counts of as
+/// many independent steps: one over the square root of their number. Both are averaged over the coherences.
 fn of_sequences(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> [f64; 2] {
     let sweep = sweeps.sweep(which);
     let at = |alpha: usize| {

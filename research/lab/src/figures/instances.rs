@@ -1,4 +1,4 @@
-//! Pictures of two sections: where they touch, what lies between, and how the plane of one is enough.
+//! Pictures of two sections: their contact, their gap, and the reduction to the plane of one of them.
 
 use glam::{DVec2, DVec3};
 
@@ -6,7 +6,7 @@ use super::Scene;
 use super::planar::{Instance, Placed, View};
 use super::sheet::{Anchor, Map, Sheet};
 
-/// The edges of a body as seen along a direction: those that some face hides are dashed.
+/// Draws the edges of a body viewed along a direction; hidden edges are dashed.
 fn outline(
     sheet: &mut Sheet,
     body: &Placed,
@@ -37,7 +37,7 @@ const P_SECTION: (&str, &str, f64) = ("moving", "section of P", 108.0);
 const Q_SECTION: (&str, &str, f64) = ("fixed", "section of Q", 108.0);
 const FOOT: DVec2 = DVec2::new(26.0, 452.0);
 
-/// Figures 3, 4 and 5: two sections and both cubes, seen along the direction.
+/// Draws figures 3, 4 and 5: two sections and both cubes, viewed along the direction.
 pub(super) fn instance(view: &View, instance: &Instance, title: &str) -> String {
     let mut sheet = Sheet::new(title, 480.0, 470.0);
     let all: Vec<DVec2> =
@@ -61,7 +61,7 @@ pub(super) fn instance(view: &View, instance: &Instance, title: &str) -> String 
     sheet.finish()
 }
 
-/// The contact, the sides that it lies on, and the line in which the planes of the sections meet.
+/// Draws the contact, its sides, and the intersection line of the section planes.
 fn touching(sheet: &mut Sheet, flat: &[Vec<DVec2>; 2], at: DVec2) {
     for (ring, class) in [(&flat[1], "fixed-mark"), (&flat[0], "moving-mark")] {
         for (k, &from) in ring.iter().enumerate() {
@@ -81,7 +81,7 @@ fn touching(sheet: &mut Sheet, flat: &[Vec<DVec2>; 2], at: DVec2) {
     sheet.legend(FOOT, &[P_SECTION, Q_SECTION, ("cut", words, 176.0)]);
 }
 
-/// The lines `r` and `s` through the corners that bound the gap.
+/// Draws the lines `r` and `s` through the corners that bound the gap.
 fn apart(sheet: &mut Sheet, points: [DVec2; 2], way: DVec2) {
     for (at, name) in points.into_iter().zip(["r", "s"]) {
         sheet.line("shifted", at - way * 190.0, at + way * 190.0);
@@ -112,7 +112,7 @@ impl Oblique {
     }
 }
 
-/// Both cubes from the side, the section of the moving one where it starts and where it touches.
+/// Draws both cubes from the side, with the section of the moving one at its start and in contact.
 fn spatial(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2]) {
     let view = &scene.view;
     let look = Oblique::new(view.direction);
@@ -137,7 +137,7 @@ fn spatial(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 
     sheet.text("math", from + DVec2::new(12.0, 30.0), Anchor::Start, "d");
 }
 
-/// The contact, on the section of the fixed body.
+/// Returns the contact on the section of the fixed body.
 fn contact_point(view: &View, instance: &Instance) -> DVec3 {
     let ring = &instance.sections[1].corners;
     let (a, b, c) = (ring[0], ring[1], ring[2]);
@@ -147,7 +147,7 @@ fn contact_point(view: &View, instance: &Instance) -> DVec3 {
     a + (b - a) * (to.perp_dot(s) / cross) + (c - a) * (r.perp_dot(to) / cross)
 }
 
-/// Figure 8: the section `R` sweeps `R'` on the plane of `S`; there the problem is one of polygons.
+/// Draws figure 8: the section `R` sweeps `R'` in the plane of `S`, which reduces the problem to polygons.
 pub(super) fn reduction(scene: &Scene, instance: &Instance) -> String {
     let mut sheet =
         Sheet::new("From two sections in space to two polygons in a plane", 760.0, 470.0);
@@ -200,7 +200,7 @@ pub(super) fn reduction(scene: &Scene, instance: &Instance) -> String {
     sheet.finish()
 }
 
-/// Figure 1: the cubes, a pair of sections, and `phi` over all pairs.
+/// Draws figure 1: the cubes, a pair of sections, and `phi` over all pairs.
 pub(super) fn function(scene: &Scene, instance: &Instance) -> String {
     let mut sheet =
         Sheet::new("Two cubes, a pair of sections, and the convex function φ", 800.0, 480.0);
@@ -273,6 +273,7 @@ pub(super) fn function(scene: &Scene, instance: &Instance) -> String {
     sheet.finish()
 }
 
+/// Returns the corners of a rectangle.
 fn rectangle_of(low: DVec2, high: DVec2) -> [DVec2; 4] {
     super::sheet::rectangle(low, high)
 }

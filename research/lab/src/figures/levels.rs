@@ -1,4 +1,4 @@
-//! Pictures in the plane of the levels: the mark, and minimisations upon it.
+//! Pictures in the plane of the levels: the mark, and minimisations on it.
 
 use colltrans::observe::Touch;
 use glam::DVec2;
@@ -9,7 +9,7 @@ use super::planar::Instance;
 use super::setting::{Run, Step, below, middle};
 use super::sheet::{Anchor, Map, Sheet, rectangle};
 
-/// The cells, and the names of the axes.
+/// Draws the cells and the names of the axes.
 fn mark(sheet: &mut Sheet, map: &Map, mark: &Mark, [low, high]: [DVec2; 2]) {
     for cell in &mark.cells {
         let class = if cell.touch == Touch::Edges { "domain" } else { "vertex-cell" };
@@ -26,14 +26,14 @@ fn mark(sheet: &mut Sheet, map: &Map, mark: &Mark, [low, high]: [DVec2; 2]) {
     sheet.text("small", DVec2::new(a.x, b.y - 7.0), Anchor::Start, "↑ level y of the fixed cube");
 }
 
-/// A point that stands for a cell, and the planar problem there.
+/// Returns an interior point of each cell, and the planar problem there.
 fn samples(scene: &Scene) -> Vec<(DVec2, Instance)> {
     let inside = scene.mark.cells.iter().map(|cell| middle(&cell.corners));
     let all = inside.chain(scene.mark.outside.iter().copied());
     all.filter_map(|at| Some((at, scene.view.instance(at)?))).collect()
 }
 
-/// Figure 2: in each cell the cut line has one orientation.
+/// Draws figure 2: the orientation of the cut line in each cell.
 pub(super) fn orientations(scene: &Scene) -> String {
     let mut sheet = Sheet::new("The mark of φ, with the cut line of each cell", 560.0, 600.0);
     let levels = scene.run.rectangle();
@@ -55,13 +55,13 @@ pub(super) fn orientations(scene: &Scene) -> String {
     sheet.finish()
 }
 
-/// Where a direction points, as a number that grows with its angle from 0 to 4.
+/// Returns a number from 0 to 4 that increases with the angle of a direction.
 fn turn(v: DVec2) -> f64 {
     let part = v.x / (v.x.abs() + v.y.abs());
     if v.y >= 0.0 { 1.0 - part } else { 3.0 + part }
 }
 
-/// Figure 6: the mark, and what the sections look like in its cells.
+/// Draws figure 6: the mark, and the sections in its cells.
 pub(super) fn qualities(scene: &Scene) -> String {
     const ROOM: f64 = 128.0;
     let mut sheet =
@@ -137,7 +137,7 @@ pub(super) fn qualities(scene: &Scene) -> String {
     sheet.finish()
 }
 
-/// Two sections seen along the direction, small.
+/// Draws two sections, viewed along the direction, in a small area.
 fn sketch(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2]) {
     let flat = instance
         .sections
@@ -153,7 +153,7 @@ fn sketch(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2
     }
 }
 
-/// The part of the line `gradient . p = value` in a convex polygon.
+/// Returns the part of the line `gradient . p = value` in a convex polygon.
 fn chord(polygon: &[DVec2], gradient: DVec2, value: f64) -> Option<[DVec2; 2]> {
     let mut ends = Vec::new();
     for (k, &from) in polygon.iter().enumerate() {
@@ -169,7 +169,7 @@ fn chord(polygon: &[DVec2], gradient: DVec2, value: f64) -> Option<[DVec2; 2]> {
     }
 }
 
-/// One step: the region, the cut line at `c`, the shift to `q`, what is cut off.
+/// Draws one step: the region, the cut line at `c`, the shift to `q`, and the removed part.
 fn step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: &Step) {
     let [c, q] = [problem.levels, problem.best].map(DVec2::from_array);
     let gradient = problem.gradient;
@@ -194,12 +194,12 @@ fn step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: &Step
     sheet.dot("start", map.at(c), 4.5);
 }
 
-/// The letter of a point, beside it on the side away from the middle of what is drawn around it.
+/// Draws the letter of a point on the side opposite to `beside`.
 fn letter(sheet: &mut Sheet, at: DVec2, beside: DVec2, text: &str) {
     sheet.text("math", at + beside + DVec2::Y * 4.0, Anchor::Middle, text);
 }
 
-/// Figure 9: a minimisation of two steps.
+/// Draws figure 9: a minimisation of two steps.
 pub(super) fn two_steps(scene: &Scene) -> String {
     let mut sheet = Sheet::new("Two minimisation steps", 760.0, 450.0);
     let levels = scene.run.rectangle();
@@ -228,7 +228,7 @@ pub(super) fn two_steps(scene: &Scene) -> String {
     sheet.finish()
 }
 
-/// Figure 10: steps that begin at the last solution, in its neighbourhood.
+/// Draws figure 10: steps that start at the last solution, in its neighbourhood.
 pub(super) fn focused(scene: &Scene, run: &Run, half: f64) -> String {
     let shown = run.steps.len().min(3);
     let wide = 344.0 + 328.0 * (shown as f64 - 1.0);
@@ -288,6 +288,7 @@ pub(super) fn focused(scene: &Scene, run: &Run, half: f64) -> String {
     sheet.finish()
 }
 
+/// Returns the centroid of a polygon.
 fn centroid(polygon: &[DVec2]) -> DVec2 {
     let (first, mut area, mut moment) = (polygon[0], 0.0, DVec2::ZERO);
     for pair in polygon[1..].windows(2) {

@@ -1,9 +1,8 @@
-//! Two sections and where they touch, the slow and obvious way: all corners of one against all sides of the
-//! other. The features that touch tell the contact as an affine function of the two levels, and so the
-//! whole cell of the mark.
+//! Two sections and their contact by brute force: all corners of one against all sides of the other. The features in
+//! contact yield the contact as an affine function of the two levels, and therefore the complete cell of the mark.
 //!
-//! Notation. As in the library: `a`, `b` the section axes, `x`, `y` the levels; shadow coordinates are along
-//! the direction as one sees it who looks along `d`: `g` to the right, `h` upwards.
+//! As in the library, `a`, `b` are the section axes, `x`, `y` the levels. Shadow coordinates are those of a view
+//! along `d`: `g` to the right, `h` upwards.
 
 use colltrans::observe::{Sections, Touch};
 use glam::{DMat4, DVec2, DVec3, DVec4};
@@ -14,13 +13,14 @@ use super::setting::{Setting, below};
 #[derive(Debug)]
 pub(super) struct Placed {
     pub(super) vertices: Vec<DVec3>,
-    /// A face is a unit normal outwards, a level along it, and its corners.
+    /// Faces: unit outward normal, level along it, and corners.
     pub(super) faces: Vec<(DVec3, f64, Vec<usize>)>,
-    /// Two vertices and two faces.
+    /// Edges: two vertices and two faces.
     pub(super) edges: Vec<([usize; 2], [usize; 2])>,
 }
 
 impl Placed {
+    /// Transforms a body of a setting to the world.
     fn new(setting: &Setting, body: usize) -> Self {
         let (whole, pose) = (&setting.bodies[body], &setting.poses[body]);
         let vertices: Vec<DVec3> =
@@ -45,8 +45,8 @@ impl Placed {
     }
 }
 
-/// A section: corners counter-clockwise as one sees it along `d`, each on an edge, and the face between a
-/// corner and the next.
+/// A section: corners counter-clockwise in a view along `d`, each on an edge, and the face between each corner and
+/// the next one.
 #[derive(Debug, Clone)]
 pub(super) struct Section {
     pub(super) corners: Vec<DVec3>,
@@ -54,54 +54,55 @@ pub(super) struct Section {
     faces: Vec<usize>,
 }
 
-/// The bodies across whose axes sections are, seen along the direction.
+/// The bodies with their section axes, viewed along the direction.
 #[derive(Debug)]
 pub(super) struct View {
     pub(super) bodies: [Placed; 2],
     pub(super) direction: DVec3,
-    /// Right and up: unit vectors.
+    /// Unit vectors to the right and upwards.
     right: DVec3,
     up: DVec3,
     axes: [DVec3; 2],
     origins: [DVec3; 2],
 }
 
-/// A face by its body and its number there.
+/// A face, by its body and its index there.
 pub(super) type Face = (usize, usize);
 
-/// The faces that touch, where in the shadow, and how.
+/// Faces in contact, position in the shadow, and kind of contact.
 type Lowest = ([Face; 2], DVec2, Touch);
 
-/// The side of a section, the way across it, the corners that bound the gap, and how wide that is.
+/// Side of a section, direction across it, corners that bound the gap, and its width.
 type Gap = (Face, DVec2, [usize; 2], f64);
 
-/// What decides in a cell.
+/// Features that determine the contact in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Features {
-    /// Two faces, each of a body: one of either, or two of the same that meet in an edge.
+    /// Two faces: one of each body, or two of the same body that share an edge.
     Touching([Face; 2]),
-    /// The side of a section, by its body and face, along which the gap is widest, and the edge of the other
-    /// body on which the corner is that bounds the gap.
+    /// Side of a section, by its body and face, along which the gap is widest, and the edge of the other body with
+    /// the corner that bounds the gap.
     Apart(Face, usize),
 }
 
-/// Two sections, and where they touch or what lies between.
+/// Two sections with their contact or gap.
 #[derive(Debug, Clone)]
 pub(super) struct Instance {
     pub(super) sections: [Section; 2],
     pub(super) features: Features,
     pub(super) touch: Touch,
-    /// `phi`, or the gap.
+    /// `phi`, or the width of the gap.
     pub(super) value: f64,
-    /// The change of the value with the levels.
+    /// Gradient of the value with respect to the levels.
     pub(super) gradient: DVec2,
-    /// In the shadow: where they touch, twice; or the two corners that bound the gap.
+    /// In the shadow: the point of contact, twice; or the two corners that bound the gap.
     pub(super) points: [DVec2; 2],
-    /// The way of the line through either: across the shadow, or along the gap.
+    /// Direction of the line through these points: across the shadow, or along the gap.
     pub(super) line: DVec2,
 }
 
 impl View {
+    /// Creates the view of a setting with the section axes of a run.
     pub(super) fn new(setting: &Setting, told: &Sections) -> Self {
         let d = setting.direction;
         let [a, b] = told.axes;
@@ -111,12 +112,12 @@ impl View {
         Self { bodies, direction: d, right: d.cross(up), up, axes: told.axes, origins }
     }
 
-    /// As one sees it who looks along the direction.
+    /// Projects a point along the direction.
     pub(super) fn shadow(&self, w: DVec3) -> DVec2 {
         DVec2::new(self.right.dot(w), self.up.dot(w))
     }
 
-    /// The section of a body at a level, if it has an area.
+    /// Returns the section of a body at a level; `None` if it has no area.
     pub(super) fn section(&self, body: usize, level: f64) -> Option<Section> {
         let Placed { vertices, edges, .. } = &self.bodies[body];
         let height = |v: usize| self.axes[body].dot(vertices[v] - self.origins[body]) - level;
@@ -155,7 +156,7 @@ impl View {
         Some(section)
     }
 
-    /// The planar problem at a pair of levels.
+    /// Solves the planar problem at a pair of levels.
     pub(super) fn instance(&self, levels: DVec2) -> Option<Instance> {
         let sections = [self.section(0, levels.x)?, self.section(1, levels.y)?];
         let flat = sections
@@ -177,7 +178,7 @@ impl View {
         })
     }
 
-    /// The lowest common point and the faces that it lies on.
+    /// Returns the lowest common point and its faces; `None` if the sections do not meet.
     fn lowest(&self, sections: &[Section; 2], flat: &[Vec<DVec2>; 2]) -> Option<Lowest> {
         let side = |body: usize, k: usize| (flat[body][k], flat[body][(k + 1) % flat[body].len()]);
         let mut best: Option<Lowest> = None;
@@ -217,7 +218,7 @@ impl View {
         best
     }
 
-    /// Of all sides of both sections the one with the widest gap beside it.
+    /// Returns the gap at the side of both sections where it is widest.
     fn apart(&self, sections: [Section; 2], flat: &[Vec<DVec2>; 2]) -> Option<Instance> {
         let mut widest: Option<Gap> = None;
         for body in 0..2 {
@@ -255,7 +256,7 @@ impl View {
         })
     }
 
-    /// The contact on two faces, as a function of the levels; none where their planes do not fix it.
+    /// Returns the contact on two faces as a function of the levels; `None` if their planes do not determine it.
     pub(super) fn contact(&self, faces: [Face; 2]) -> Option<Contact> {
         let d = self.direction;
         let row = |body: usize, n: DVec3| n.extend(if body == 0 { 0.0 } else { n.dot(d) });
@@ -274,7 +275,8 @@ impl View {
         Some(Contact { origin, by: [back.col(2), back.col(3)] })
     }
 
-    /// The whole cell in which two faces touch: where the contact is in both bodies.
+    /// Returns the complete cell in which two faces are in contact: the levels at which the contact is in both
+    /// bodies.
     pub(super) fn cell(&self, faces: [Face; 2], [low, high]: [DVec2; 2]) -> Vec<DVec2> {
         let Some(contact) = self.contact(faces) else { return Vec::new() };
         let mut cell = vec![low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
@@ -292,7 +294,7 @@ impl View {
     }
 }
 
-/// Where two faces touch: the point of P in the world, and how far P has moved, affine in the levels.
+/// Contact of two faces: the point of P in the world and the translation of P, affine in the levels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
     origin: DVec4,
@@ -300,11 +302,12 @@ pub(super) struct Contact {
 }
 
 impl Contact {
+    /// Returns the contact at a pair of levels.
     pub(super) fn at(&self, levels: DVec2) -> DVec4 {
         self.origin + self.by[0] * levels.x + self.by[1] * levels.y
     }
 
-    /// Of `phi`.
+    /// Returns the gradient of `phi`.
     pub(super) fn gradient(&self) -> DVec2 {
         DVec2::new(self.by[0].w, self.by[1].w)
     }

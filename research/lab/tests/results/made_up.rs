@@ -1,4 +1,4 @@
-//! Findings that nobody found.
+//! Artificial findings.
 
 use colltrans_lab::Experiment;
 use colltrans_lab::claims::{Better, Claim, Criterion, PaperClaim, Reason, Why};

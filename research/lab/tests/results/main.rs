@@ -1,4 +1,4 @@
-//! What a reader gets from a finding: pictures, CSV, the report, and the folder of a run.
+//! The output of findings: pictures, CSV, the report, and the folder of a run.
 
 mod made_up;
 mod pictures;

@@ -1,4 +1,4 @@
-//! Any figure can be drawn: what cannot be shown is left out and said.
+//! Any figure can be drawn; points that cannot be shown are left out with a note.
 
 use colltrans_lab::csv;
 use colltrans_lab::draw::{Picture, draw};
@@ -7,7 +7,7 @@ use colltrans_lab::finding::{Figure, Point, Series};
 use crate::made_up::{figure, series};
 use crate::xml::elements;
 
-/// Draws it and checks what holds for every picture.
+/// Draws a figure, and checks the properties of every picture.
 fn drawn(figure: &Figure) -> Picture {
     let picture = draw(figure).unwrap();
     assert_eq!(elements(&picture.svg, &[])[0], "svg");
@@ -22,7 +22,7 @@ fn drawn(figure: &Figure) -> Picture {
     picture
 }
 
-/// Renderers keep coordinates in few bits; nothing has to be far outside the picture.
+/// Asserts that coordinates are not far outside the picture, because renderers store them in few bits.
 fn assert_coordinates(svg: &str) {
     for name in ["x1", "x2", "y1", "y2", "cx", "cy", "x", "y", "points", "d"] {
         for value in svg.split(&format!(" {name}=\"")).skip(1) {
@@ -37,7 +37,7 @@ fn assert_coordinates(svg: &str) {
 }
 
 #[test]
-fn everything_is_in_the_picture() {
+fn picture_contains_titles_labels_and_legend() {
     let picture = drawn(&figure("figure-12"));
     assert!(picture.notes.is_empty());
     for text in [
@@ -56,7 +56,7 @@ fn everything_is_in_the_picture() {
 }
 
 #[test]
-fn the_same_figure_gives_the_same_bytes() {
+fn equal_figures_yield_equal_bytes() {
     let figure = figure("figure-12");
     let first = draw(&figure).unwrap();
     let other = Figure { id: "other".into(), ..figure.clone() };
@@ -65,15 +65,15 @@ fn the_same_figure_gives_the_same_bytes() {
     assert_eq!(csv::figure(&figure), csv::figure(&figure.clone()));
 }
 
-/// Pictures that stand in one page must not share the names of their clipping paths.
+/// Pictures in one page must not share the names of their clipping paths.
 #[test]
-fn names_inside_pictures_differ() {
+fn clipping_paths_of_pictures_have_different_names() {
     let id = |picture: &Picture| picture.svg.split("id=\"").nth(1).unwrap()[..12].to_owned();
     assert_ne!(id(&drawn(&figure("figure-12"))), id(&drawn(&figure("figure-13"))));
 }
 
 #[test]
-fn all_axes() {
+fn all_kinds_of_axes_are_drawn() {
     for (x, y) in [(false, false), (false, true), (true, false), (true, true)] {
         let mut figure = figure("f");
         (figure.x.log, figure.y.log) = (x, y);
@@ -81,9 +81,9 @@ fn all_axes() {
     }
 }
 
-/// Marks are where the numbers say: equal factors are equal distances on a logarithmic axis.
+/// Marks are at their coordinates: equal factors have equal distances on a logarithmic axis.
 #[test]
-fn marks_are_where_they_should_be() {
+fn marks_are_at_their_coordinates() {
     let mut figure = figure("f");
     figure.references.clear();
     let point = |x: f64, y: f64| Point { x, y, low: y, high: y, count: 1 };
@@ -107,7 +107,7 @@ fn marks_are_where_they_should_be() {
 }
 
 #[test]
-fn nothing_at_all() {
+fn empty_figure_is_drawn() {
     let mut nothing = figure("f");
     nothing.series.clear();
     nothing.references.clear();
@@ -119,7 +119,7 @@ fn nothing_at_all() {
 }
 
 #[test]
-fn what_is_missing_is_said() {
+fn missing_points_are_noted() {
     let mut figure = figure("f");
     figure.series[0].points[3].y = f64::NAN;
     figure.series[0].points[5].x = 0.0;
@@ -146,7 +146,7 @@ fn what_is_missing_is_said() {
 
 /// A single point, equal points, many points, and numbers of any size.
 #[test]
-fn odd_data() {
+fn unusual_data_is_drawn() {
     let one =
         |x, y| Series { name: "s".into(), points: vec![Point { x, y, low: y, high: y, count: 1 }] };
     let extremes = [0.0, 1e-300, 1e-9, 1.0, 1e15, f64::MAX, f64::INFINITY, -1.0];

@@ -1,4 +1,4 @@
-//! The report: one well-formed page that needs nothing else and says what was found.
+//! The report is one well-formed, self-contained page with all results.
 
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ fn done() -> Vec<Done> {
 }
 
 #[test]
-fn it_says_everything() {
+fn report_contains_all_results() {
     let page = page(&done(), 1, true);
     let found = elements(&page, &["meta", "br"]);
     let count = |name: &str| found.iter().filter(|element| *element == name).count();
@@ -71,7 +71,7 @@ fn it_says_everything() {
 }
 
 #[test]
-fn it_needs_nothing_else() {
+fn report_is_self_contained() {
     let page = page(&done(), 1, true);
     for loading in ["<script", "<link", "<img", "src=", "@import", "url(http", "@font-face"] {
         assert!(!page.contains(loading), "{loading}");
@@ -86,7 +86,7 @@ fn it_needs_nothing_else() {
 }
 
 #[test]
-fn what_is_not_as_it_should_be_is_said() {
+fn unfinished_and_unoptimised_runs_are_noted() {
     let unfinished = page(&done(), 10, false);
     assert!(unfinished.contains("1 of 10 experiments were finished"));
     assert!(unfinished.contains("unoptimised build"));

@@ -1,4 +1,4 @@
-//! A run and the folder it leaves.
+//! A run and its folder of results.
 
 use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ fn run_in(folder: &Path) -> Result<Summary, LabError> {
 }
 
 #[test]
-fn the_folder_holds_everything() {
+fn folder_contains_all_files() {
     let folder = TemporaryFolder::new();
     let results = folder.path().join("not/yet/there");
     let mut heard = Heard::default();
@@ -77,7 +77,7 @@ fn the_folder_holds_everything() {
 }
 
 #[test]
-fn the_summary_lists_the_claims() {
+fn summary_lists_claims() {
     let folder = TemporaryFolder::new();
     let text = run_in(folder.path()).unwrap().to_string();
     assert!(
@@ -92,7 +92,7 @@ fn the_summary_lists_the_claims() {
 }
 
 #[test]
-fn data_and_pictures_are_the_same_each_time() {
+fn data_and_pictures_are_reproducible() {
     let [one, two] = [(); 2].map(|()| TemporaryFolder::new());
     run_in(one.path()).unwrap();
     run_in(two.path()).unwrap();
@@ -103,17 +103,17 @@ fn data_and_pictures_are_the_same_each_time() {
 }
 
 #[test]
-fn folders_that_cannot_be_made() {
+fn folder_that_cannot_be_created_is_an_error() {
     let folder = TemporaryFolder::new();
     let file = folder.path().join("file");
     std::fs::write(&file, "").unwrap();
     let error = run_in(&file.join("results")).unwrap_err();
     assert!(matches!(&error, LabError::Folder { path, .. } if *path == file.join("results")));
-    assert!(error.to_string().contains("file/results: the folder cannot be made: "), "{error}");
+    assert!(error.to_string().contains("file/results: cannot create the folder: "), "{error}");
 }
 
 #[test]
-fn files_that_cannot_be_written() {
+fn file_that_cannot_be_written_is_an_error() {
     let folder = TemporaryFolder::new();
     std::fs::create_dir(folder.path().join("figure-12.svg")).unwrap();
     let error = run_in(folder.path()).unwrap_err();
@@ -125,7 +125,7 @@ fn files_that_cannot_be_written() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn full_disks() {
+fn full_disk_is_an_error() {
     let folder = TemporaryFolder::new();
     std::os::unix::fs::symlink("/dev/full", folder.path().join("report.html")).unwrap();
     let LabError::Write { path, source } = run_in(folder.path()).unwrap_err() else {

@@ -12,7 +12,7 @@ const RESULTS: &str = "\
 The paper is Mirolo, Carpin and Pagello, \"Incremental Convex Minimization for Computing Collision
 Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, section V.
 
-Results, in the existing_folder given by --output (files of these names are replaced):
+Results, in the folder given by --output (files of these names are replaced):
   report.html              every figure and table beside the claims it supports or refutes, and
                            where the numbers come from; one page that needs nothing else
   claims.json              every claim with its numbers, intervals and verdict, for programs

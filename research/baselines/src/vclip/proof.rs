@@ -209,8 +209,8 @@ impl Scene<'_> {
         }
         for (first, _) in &moving {
             for (second, _) in &fixed {
-                let without_component_along = first.cross(*second).normalize_or_zero();
-                normals.extend([without_component_along, -without_component_along]);
+                let across = first.cross(*second).normalize_or_zero();
+                normals.extend([across, -across]);
             }
         }
         normals

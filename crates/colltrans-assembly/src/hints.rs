@@ -36,8 +36,8 @@ const UNIT_GAP: f64 = 250.0;
 const UNIT_GAP_OF_OVERLAPS: f64 = 32.0;
 /// Maximum difference of lengths of equal shapes, as a share.
 const EQUAL: f64 = 1e-3;
-/// Maximum number of names in a hint.
-const MAX_NAMES: usize = 4;
+/// Names that a hint lists.
+const MAX_NAMED: usize = 4;
 
 /// An oddity of the parts, or a property that may be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -97,7 +97,7 @@ fn identical_parts_hints(assembly: &Assembly, likes: &[usize]) -> Vec<Hint> {
         let names = assembly.names(&parts);
         let words = match common_name(&names) {
             Some(name) => format!("{} x {name} are identical", parts.len()),
-            None => format!("{} are identical", first_named(&names, MAX_NAMES)),
+            None => format!("{} are identical", first_named(&names, MAX_NAMED)),
         };
         Hint { kind: HintKind::Identical, parts, words }
     };
@@ -131,7 +131,7 @@ fn frame_hint(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
         let first = (0..twin).find(|a| same(a, &twin)).unwrap_or(twin);
         let mut group = vec![first];
         group.extend(twins.into_iter().filter(|k| same(&first, k)));
-        let names = first_named(&assembly.names(&group), MAX_NAMES);
+        let names = first_named(&assembly.names(&group), MAX_NAMED);
         let words = format!(
             "{names} are one body in one place: parts seem to be in frames of their own; {advice}"
         );
@@ -166,7 +166,7 @@ fn unit_hint(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         let names = assembly.names(&small);
         let words = format!(
             "{} may be in another unit, {factor} times too small: {why}; --scale {}={factor} corrects it",
-            first_named(&names, MAX_NAMES),
+            first_named(&names, MAX_NAMED),
             names[0]
         );
         Hint { kind: HintKind::Units, parts: small, words }
@@ -212,10 +212,10 @@ fn unit_hint(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
 fn millimetre_hint(assembly: &Assembly, large: Vec<usize>) -> Hint {
     let names = assembly.names(&large);
     let scales: Vec<String> =
-        names.iter().take(MAX_NAMES).map(|name| format!("--scale {name}=0.001")).collect();
+        names.iter().take(MAX_NAMED).map(|name| format!("--scale {name}=0.001")).collect();
     let words = format!(
         "{} may be in millimetres beside parts in metres, 1000 times too large: {} corrects it",
-        first_named(&names, MAX_NAMES),
+        first_named(&names, MAX_NAMED),
         scales.join(" ")
     );
     Hint { kind: HintKind::Units, parts: large, words }

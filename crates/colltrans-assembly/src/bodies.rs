@@ -57,14 +57,13 @@ const SINGLE_DIGITS: f64 = 1.0 / (1 << 21) as f64;
 const DOUBLE_DIGITS: f64 = 1.0 / (1_u64 << 46) as f64;
 
 impl Fit {
-    /// Returns the default fit: the chord errors of the parts, where their source states them, and the last digits of
-    /// the numbers that the files write.
+    /// Returns the default fit, from the chord errors of the parts, where their source states them, and the tolerance
+    /// for the last digits of the numbers in the files.
     ///
-    /// For the digits this is the largest of:
-    /// - the digits of each file: `2^-21` of its largest coordinate in single precision, else four times
-    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as between two solids of such files
-    ///   ([`between`](colltrans_mesh::body::between));
-    /// - `2^-21` of the assembly's extent, if a part is in single precision, comes from no file, or is turned by a pose;
+    /// That tolerance is the largest of:
+    /// - for each file, `2^-21` of its largest coordinate in single precision, otherwise four times
+    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as in [`between`](colltrans_mesh::body::between);
+    /// - `2^-21` of the assembly's extent, if a part is in single precision, has no file, or is rotated by a pose;
     /// - `2^-46` of the largest coordinate in the world, for the rounding of doubles.
     pub fn default_for(assembly: &Assembly) -> Self {
         let base = Self::digits(assembly);
@@ -820,7 +819,7 @@ impl<'a> Bodies<'a> {
 
     /// Computes [`Self::past`] with part `a` displaced by `by`.
     pub(crate) fn past_displaced(&self, a: usize, by: DVec3, b: usize, d: DVec3) -> Bounded {
-        // Adding the displacement rounds each vertex once more.
+        // Adding the displacement is one more rounding of each vertex.
         let sums = if by == DVec3::ZERO { SUMS } else { SUMS + 1.0 };
         self.past_moved((a, |p| p + by), b, d, sums)
     }

@@ -47,12 +47,11 @@ impl Part {
         Self::with_options(name, pieces, &BodyOptions::default())
     }
 
-    /// Creates a part from pieces with options for solids. Open shells are accepted whatever the options
-    /// state.
+    /// Creates a part from pieces with options for solids. Open shells are always accepted.
     ///
     /// # Errors
-    /// Those of [`Self::new`], and [`AssemblyError::Part`] if a surface needs repair and
-    /// [`BodyOptions::as_is`] disables it.
+    /// Those of [`Self::new`], and [`AssemblyError::Part`] if a surface needs repair and [`BodyOptions::as_is`]
+    /// disables it.
     pub fn with_options(
         name: impl Into<String>,
         pieces: &[Piece],

@@ -297,7 +297,7 @@ fn stability_warnings(r: &Report, steps: &[Step]) -> Markup {
     }
 }
 
-/// Returns what is proven about the steps, and the exceptions.
+/// Returns the proven claims about the steps, and the exceptions.
 fn proof_section(r: &Report, steps: &[Step]) -> Markup {
     let (f, words) = (r.f, &r.words);
     let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();

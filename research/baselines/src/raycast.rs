@@ -1,5 +1,6 @@
 //! GJK ray cast: van den Bergen, "Ray casting against general convex objects with application to continuous collision
-//! detection", 2004. Physics engines use this linear cast.
+//! detection", 2004. Physics engines use this linear cast. [`RayCast`] lists known failures of the published
+//! algorithm.
 //!
 //! - `M = {q - p}` is the Minkowski difference in the fixed body's frame, `d` the direction. `S` is the size, as in
 //!   [`egjk`](crate::egjk).
@@ -8,12 +9,9 @@
 //!   `v`.
 //!
 //! Invariant: `t` is a lower bound of the collision translation. It is raised only to planes below `M`, through `w`
-//! with normal `v`, that `x` has not crossed. A *hit* is declared if `|v|` is at most the tolerance `e`. Then `x` is
-//! within `e` of `M`, and `t` is too small by at most `e / n . d` with the unknown contact normal `n`. A ray that
-//! misses `M` ends at a plane from which it moves away. One addition: `t |d| > S` is a proven miss, because all of
-//! `M` is within `S` of the origin.
-//!
-//! Known failures of the published algorithm: see [`RayCast`].
+//! with normal `v`, that `x` has not crossed. A *hit* is declared if `|v|` is at most the tolerance `e`. Then `t` is
+//! too small by at most `e / n . d` with the unknown contact normal `n`. A ray that misses `M` ends at a plane from
+//! which it moves away, or at `t |d| > S`, beyond which no point of `M` is (an addition).
 
 use colltrans::{ConvexPolyhedron, Pose};
 use glam::DVec3;

@@ -9,11 +9,6 @@
 //! |d_i| |e_i|`, a slope of a few `u` for any edge length. Therefore the missed height is a few `u |d|` times the
 //! width of the body. Climbing requires a gain above this error, so that the true height increases with every step
 //! and plateaus cause no cycle.
-//!
-//! The error is amplified only at vertices whose edges almost cancel, inside a longer edge or a larger face up to `64
-//! u` of the size; the hull removes such vertices. If the corners of a larger face deviate as much from a plane, next
-//! to short edges, climbing may end too low. The library searches the surroundings there; this implementation does
-//! not.
 
 use colltrans::ConvexPolyhedron;
 use glam::DVec3;
@@ -21,8 +16,13 @@ use glam::DVec3;
 /// Rounding error of a gain in units of `sum |d_i| |e_i|`: a subtraction, a product and two sums.
 const GAIN_ERROR: f64 = 2.0 * f64::EPSILON;
 
-/// Returns a support vertex of `body` along `direction` (in its own frame), climbing from vertex `from`. Adds
-/// the number of vertices whose neighbours were examined to `climbed`.
+/// Returns a support vertex of `body` along `direction` (in its own frame), climbing from vertex `from`. Adds the
+/// number of vertices whose neighbours were examined to `climbed`.
+///
+/// The error of a gain is amplified at vertices whose edges almost cancel, inside a longer edge or a larger face up
+/// to `64 u` of the size. The hull removes such vertices. If the corners of a larger face deviate as much from a
+/// plane, next to short edges, climbing may end too low. The library searches the surroundings there; this
+/// implementation does not.
 pub(crate) fn climb_to_support(
     body: &ConvexPolyhedron,
     direction: DVec3,

@@ -9,12 +9,8 @@
 //!
 //! Invariant: `|v|` is an upper bound of the distance, because `v` is a point of `M`. `v . w / |v|` is a lower bound,
 //! because `M` lies beyond the plane through `w` with normal `v`. The *gap* between the best bounds limits the error
-//! of the answer, whatever the rounding of `v`. The search ends if the gap is at most the rounding error of a point
-//! of `M`, or if rounding stalls it. On more than 200,000 tied, touching, thin and coherent settings it stalled 9
-//! times, on bodies at least a thousand times longer than thick, with gaps up to `2.9e-13 S`.
-//!
-//! Cameron's enhancement: hill climbing (`climb`) starts at the last support point, and the simplex is kept between
-//! queries. Signed volumes yield the nearest point of the simplex (`simplex`).
+//! of the answer. The search ends if the gap is at most the rounding error of a point of `M`, or if rounding stalls
+//! it.
 
 mod climb;
 mod difference;
@@ -67,6 +63,11 @@ pub struct Steps {
 }
 
 /// Solver for a sequence of distance queries between two bodies, with temporal coherence.
+///
+/// Cameron's enhancement: hill climbing (`climb`) starts at the last support point, and the simplex is kept between
+/// queries. Signed volumes yield the nearest point of the simplex (`simplex`). On more than 200,000 tied, touching,
+/// thin and coherent settings rounding stalled the search 9 times, on bodies at least a thousand times longer than
+/// thick, with gaps up to `2.9e-13 S`.
 ///
 /// ```
 /// use colltrans::glam::DVec3;

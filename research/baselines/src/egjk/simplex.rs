@@ -7,14 +7,7 @@
 //! simplex with a corner replaced by the foot, over the whole simplex, measured in the coordinate plane or axis in
 //! which the whole is largest. If all weights are positive, the foot is the nearest point. If a weight has the wrong
 //! sign, the origin is beyond the face without its corner; the nearest point is then that of the nearest such face.
-//!
-//! Additions for accuracy:
-//! - If rounding leaves the sign of a weight open, its face is examined too; if it leaves that of the whole open, all
-//!   faces are. They cover a flat simplex.
-//! - Newton steps correct the weights of thin simplices.
-//! - A nearest point of length `|v|` with error `u S` has a direction with error `u S / |v|`, which enters the bound
-//!   of GJK. Therefore the foot on a plane is a multiple of the normal, and the foot on a line is made orthogonal to
-//!   it twice.
+//! [`Simplex::reduce`] lists additions for accuracy.
 
 use colltrans::VertexPair;
 use glam::DVec3;
@@ -68,8 +61,15 @@ impl Simplex {
         self.len += 1;
     }
 
-    /// Returns the shortest vector from `origin` to the simplex. Keeps only the corners with positive
-    /// weights.
+    /// Returns the shortest vector from `origin` to the simplex. Keeps only the corners with positive weights.
+    ///
+    /// Additions for accuracy:
+    /// - If rounding leaves the sign of a weight open, its face is examined too; if it leaves that of the whole open,
+    ///   all faces are. They cover a flat simplex.
+    /// - Newton steps correct the weights of thin simplices.
+    /// - A nearest point of length `|v|` with error `u S` has a direction with error `u S / |v|`, which enters the
+    ///   bound of GJK. Therefore the foot on a plane is a multiple of the normal, and the foot on a line is made
+    ///   orthogonal to it twice.
     pub(crate) fn reduce(&mut self, origin: DVec3) -> DVec3 {
         let points = self.corners.map(|c| c.point - origin);
         let nearest = match self.len {

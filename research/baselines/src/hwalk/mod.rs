@@ -4,15 +4,8 @@
 //!
 //! A walk over pairs of features from those of the last query is fast if they are close. If it exceeds a few steps, a
 //! *shortcut* leads to the next coarser layer of the Dobkin-Kirkpatrick hierarchy (`hierarchy`), repeatedly until a
-//! walk ends in time. Then it returns layer by layer, with a walk of a few steps on each.
-//!
-//! Choices that the paper leaves open:
-//! - The walk on a layer is that of V-Clip ([`crate::vclip`]). The paper's experiments use Lin and Canny's walk.
-//! - A query without a previous one starts at the coarsest layer. Layer `k` of one body is paired with layer `k` of
-//!   the other, or its last one.
-//! - Layers are inside the bodies. Therefore features of any layer that cross prove an overlap; the next query starts
-//!   on that layer.
-//! - The result on layer 0 is proven like that of V-Clip.
+//! walk ends in time. Then it returns layer by layer, with a walk of a few steps on each. [`HWalk`] lists choices
+//! that the paper leaves open.
 
 mod hierarchy;
 
@@ -54,6 +47,14 @@ pub struct Steps {
 }
 
 /// Solver for a sequence of distance queries between two bodies.
+///
+/// Choices that the paper leaves open:
+/// - The walk on a layer is that of V-Clip ([`crate::vclip`]). The paper's experiments use Lin and Canny's walk.
+/// - A query without a previous one starts at the coarsest layer. Layer `k` of one body is paired with layer `k` of
+///   the other, or its last one.
+/// - Layers are inside the bodies. Therefore features of any layer that cross prove an overlap; the next query starts
+///   on that layer.
+/// - The result on layer 0 is proven like that of V-Clip.
 ///
 /// ```
 /// use colltrans::glam::DVec3;

@@ -5,13 +5,9 @@
 //! boxes* exclude contacts. A query descends both trees at once and compares triangles at the leaves. Modules:
 //! `triangle` (two triangles), `frame` (principal axes), `rss` and `obb` (volumes), `tree`, `soup`, `query`.
 //!
-//! As published: both volumes, axes from the covariance of the vertices, split at the mean, one triangle in each
-//! leaf, descent into the larger volume, depth first with the nearer pair first, the last closest triangles as first
-//! guess, the meaning of both error allowances.
-//!
-//! Differences: nodes are split at the median if the mean is far off, so that the depth is logarithmic. Volumes are
-//! stored in the soup's frame instead of the parent's, so that errors do not accumulate. Volume tests subtract their
-//! rounding error, and a distance search ignores gains of that order.
+//! Differences from the publication: nodes are split at the median if the mean is far off, so that the depth is
+//! logarithmic. Volumes are stored in the soup's frame instead of the parent's, so that errors do not accumulate.
+//! Volume tests subtract their rounding error, and a distance search ignores gains of that order.
 
 mod frame;
 mod obb;

@@ -1,18 +1,12 @@
 //! Nearest points of two triangles.
 //!
-//! `A` and `B` are triangles in one frame, possibly degenerate; `P` and `Q` a pair of nearest points, `v = Q
-//! - P`.
+//! `A` and `B` are triangles in one frame, possibly degenerate; `P` and `Q` a pair of nearest points, `v = Q - P`.
 //!
 //! For disjoint triangles, the shortest vector joins two edges (9 pairs), or a vertex and the interior of a face (6
 //! pairs). For triangles that meet, an edge of one pierces the other, or they are coplanar and a former candidate has
 //! length 0. Every candidate is an upper bound, because it is a pair of points of `A` and `B`; the answer is the best
 //! one. An edge pair ends the search if the third corners are *clearly* outside of the slab between the planes
 //! through `P` and `Q` normal to `v` (Larsen et al. 1999). If rounding hides that, all candidates are compared.
-//!
-//! Slivers: nearest points of two lines are computed from the cross product of their directions, whose error grows
-//! with `1 / sin` of the angle, not with its square. Normals are formed without cancellation. A point is inside a
-//! face if it is behind its three edges and within the longest edge, because two edges at a sharp corner do not bound
-//! it.
 
 use glam::DVec3;
 
@@ -60,6 +54,11 @@ impl Nearest {
 }
 
 /// Returns nearest points of two triangles; distance 0 with a common point if they intersect.
+///
+/// Slivers: nearest points of two lines are computed from the cross product of their directions, whose error grows
+/// with `1 / sin` of the angle, not with its square. Normals are formed without cancellation. A point is inside a
+/// face if it is behind its three edges and within the longest edge, because two edges at a sharp corner do not bound
+/// it.
 pub(crate) fn nearest_of_triangles(a: &Triangle, b: &Triangle, scale: Scale) -> Nearest {
     let (edges_a, edges_b) = (edges(a), edges(b));
     let margin = scale.area_noise();

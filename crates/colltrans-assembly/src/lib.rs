@@ -2,10 +2,8 @@
 //! the others.
 //!
 //! Stages of a run, performed by one [`Question`]:
-//! - [`Assembly`] and [`Fit`] -> [`Bodies`] (queries to `colltrans`; [`roles`], [`threads`]) -> [`start`],
-//!   [`suggest`] (overlaps)
-//! - [`hints`] (oddities), [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and
-//!   [`inertia`])
+//! - [`Assembly`] and [`Fit`] -> [`Bodies`] (queries; [`roles`], [`threads`]) -> [`start`], [`suggest`] (overlaps)
+//! - [`hints`], [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and [`inertia`])
 //! - [`matrix`], [`rooms`] (who stops whom) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`likes`]), [`map`]
 //! - [`record`] (JSON) and [`report`] (pictures, HTML, animation; feature `report`)
 //!

@@ -61,13 +61,13 @@ fn linear_range(low: f64, high: f64) -> (f64, f64) {
 }
 
 /// Formats a tick label: `0.05`, `20`, `2,000`, `5×10⁶`.
-pub(super) fn label(value: f64) -> String {
+pub(super) fn tick_label(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
         return "0".into();
     }
     if !(1e-4..1e6).contains(&size) {
-        return scientific(value);
+        return scientific_label(value);
     }
     // Ticks are short decimal numbers up to rounding, which 12 digits hide.
     let digits = (12 - size.log10().floor() as i32).clamp(0, 16) as usize;
@@ -96,7 +96,7 @@ fn group_thousands(whole: &str) -> String {
 }
 
 /// Formats a number with a power of ten.
-fn scientific(value: f64) -> String {
+fn scientific_label(value: f64) -> String {
     const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let text = format!("{value:.6e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -126,7 +126,7 @@ mod tests {
             (1e-5, "10⁻⁵"),
             (1234.5, "1,234.5"),
         ] {
-            assert_eq!(label(value), expected);
+            assert_eq!(tick_label(value), expected);
         }
     }
 

@@ -64,12 +64,12 @@ struct Trouble {
 }
 
 /// Returns the measured curves, and sentences about their defects.
-pub(super) fn measured(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
+pub(super) fn measured_curves(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
     drawable_curves(figure, &figure.series, |_, _| ())
 }
 
 /// Returns the curves for comparison, without spreads and isolated points.
-pub(super) fn references(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
+pub(super) fn reference_curves(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
     drawable_curves(figure, &figure.references, |curve, trouble| {
         *trouble = Trouble { no_place: trouble.no_place, ..Trouble::default() };
         trouble.alone = curve.stretches.iter().filter(|stretch| stretch.len() == 1).count();
@@ -87,7 +87,7 @@ fn drawable_curves<'f>(
     let (mut curves, mut sentences) = (Vec::new(), Vec::new());
     for series in all {
         let mut trouble = Trouble::default();
-        let mut curve = curve(figure, series, &mut trouble);
+        let mut curve = drawable_curve(figure, series, &mut trouble);
         adapt(&mut curve, &mut trouble);
         sentences.extend(trouble.sentences(figure, series));
         curves.push(curve);
@@ -96,10 +96,10 @@ fn drawable_curves<'f>(
 }
 
 /// Converts a series to a curve.
-fn curve<'f>(figure: &Figure, series: &'f Series, trouble: &mut Trouble) -> Curve<'f> {
+fn drawable_curve<'f>(figure: &Figure, series: &'f Series, trouble: &mut Trouble) -> Curve<'f> {
     let mut stretches = vec![Vec::new()];
     for point in &series.points {
-        match (mark(figure, point, trouble), stretches.last_mut()) {
+        match (drawable_mark(figure, point, trouble), stretches.last_mut()) {
             (Some(mark), Some(stretch)) => stretch.push(mark),
             _ => stretches.push(Vec::new()),
         }
@@ -109,7 +109,7 @@ fn curve<'f>(figure: &Figure, series: &'f Series, trouble: &mut Trouble) -> Curv
 }
 
 /// Converts a point to a mark; `None` if the axes cannot show it.
-fn mark(figure: &Figure, point: &Point, trouble: &mut Trouble) -> Option<Mark> {
+fn drawable_mark(figure: &Figure, point: &Point, trouble: &mut Trouble) -> Option<Mark> {
     let &Point { x, y, low, high, .. } = point;
     if !has_place(&figure.x, x) || !has_place(&figure.y, y) {
         trouble.no_place += 1;

@@ -67,13 +67,13 @@ const GREYS: [(&str, &str); 4] =
 /// # Errors
 /// The message of the PNG encoder.
 pub fn draw(figure: &Figure) -> Result<Picture, String> {
-    let (measured, mut notes) = curve::measured(figure);
-    let (references, more) = curve::references(figure);
+    let (measured, mut notes) = curve::measured_curves(figure);
+    let (references, more) = curve::reference_curves(figure);
     notes.extend(more);
-    let mut scene = scene(figure, &measured, &references, !notes.is_empty());
+    let mut scene = build_scene(figure, &measured, &references, !notes.is_empty());
     place_vertical_label_above_axis(&mut scene);
     let png = RasterBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;
-    Ok(Picture { svg: svg(figure, &scene), png, notes })
+    Ok(Picture { svg: render_svg(figure, &scene), png, notes })
 }
 
 /// Places the label of the vertical axis above it. The plotting crate draws it rotated along the axis, which
@@ -89,7 +89,12 @@ fn place_vertical_label_above_axis(scene: &mut Scene) {
 }
 
 /// Builds the plot of all curves.
-fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: bool) -> Scene {
+fn build_scene(
+    figure: &Figure,
+    measured: &[Curve],
+    references: &[Curve],
+    incomplete: bool,
+) -> Scene {
     let marks = || measured.iter().chain(references).flat_map(Curve::marks);
     let x = axis::visible_range(&figure.x, marks().map(|mark| mark.x));
     let y = axis::visible_range(
@@ -106,16 +111,16 @@ fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: 
     for (curve, &(grey, dash)) in references.iter().zip(GREYS.iter().cycle()) {
         add_reference(&mut plots, curve, grey, dash);
     }
-    for (k, (curve, (&colour, &shape))) in measured.iter().zip(styles()).enumerate() {
+    for (k, (curve, (&colour, &shape))) in measured.iter().zip(curve_styles()).enumerate() {
         let aside = aside(figure, x, k, measured.len());
         add_measured(&mut plots, &curve.moved(aside), colour, shape, y.0);
         let sign = if curve.is_dense() { LegendShape::Line } else { LegendShape::Marker(shape) };
-        legend.push(entry(curve, colour, sign, None));
+        legend.push(legend_entry(curve, colour, sign, None));
     }
     for (curve, &(grey, dash)) in references.iter().zip(GREYS.iter().cycle()) {
-        legend.push(entry(curve, grey, LegendShape::Line, Some(dash)));
+        legend.push(legend_entry(curve, grey, LegendShape::Line, Some(dash)));
     }
-    let mut layout = layout(figure, x, y).with_legend_entries(legend);
+    let mut layout = plot_layout(figure, x, y).with_legend_entries(legend);
     if incomplete {
         layout = layout.with_subtitle("Not all data can be drawn: the report says which, and why.");
     }
@@ -132,17 +137,22 @@ fn aside(figure: &Figure, x: (f64, f64), k: usize, count: usize) -> impl Fn(f64)
 }
 
 /// Iterates over pairs of colours and shapes.
-fn styles() -> impl Iterator<Item = (&'static &'static str, &'static MarkerShape)> {
+fn curve_styles() -> impl Iterator<Item = (&'static &'static str, &'static MarkerShape)> {
     COLOURS.iter().zip(&SHAPES).cycle()
 }
 
 /// Returns a line plot.
-fn line(points: impl Iterator<Item = (f64, f64)>, colour: &str, width: f64) -> LinePlot {
+fn line_plot(points: impl Iterator<Item = (f64, f64)>, colour: &str, width: f64) -> LinePlot {
     LinePlot::new().with_data(points).with_color(colour).with_stroke_width(width)
 }
 
 /// Returns the legend entry of a curve.
-fn entry(curve: &Curve, colour: &str, shape: LegendShape, dash: Option<&str>) -> LegendEntry {
+fn legend_entry(
+    curve: &Curve,
+    colour: &str,
+    shape: LegendShape,
+    dash: Option<&str>,
+) -> LegendEntry {
     let missing = if curve.stretches.is_empty() { " (no points)" } else { "" };
     LegendEntry {
         label: without_formulas(curve.name) + missing,
@@ -155,7 +165,7 @@ fn entry(curve: &Curve, colour: &str, shape: LegendShape, dash: Option<&str>) ->
 /// Adds a curve for comparison.
 fn add_reference(plots: &mut Vec<Plot>, curve: &Curve, grey: &str, dash: &str) {
     plots.extend(curve.stretches.iter().map(|stretch| {
-        line(stretch.iter().map(|mark| (mark.x, mark.y)), grey, 1.0)
+        line_plot(stretch.iter().map(|mark| (mark.x, mark.y)), grey, 1.0)
             .with_line_style(LineStyle::Custom(dash.into()))
             .into()
     }));
@@ -183,7 +193,7 @@ fn add_measured(
         if is_dense && stretch.len() > 1 {
             let x = points().map(|(x, _)| x);
             plots.push(BandPlot::new(x, low, high).with_color(colour).with_opacity(0.2).into());
-            plots.push(line(points(), colour, 1.5).into());
+            plots.push(line_plot(points(), colour, 1.5).into());
             continue;
         }
         let dots = ScatterPlot::new().with_data(points()).with_color(colour).with_marker(shape);
@@ -191,14 +201,14 @@ fn add_measured(
         for ((dot, low), high) in dots.data.iter_mut().zip(low).zip(high) {
             dot.y_err = (low < high).then_some((dot.y - low, high - dot.y));
         }
-        plots.push(line(points(), colour, 1.5).into());
+        plots.push(line_plot(points(), colour, 1.5).into());
         plots.push(dots.into());
     }
 }
 
 /// Returns the layout for these ranges.
-fn layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
-    let ticks = || TickFormat::Custom(std::sync::Arc::new(axis::label));
+fn plot_layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
+    let ticks = || TickFormat::Custom(std::sync::Arc::new(axis::tick_label));
     let mut layout = Layout::new(x, y)
         .with_width(WIDTH)
         .with_height(HEIGHT)
@@ -230,7 +240,7 @@ fn empty_scene(figure: &Figure) -> Scene {
     let nothing = TextAnnotation::new("No point of this figure can be drawn.", 0.5, 0.5);
     let plain = Axis { label: String::new(), log: false };
     let plain = Figure { x: plain.clone(), y: plain, ..figure.clone() };
-    let mut layout = layout(&plain, (0.0, 1.0), (0.0, 1.0))
+    let mut layout = plot_layout(&plain, (0.0, 1.0), (0.0, 1.0))
         .with_annotation(nothing.with_font_size(15))
         .with_show_grid(false);
     layout.suppress_x_ticks = true;
@@ -245,7 +255,7 @@ fn without_formulas(text: &str) -> String {
 
 /// Returns a scalable SVG with reproducible bytes. The plotting crate numbers clipping paths globally in the
 /// process; these numbers are replaced.
-fn svg(figure: &Figure, scene: &Scene) -> String {
+fn render_svg(figure: &Figure, scene: &Scene) -> String {
     const NUMBERED: &str = "kuva-clip-";
     let mut svg = SvgBackend::new().with_pretty(true).render_scene(scene);
     if let Some(at) = svg.find(NUMBERED) {

@@ -8,7 +8,8 @@ use colltrans::ConvexPolyhedron;
 
 use super::rivals::WHO;
 use super::{
-    Coherence, Gathered, Race, Results, against_size, axis, in_passes, series, thousands, time,
+    Coherence, Gathered, Race, Results, against_size, grouped_digits, in_passes, new_axis,
+    new_series, time_text,
 };
 use crate::Experiment;
 use crate::finding::{Finding, Point, Table};
@@ -54,7 +55,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         plan.by_scale(&[50, 200][..], &[200, 3_200, 12_800], &[200, 800, 3_200, 12_800, 51_200]);
     let (found, refused) = plan.parts.as_deref().map_or_else(Default::default, read_parts);
     let shape = |kind: Kind, n: usize| {
-        let name = format!("{}, {}", kind.name(), thousands(n as f64));
+        let name = format!("{}, {}", kind.name(), grouped_digits(n as f64));
         Item { name, kind, n, given: None }
     };
     let part = |(k, (name, bodies)): (usize, (String, Arc<Bodies>))| Item {
@@ -75,7 +76,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
             let point = |m: &Measured| {
                 Point::median(m.colliding.vertices(), &m.colliding.ratios(who, 0).values())
             };
-            series(
+            new_series(
                 format!("{}, {}", WHO[who].name(), kind.name()),
                 of_kind.iter().map(point).collect(),
             )
@@ -84,15 +85,15 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let figure = against_size(
         "beyond",
         "Other shapes: time over the time of CTA, median and quartiles",
-        axis("time / time(CTA)", true),
+        new_axis("time / time(CTA)", true),
         ratios.collect(),
     );
-    let mut tables = vec![table("beyond-shapes", "Other shapes", measured.iter())];
+    let mut tables = vec![times_table("beyond-shapes", "Other shapes", measured.iter())];
     if plan.parts.is_some() {
         let title = format!(
             "Hulls of real parts, each against itself ({refused} files hold no solid and are left out)"
         );
-        tables.push(table("beyond-parts", &title, parts.iter()));
+        tables.push(times_table("beyond-parts", &title, parts.iter()));
     }
     Finding { figures: vec![figure], tables, claims: Vec::new() }
 }
@@ -118,7 +119,7 @@ fn measure(plan: &Plan, Item { name, kind, n, given }: &Item, pass: u32) -> Meas
     Measured { name: name.clone(), colliding, passing }
 }
 
-fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) -> Table {
+fn times_table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) -> Table {
     let rivals = 1..WHO.len();
     let mut columns = vec!["shape, vertices".to_owned(), "CTA".into(), "steps".into()];
     columns.push(format!("passing at {NEAR} D / colliding"));
@@ -128,7 +129,7 @@ fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) ->
         let usual = median(&m.colliding.times(0));
         let mut cells = vec![
             m.name.clone(),
-            time(usual),
+            time_text(usual),
             short(mean(&m.colliding.steps(0).values())),
             short(median(&m.passing.times(0)) / usual),
         ];
@@ -145,30 +146,31 @@ fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) ->
 /// Reads the hulls of all mesh files in a folder and its subfolders, by name, and counts the files without a hull.
 fn read_parts(folder: &Path) -> (Vec<(String, Arc<Bodies>)>, usize) {
     let (mut parts, mut refused) = (Vec::new(), 0);
-    for path in files(folder) {
+    for path in files_below(folder) {
         if colltrans_mesh::Format::of_path(&path).is_err() {
             continue;
         }
-        let Some(body) = hull(&path) else {
+        let Some(body) = read_hull(&path) else {
             refused += 1;
             continue;
         };
         let name = path.strip_prefix(folder).unwrap_or(&path).display().to_string();
-        let name = format!("{name}, {}", thousands(body.vertices().len() as f64));
+        let name = format!("{name}, {}", grouped_digits(body.vertices().len() as f64));
         parts.push((name, Arc::new(Bodies::new([body.clone(), body]))));
     }
     (parts, refused)
 }
 
-fn hull(path: &Path) -> Option<ConvexPolyhedron> {
+fn read_hull(path: &Path) -> Option<ConvexPolyhedron> {
     let mesh = colltrans_mesh::read(path).ok()?;
     ConvexPolyhedron::from_points(&mesh.vertices).ok().filter(|body| body.dimension() == 3)
 }
 
-fn files(folder: &Path) -> Vec<PathBuf> {
+fn files_below(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
-    let each = paths.into_iter().map(|path| if path.is_dir() { files(&path) } else { vec![path] });
+    let each =
+        paths.into_iter().map(|path| if path.is_dir() { files_below(&path) } else { vec![path] });
     each.flatten().collect()
 }

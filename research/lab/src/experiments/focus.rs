@@ -2,7 +2,10 @@
 
 use colltrans::cta;
 
-use super::{Coherence, Race, Results, axis, in_passes, means, reference, series, thousands};
+use super::{
+    Coherence, Race, Results, grouped_digits, in_passes, new_axis, new_series, reference_curve,
+    sample_means,
+};
 use crate::Experiment;
 use crate::claims::{Claim, Reason, judged};
 use crate::finding::{Figure, Finding, Point, Table};
@@ -16,7 +19,7 @@ pub(super) const FIGURE_13: Experiment = Experiment {
     id: "figure-13",
     title: "steps along sequences, with and without initialisation",
     seconds: [1.0, 4.0],
-    run: sequences,
+    run: sequence_experiment,
 };
 
 pub(super) const FIGURE_14: Experiment = Experiment {
@@ -51,7 +54,7 @@ const CONFIGURATIONS: usize = 100;
 /// Sequences of each motion, for both changes.
 type Sequences = [[Results; MOTIONS.len()]; 2];
 
-fn sequences(plan: &Plan, progress: &mut dyn Progress) -> Finding {
+fn sequence_experiment(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let n = plan.size(12_800);
     let items: Vec<_> = (0..2).flat_map(|c| (0..MOTIONS.len()).map(move |m| (c, m))).collect();
     let told = |&(change, motion): &(usize, usize)| {
@@ -77,7 +80,7 @@ fn sequences(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let all: Sequences =
         CHANGES.map(|_| MOTIONS.map(|_| measured.next().expect("one of every item")));
     let figures = (0..2).map(|change| sequence_figure(n, change, &all[change][0])).collect();
-    let claims = vec![floor(&all), adapts(&all), motions(&all)];
+    let claims = vec![floor_claim(&all), adaptation_claim(&all), motions_claim(&all)];
     Finding { figures, tables: Vec::new(), claims }
 }
 
@@ -100,15 +103,15 @@ fn sequence_figure(n: usize, change: usize, results: &Results) -> Figure {
         id: ["figure-13-1", "figure-13-0.25"][change].into(),
         title: format!(
             "Steps of CTA along one sequence, {} vertices, a change of {percent} % D from query to query",
-            thousands(n as f64)
+            grouped_digits(n as f64)
         ),
-        x: axis("query of the sequence", false),
-        y: axis("steps", false),
+        x: new_axis("query of the sequence", false),
+        y: new_axis("steps", false),
         series: vec![
-            series("without initialisation", scratch),
-            series("with initialisation (region focus)", curve(REGION[END])),
+            new_series("without initialisation", scratch),
+            new_series("with initialisation (region focus)", curve(REGION[END])),
         ],
-        references: vec![reference("the floor: one step", at.into_iter(), |_| 1.0)],
+        references: vec![reference_curve("the floor: one step", at.into_iter(), |_| 1.0)],
     }
 }
 
@@ -117,7 +120,7 @@ fn steps(all: &Sequences, change: usize, who: usize) -> Vec<Sample> {
     all[change].iter().map(|results| results.steps(who)).collect()
 }
 
-fn floor(all: &Sequences) -> Claim {
+fn floor_claim(all: &Sequences) -> Claim {
     let share = |change: usize, until: usize| {
         estimate(&steps(all, change, REGION[until]), |s| {
             let all = s.concat();
@@ -138,7 +141,7 @@ fn floor(all: &Sequences) -> Claim {
     })
 }
 
-fn adapts(all: &Sequences) -> Claim {
+fn adaptation_claim(all: &Sequences) -> Claim {
     let ratio = |above: Vec<Sample>, below: Vec<Sample>| {
         estimate(&[above, below].concat(), |s| {
             let (above, below) = s.split_at(MOTIONS.len());
@@ -162,10 +165,10 @@ fn adapts(all: &Sequences) -> Claim {
     })
 }
 
-fn motions(all: &Sequences) -> Claim {
+fn motions_claim(all: &Sequences) -> Claim {
     let spread = |change: usize| {
         estimate(&steps(all, change, REGION[END]), |s| {
-            let means = means(s);
+            let means = sample_means(s);
             means.iter().copied().fold(0.0, f64::max)
                 / means.iter().copied().fold(f64::INFINITY, f64::min)
         })
@@ -193,20 +196,21 @@ fn motions(all: &Sequences) -> Claim {
 const DELTAS: [f64; 7] = [0.000_625, 0.001_25, 0.002_5, 0.005, 0.01, 0.02, 0.04];
 
 fn average(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
+    let told = |&n: &usize| (n, format!("{} vertices", grouped_digits(n as f64)));
     let measured: Vec<_> = in_passes(plan, progress, plan.sizes(), told, |&n, pass| {
-        DELTAS.map(|delta| pairs(plan, n, delta, pass))
+        DELTAS.map(|delta| measure_pairs(plan, n, delta, pass))
     });
     let at = |(n, results): (&usize, [Results; DELTAS.len()])| At { n: *n as f64, results };
     let measured: Vec<_> = plan.sizes().iter().zip(measured).map(at).collect();
     let ids = ["figure-14", "figure-14-near"];
-    let figures = (0..2).map(|until| figure(ids[until], until, &measured)).collect();
-    let claims = vec![regular(&measured), one(&measured), logarithmic(&measured)];
-    Finding { figures, tables: vec![floors(&measured)], claims }
+    let figures = (0..2).map(|until| steps_figure(ids[until], until, &measured)).collect();
+    let claims =
+        vec![regularity_claim(&measured), single_step_claim(&measured), logarithm_claim(&measured)];
+    Finding { figures, tables: vec![floors_table(&measured)], claims }
 }
 
 /// Measures pairs of configurations that differ by `delta`: the second one, after the first.
-fn pairs(plan: &Plan, n: usize, delta: f64, pass: u32) -> Results {
+fn measure_pairs(plan: &Plan, n: usize, delta: f64, pass: u32) -> Results {
     let race = Race {
         plan,
         figure: 14,
@@ -244,27 +248,27 @@ impl At {
     }
 }
 
-fn figure(id: &str, until: usize, measured: &[At]) -> Figure {
-    let at_size = |what: &str, at: &At| format!("{what}, {} vertices", thousands(at.n));
+fn steps_figure(id: &str, until: usize, measured: &[At]) -> Figure {
+    let at_size = |what: &str, at: &At| format!("{what}, {} vertices", grouped_digits(at.n));
     let mut lines: Vec<_> = measured
         .iter()
-        .map(|at| series(at_size(UNTIL[until], at), at.points(REGION[until])))
+        .map(|at| new_series(at_size(UNTIL[until], at), at.points(REGION[until])))
         .collect();
-    let tracker = |at: &At| series(at_size("feature focus (portals)", at), at.points(TRACKER));
+    let tracker = |at: &At| new_series(at_size("feature focus (portals)", at), at.points(TRACKER));
     lines.extend(measured.last().map(tracker));
     let changes = || DELTAS.iter().map(|delta| 100.0 * delta);
     let scratch = |at: &At| {
         let y = at.mean(SCRATCH[until]);
-        reference(&at_size("from scratch", at), changes(), |_| y)
+        reference_curve(&at_size("from scratch", at), changes(), |_| y)
     };
     let mut references: Vec<_> =
         measured.first().into_iter().chain(measured.last()).map(scratch).collect();
-    references.push(reference("the paper's limit: one step", changes(), |_| 1.0));
+    references.push(reference_curve("the paper's limit: one step", changes(), |_| 1.0));
     Figure {
         id: id.into(),
         title: format!("Steps with initialisation, {}, mean and quartiles", UNTIL[until]),
-        x: axis("change of the configuration (% D)", true),
-        y: axis("steps", false),
+        x: new_axis("change of the configuration (% D)", true),
+        y: new_axis("steps", false),
         series: lines,
         references,
     }
@@ -279,13 +283,13 @@ fn of_sizes(
 ) -> Estimate {
     let samples: Vec<_> = measured.iter().flat_map(|at| at.steps(who)).collect();
     estimate(&samples, |s| {
-        let means = means(s);
+        let means = sample_means(s);
         let each: Vec<_> = means.chunks(DELTAS.len()).map(&number).collect();
         over_sizes(&each)
     })
 }
 
-fn text(until: usize, measured: &[At]) -> String {
+fn steps_text(until: usize, measured: &[At]) -> String {
     let at = |at: &At| {
         let steps: Vec<_> = at
             .points(REGION[until])
@@ -293,22 +297,26 @@ fn text(until: usize, measured: &[At]) -> String {
             .map(|p| format!("{:.2} at {} %", p.y, short(p.x)))
             .collect();
         let scratch = at.mean(SCRATCH[until]);
-        format!("{} vertices: {}, {scratch:.2} from scratch", thousands(at.n), steps.join(", "))
+        format!(
+            "{} vertices: {}, {scratch:.2} from scratch",
+            grouped_digits(at.n),
+            steps.join(", ")
+        )
     };
     format!("{}.", measured.iter().map(at).collect::<Vec<_>>().join("; "))
 }
 
-fn regular(measured: &[At]) -> Claim {
+fn regularity_claim(measured: &[At]) -> Claim {
     let rise = |means: &[f64]| means.windows(2).map(|w| w[0] / w[1]).fold(0.0, f64::max);
     let most = |each: &[f64]| each.iter().copied().fold(0.0, f64::max);
     let [cta, hybrid] = REGION.map(|who| of_sizes(measured, who, rise, most));
-    let details = format!("{} Of the hybrid the factor is {hybrid}.", text(END, measured));
+    let details = format!("{} Of the hybrid the factor is {hybrid}.", steps_text(END, measured));
     judged("14-regular", vec![cta], details, || {
         Reason::Implementation.because("Steps rise somewhere when the change falls.")
     })
 }
 
-fn one(measured: &[At]) -> Claim {
+fn single_step_claim(measured: &[At]) -> Claim {
     let [cta, hybrid] = REGION.map(|who| of_sizes(measured, who, |means| means[0], mean));
     let details = format!(
         "Up to 1.5 is taken as very close to 1. The numbers are in the claim before. Of the hybrid: {hybrid}."
@@ -324,7 +332,7 @@ fn one(measured: &[At]) -> Claim {
 }
 
 /// Judges `R^2` of the law above its floor, as the mean of all sizes.
-fn logarithmic(measured: &[At]) -> Claim {
+fn logarithm_claim(measured: &[At]) -> Claim {
     let fit = of_sizes(measured, REGION[END], |means| Law::fitted(means).explained, mean);
     let straight = of_sizes(
         measured,
@@ -341,7 +349,7 @@ fn logarithmic(measured: &[At]) -> Claim {
     judged("14-log", vec![fit], details, || {
         Reason::Sentence.because(format!(
             "The curve is bent above its floor, too: when the change is halved steps fall by {} on average.",
-            falls(measured)
+            step_decreases(measured)
         ))
     })
 }
@@ -380,30 +388,37 @@ impl Law {
         let Self { floor, slope, explained } = self;
         format!(
             "{} vertices: floor {} % D, b {}, R² {explained:.3}",
-            thousands(n),
-            significant(100.0 * floor),
+            grouped_digits(n),
+            two_digits(100.0 * floor),
             short(*slope)
         )
     }
 }
 
 /// Formats a small number with two digits.
-fn significant(value: f64) -> String {
+fn two_digits(value: f64) -> String {
     let digits = (1.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.digits$}")
 }
 
 impl At {
     fn law(&self) -> Law {
-        Law::fitted(&means(&self.steps(REGION[END]).iter().map(Sample::values).collect::<Vec<_>>()))
+        Law::fitted(&sample_means(
+            &self.steps(REGION[END]).iter().map(Sample::values).collect::<Vec<_>>(),
+        ))
     }
 }
 
 /// Returns the table of the law and its floor at every size.
-fn floors(measured: &[At]) -> Table {
+fn floors_table(measured: &[At]) -> Table {
     let row = |at: &At| {
         let Law { floor, slope, explained } = at.law();
-        vec![thousands(at.n), significant(100.0 * floor), short(slope), format!("{explained:.3}")]
+        vec![
+            grouped_digits(at.n),
+            two_digits(100.0 * floor),
+            short(slope),
+            format!("{explained:.3}"),
+        ]
     };
     Table {
         id: "figure-14-floors".into(),
@@ -414,7 +429,7 @@ fn floors(measured: &[At]) -> Table {
 }
 
 /// Formats the decrease of steps at the largest and at the smallest changes.
-fn falls(measured: &[At]) -> String {
+fn step_decreases(measured: &[At]) -> String {
     let fall = |k: usize| {
         let each = measured.iter().map(|at| {
             let points = at.points(REGION[END]);

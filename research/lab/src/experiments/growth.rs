@@ -1,8 +1,8 @@
 //! Figure 11: growth of steps and time with the size of the bodies, and the cost of thin faces.
 
 use super::{
-    Coherence, Gathered, Race, Results, against_size, axis, fitted, in_passes, listed, medians,
-    series, thousands, time,
+    Coherence, Gathered, Race, Results, against_size, fitted_reference, grouped_digits, in_passes,
+    listed_values, new_axis, new_series, sample_medians, time_text,
 };
 use crate::Experiment;
 use crate::claims::{Claim, READINGS, Reason, judged};
@@ -53,7 +53,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let items: Vec<_> =
         KINDS.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
     let told = |&(kind, n): &(Kind, usize)| {
-        (n, format!("{} bodies, {} vertices", kind.name(), thousands(n as f64)))
+        (n, format!("{} bodies, {} vertices", kind.name(), grouped_digits(n as f64)))
     };
     let mut measured =
         in_passes(plan, progress, &items, told, |&(kind, n), pass| measure(plan, kind, n, pass))
@@ -139,7 +139,7 @@ impl Grown {
     /// Returns the statistic `k` in time ~ `(log n)^k`.
     fn logarithms(&self) -> impl Fn(&[Vec<f64>]) -> f64 {
         let logs: Vec<f64> = self.sizes().iter().map(|n| n.ln()).collect();
-        move |times| exponent(logs.iter().copied().zip(medians(times)))
+        move |times| exponent(logs.iter().copied().zip(sample_medians(times)))
     }
 }
 
@@ -164,18 +164,18 @@ fn steps_figure(balanced: &Grown, thin: &Grown) -> Figure {
     let mut figure = against_size(
         "figure-11-steps",
         "Minimisation steps of a query, mean and quartiles",
-        axis("steps", false),
+        new_axis("steps", false),
         vec![
-            series("CTA, balanced", cta.clone()),
-            series("CTA, thin (stretch of 100)", thin.step_points(CTA)),
-            series("CTA across cells, balanced", balanced.step_points(ACROSS_CELLS)),
-            series("hybrid (to a gap of 1 %), balanced", balanced.step_points(HYBRID)),
-            series("portals of portal refinement, balanced", balanced.step_points(PORTAL)),
+            new_series("CTA, balanced", cta.clone()),
+            new_series("CTA, thin (stretch of 100)", thin.step_points(CTA)),
+            new_series("CTA across cells, balanced", balanced.step_points(ACROSS_CELLS)),
+            new_series("hybrid (to a gap of 1 %), balanced", balanced.step_points(HYBRID)),
+            new_series("portals of portal refinement, balanced", balanced.step_points(PORTAL)),
         ],
     );
     figure.references = vec![
-        fitted("log n", &cta, f64::ln),
-        super::reference("the paper: fewer than 15", balanced.sizes().into_iter(), |_| 15.0),
+        fitted_reference("log n", &cta, f64::ln),
+        super::reference_curve("the paper: fewer than 15", balanced.sizes().into_iter(), |_| 15.0),
     ];
     figure
 }
@@ -185,27 +185,29 @@ fn time_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
     let mut figure = against_size(
         "figure-11-time",
         "Time of a query from scratch, median and quartiles",
-        axis("time (µs)", true),
+        new_axis("time (µs)", true),
         vec![
-            series("CTA, balanced", cta.clone()),
-            series("CTA, thin (stretch of 100)", thin[0].time_points(CTA)),
-            series("CTA, thin (16 meridians)", thin[1].time_points(CTA)),
-            series(
+            new_series("CTA, balanced", cta.clone()),
+            new_series("CTA, thin (stretch of 100)", thin[0].time_points(CTA)),
+            new_series("CTA, thin (16 meridians)", thin[1].time_points(CTA)),
+            new_series(
                 "CTA, balanced, the same query again",
                 balanced.in_microseconds(&balanced.again()),
             ),
-            series("hybrid (to a gap of 1 %), balanced", balanced.time_points(HYBRID)),
-            series("CTA across cells, balanced", balanced.time_points(ACROSS_CELLS)),
-            series("portal refinement, balanced", balanced.time_points(PORTAL)),
+            new_series("hybrid (to a gap of 1 %), balanced", balanced.time_points(HYBRID)),
+            new_series("CTA across cells, balanced", balanced.time_points(ACROSS_CELLS)),
+            new_series("portal refinement, balanced", balanced.time_points(PORTAL)),
         ],
     );
-    figure.references =
-        vec![fitted("log n", &cta, f64::ln), fitted("log² n", &cta, |n| n.ln().powi(2))];
+    figure.references = vec![
+        fitted_reference("log n", &cta, f64::ln),
+        fitted_reference("log² n", &cta, |n| n.ln().powi(2)),
+    ];
     figure
 }
 
 /// Returns the ratios of times on thin faces and the median time on balanced ones.
-fn cost(balanced: &Grown, thin: &Grown, who: usize) -> Vec<Point> {
+fn cost_points(balanced: &Grown, thin: &Grown, who: usize) -> Vec<Point> {
     let ratio = |(balanced, thin): (&Measured, &Measured)| {
         let usual = median(&balanced.race.times(who));
         let times: Vec<_> = thin.race.times(who).iter().map(|t| t / usual).collect();
@@ -218,18 +220,18 @@ fn cost_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
     let names = ["stretch of 100", "16 meridians"];
     let lines = |who: usize, name: &str| -> Vec<Series> {
         let line = |(thin, reading): (&&Grown, &str)| {
-            series(format!("{name}, {reading}"), cost(balanced, thin, who))
+            new_series(format!("{name}, {reading}"), cost_points(balanced, thin, who))
         };
         thin.iter().zip(names).map(line).collect()
     };
     let mut figure = against_size(
         "figure-11-thin",
         "Time on thin and stretched faces over the median time on balanced ones, with quartiles",
-        axis("time(thin) / time(balanced)", true),
+        new_axis("time(thin) / time(balanced)", true),
         [lines(CTA, "CTA"), lines(HYBRID, "hybrid"), lines(PORTAL, "portal refinement")].concat(),
     );
     let limit =
-        |name: &str, y: f64| super::reference(name, balanced.sizes().into_iter(), move |_| y);
+        |name: &str, y: f64| super::reference_curve(name, balanced.sizes().into_iter(), move |_| y);
     figure.references = vec![limit("the paper: 1.2", 1.2), limit("the paper: 1.8", 1.8)];
     figure
 }
@@ -242,8 +244,8 @@ fn steps_grow(balanced: &Grown) -> Claim {
     let points = balanced.step_points(CTA);
     let details = format!(
         "Steps on average: {}. Of the hybrid: {}.",
-        listed(&points, 1),
-        listed(&balanced.step_points(HYBRID), 1)
+        listed_values(&points, 1),
+        listed_values(&balanced.step_points(HYBRID), 1)
     );
     judged("11-steps", vec![measured], details, || {
         let k = exponent(points.iter().map(|p| (p.x, p.y)));
@@ -256,7 +258,7 @@ fn few_steps(balanced: &Grown) -> Claim {
     let steps = last.steps(CTA);
     let steps_of = |who: usize| mean(&last.steps(who).values());
     let near = steps_of(HYBRID);
-    let at = |who: usize| time(median(&last.times(who)));
+    let at = |who: usize| time_text(median(&last.times(who)));
     let details = format!(
         "As many faces as vertices. The hybrid: {near:.1} steps to a gap of {PAPER_GAP}, then portal \
          refinement: {} in place of {}. Where the shift goes on across cells, which the paper's does not: {:.1} \
@@ -285,8 +287,8 @@ fn time_grows(balanced: &Grown) -> Claim {
     let details = format!(
         "Median times in µs: {}. Of the hybrid k = {hybrid}. The same query asked again at once: {}, k = {again}. \
          Iterations of all loops grow with k = {counted:.2}.",
-        listed(&balanced.time_points(CTA), 1),
-        listed(&balanced.in_microseconds(&balanced.again()), 1)
+        listed_values(&balanced.time_points(CTA), 1),
+        listed_values(&balanced.in_microseconds(&balanced.again()), 1)
     );
     judged("11-time", vec![measured], details, || {
         let counts = format!(
@@ -305,13 +307,14 @@ fn thin_costs(id: &str, balanced: &Grown, thin: &Grown) -> Claim {
     let samples = [balanced.times(CTA), thin.times(CTA)].concat();
     let increase = estimate(&samples, |s| {
         let (usual, thin) = s.split_at(s.len() / 2);
-        let ratios: Vec<_> = medians(thin).iter().zip(medians(usual)).map(|(t, u)| t / u).collect();
+        let ratios: Vec<_> =
+            sample_medians(thin).iter().zip(sample_medians(usual)).map(|(t, u)| t / u).collect();
         100.0 * (median(&ratios) - 1.0)
     });
     let details = format!(
         "time(thin) over time(balanced): {}; of the hybrid {}.",
-        listed(&cost(balanced, thin, CTA), 2),
-        listed(&cost(balanced, thin, HYBRID), 2)
+        listed_values(&cost_points(balanced, thin, CTA), 2),
+        listed_values(&cost_points(balanced, thin, HYBRID), 2)
     );
     judged(id, vec![increase], details, || {
         let middle_of = |grown: &Grown, number: fn(&Results) -> f64| {

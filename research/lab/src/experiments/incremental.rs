@@ -5,8 +5,8 @@ use colltrans::observe::Clock;
 use colltrans_baselines::egjk::SupportSearch;
 
 use super::{
-    Coherence, Race, Results, against_size, axis, in_passes, median, medians, middle, reference,
-    series, thousands, time,
+    Coherence, Race, Results, against_size, grouped_digits, in_passes, median, median_of_medians,
+    new_axis, new_series, reference_curve, sample_medians, time_text,
 };
 use crate::Experiment;
 use crate::claims::{Claim, Reason, Why, judged};
@@ -50,27 +50,27 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let items: Vec<_> =
         KINDS.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
     let told = |&(kind, n): &(Kind, usize)| {
-        (n, format!("{} bodies, {} vertices", kind.name(), thousands(n as f64)))
+        (n, format!("{} bodies, {} vertices", kind.name(), grouped_digits(n as f64)))
     };
     let mut measured = in_passes(plan, progress, &items, told, |&(kind, n), pass| {
-        DELTAS.map(|delta| sequences(plan, kind, n, delta, pass))
+        DELTAS.map(|delta| measure_sequences(plan, kind, n, delta, pass))
     })
     .into_iter();
     let [balanced, stretch, meridians] =
         KINDS.map(|_| Raced(measured.by_ref().take(plan.sizes().len()).collect()));
     let claims = vec![
-        range(&balanced),
-        favourable(&balanced),
+        range_claim(&balanced),
+        favourable_claim(&balanced),
         falls_with_change(&balanced),
         falls_with_size(&balanced),
-        faces("18-faces-stretch", &balanced, &stretch),
-        faces("18-faces-meridians", &balanced, &meridians),
+        faces_claim("18-faces-stretch", &balanced, &stretch),
+        faces_claim("18-faces-meridians", &balanced, &meridians),
     ];
-    let figures = vec![figure(&balanced, [&stretch, &meridians])];
-    Finding { figures, tables: vec![floor(plan)], claims }
+    let figures = vec![ratio_figure(&balanced, [&stretch, &meridians])];
+    Finding { figures, tables: vec![phase_table(plan)], claims }
 }
 
-fn sequences(plan: &Plan, kind: Kind, n: usize, delta: f64, pass: u32) -> Results {
+fn measure_sequences(plan: &Plan, kind: Kind, n: usize, delta: f64, pass: u32) -> Results {
     let race = Race {
         plan,
         figure: 18,
@@ -117,7 +117,7 @@ impl Raced {
         let middle = &self.0[self.0.len() / 2];
         let at = |r: &Results| {
             let each = |who: usize| {
-                let (time, iterations) = (time(median(&r.times(who))), r.iterations(who));
+                let (time, iterations) = (time_text(median(&r.times(who))), r.iterations(who));
                 format!("{} {time} and {iterations:.1} iterations", WHO[who].name())
             };
             let steps = mean(&r.steps(REGION).values());
@@ -132,30 +132,30 @@ impl Raced {
             "At {} vertices: at a change of 1 % {}; at 0.13 % {}. Every query with region focus pays for frames, a \
              planar problem or more, the exit test, one portal and a certificate, which the paper's did not make: \
              [the page of its time](paper.md#what-an-incremental-query-costs-at-least).",
-            thousands(middle[0].vertices()),
+            grouped_digits(middle[0].vertices()),
             at(&middle[0]),
             at(&middle[DELTAS.len() - 1])
         ))
     }
 }
 
-fn figure(balanced: &Raced, thin: [&Raced; 2]) -> Figure {
+fn ratio_figure(balanced: &Raced, thin: [&Raced; 2]) -> Figure {
     let mut lines: Vec<_> = (0..DELTAS.len())
-        .map(|k| series(format!("CTA, {} % D", 100.0 * DELTAS[k]), balanced.points(REGION, k)))
+        .map(|k| new_series(format!("CTA, {} % D", 100.0 * DELTAS[k]), balanced.points(REGION, k)))
         .collect();
-    lines.push(series("CTA, 1 % D, thin (stretch of 100)", thin[0].points(REGION, 0)));
-    lines.push(series("CTA, 1 % D, thin (16 meridians)", thin[1].points(REGION, 0)));
-    lines.push(series("CTA, 1 % D, planar problems cold", balanced.points(COLD, 0)));
-    lines.push(series("hybrid, 1 % D", balanced.points(HYBRID, 0)));
-    lines.push(series("feature focus, 1 % D", balanced.points(TRACKER, 0)));
+    lines.push(new_series("CTA, 1 % D, thin (stretch of 100)", thin[0].points(REGION, 0)));
+    lines.push(new_series("CTA, 1 % D, thin (16 meridians)", thin[1].points(REGION, 0)));
+    lines.push(new_series("CTA, 1 % D, planar problems cold", balanced.points(COLD, 0)));
+    lines.push(new_series("hybrid, 1 % D", balanced.points(HYBRID, 0)));
+    lines.push(new_series("feature focus, 1 % D", balanced.points(TRACKER, 0)));
     let mut figure = against_size(
         "figure-18",
         "Incremental queries: time over the time of EGJK (climbing), median and quartiles",
-        axis("time / time(EGJK)", true),
+        new_axis("time / time(EGJK)", true),
         lines,
     );
     let sizes: Vec<_> = balanced.0.iter().map(|at| at[0].vertices()).collect();
-    let level = |name: &str, y: f64| reference(name, sizes.iter().copied(), move |_| y);
+    let level = |name: &str, y: f64| reference_curve(name, sizes.iter().copied(), move |_| y);
     figure.references =
         vec![level("EGJK", 1.0), level("the paper: from 10", 10.0), level("the paper: to 2", 2.0)];
     figure
@@ -163,20 +163,20 @@ fn figure(balanced: &Raced, thin: [&Raced; 2]) -> Figure {
 
 /// Returns the table of phases for queries that start from the solution of nearly the same one, of which most
 /// need one planar problem: the minimum cost of a query with region focus.
-fn floor(plan: &Plan) -> Table {
+fn phase_table(plan: &Plan) -> Table {
     let sizes = [200, 3_200, 51_200].map(|n| plan.size(n));
     let columns = std::iter::once("phase".to_owned())
-        .chain(sizes.iter().map(|n| format!("{} vertices", thousands(*n as f64))));
-    let profiles = sizes.map(|n| profile(plan, n));
+        .chain(sizes.iter().map(|n| format!("{} vertices", grouped_digits(*n as f64))));
+    let profiles = sizes.map(|n| phase_medians(plan, n));
     let mut rows: Vec<Vec<String>> =
         profiles[0].iter().map(|(name, _)| vec![(*name).into()]).collect();
     for profile in &profiles {
-        rows.iter_mut().zip(profile).for_each(|(row, (_, each))| row.push(time(*each)));
+        rows.iter_mut().zip(profile).for_each(|(row, (_, each))| row.push(time_text(*each)));
     }
     rows.push(std::iter::once("together".to_owned()).collect());
     for profile in &profiles {
         let sum = profile.iter().map(|(_, each)| each).sum();
-        rows.last_mut().expect("a row").push(time(sum));
+        rows.last_mut().expect("a row").push(time_text(sum));
     }
     let title = "Median time of each phase of a query of CTA with region focus, at a change of 0.01 % D, in \
                  sequences of bodies that collide"
@@ -185,7 +185,7 @@ fn floor(plan: &Plan) -> Table {
 }
 
 /// Returns the median nanoseconds of each phase.
-fn profile(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
+fn phase_medians(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
     let bodies = bodies(plan.seed, Kind::Balanced, n, 0);
     let mut random = Random::stream(plan.seed, &[18, n as u64]);
     let mut tracked = Tracked::in_region(&bodies, cta::Region::Automatic, Until::End.options());
@@ -209,10 +209,10 @@ fn profile(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
     phases.into_iter().map(|(name, all)| (name, median(&all))).collect()
 }
 
-fn range(raced: &Raced) -> Claim {
+fn range_claim(raced: &Raced) -> Claim {
     let ratios = raced.ratios(REGION);
-    let most = estimate(&ratios, |s| medians(s).into_iter().fold(0.0, f64::max));
-    let least = estimate(&ratios, |s| medians(s).into_iter().fold(f64::INFINITY, f64::min));
+    let most = estimate(&ratios, |s| sample_medians(s).into_iter().fold(0.0, f64::max));
+    let least = estimate(&ratios, |s| sample_medians(s).into_iter().fold(f64::INFINITY, f64::min));
     let details = format!(
         "Medians from the smallest to the largest bodies: {}. Of the hybrid: {}. With planar problems cold: {}. \
          Feature focus instead of region focus: {}.",
@@ -224,8 +224,8 @@ fn range(raced: &Raced) -> Claim {
     judged("18-range", vec![most, least], details, || raced.why())
 }
 
-fn favourable(raced: &Raced) -> Claim {
-    let fold = |s: &[Vec<f64>]| medians(s).into_iter().fold(f64::INFINITY, f64::min);
+fn favourable_claim(raced: &Raced) -> Claim {
+    let fold = |s: &[Vec<f64>]| sample_medians(s).into_iter().fold(f64::INFINITY, f64::min);
     let least = estimate(&raced.ratios(REGION), fold);
     let tracker = estimate(&raced.ratios(TRACKER), fold);
     judged("18-egjk", vec![least], format!("With feature focus: {tracker}."), || raced.why())
@@ -249,11 +249,11 @@ fn falls_with_size(raced: &Raced) -> Claim {
     judged("18-size", vec![measured], String::new(), || raced.why())
 }
 
-fn faces(id: &str, balanced: &Raced, thin: &Raced) -> Claim {
+fn faces_claim(id: &str, balanced: &Raced, thin: &Raced) -> Claim {
     let samples = [thin.ratios(REGION), balanced.ratios(REGION)].concat();
     let measured = estimate(&samples, |s| {
         let (thin, balanced) = s.split_at(s.len() / 2);
-        middle(thin) / middle(balanced)
+        median_of_medians(thin) / median_of_medians(balanced)
     });
     let details = format!("In the middle of all sizes and changes. Thin: {}.", thin.text(REGION));
     judged(id, vec![measured], details, || {

@@ -10,7 +10,9 @@ use colltrans::observe::{Cut, Observer, PlanarProblem, Sections, Touch};
 use colltrans::{Outcome, cta};
 use glam::DVec2;
 
-use super::{Gathered, against_size, axis, in_passes, listed, series, thousands};
+use super::{
+    Gathered, against_size, grouped_digits, in_passes, listed_values, new_axis, new_series,
+};
 use crate::Experiment;
 use crate::claims::{Claim, Reason, judged};
 use crate::figures::below;
@@ -92,7 +94,7 @@ impl Observer for Watcher {
     fn cut(&mut self, cut: impl FnOnce() -> Cut) {
         let Cut { origin, gradient, limit, .. } = cut();
         let rest = below(&self.region, gradient, gradient.dot(origin) + limit);
-        let [before, after] = [&self.region, &rest].map(|polygon| area(polygon));
+        let [before, after] = [&self.region, &rest].map(|polygon| double_area(polygon));
         if before > 0.0 {
             self.left.push(after / before);
         }
@@ -111,18 +113,23 @@ impl Watcher {
 }
 
 /// Returns twice the area of a convex polygon, which suffices for ratios.
-fn area(polygon: &[DVec2]) -> f64 {
+fn double_area(polygon: &[DVec2]) -> f64 {
     let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
     rest.windows(2).map(|pair| (pair[0] - first).perp_dot(pair[1] - first)).sum()
 }
 
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
+    let told = |&n: &usize| (n, format!("{} vertices", grouped_digits(n as f64)));
     let seen =
         in_passes(plan, progress, plan.sizes(), told, |&n, pass| observe_pass(plan, n, pass));
-    let claims =
-        vec![half(&seen), sides(&seen), inside(&seen), fewer_steps(&seen), fewer_calls(&seen)];
-    Finding { figures: vec![figure(&seen)], tables: vec![table(&seen)], claims }
+    let claims = vec![
+        area_claim(&seen),
+        sides_claim(&seen),
+        neighbourhood_claim(&seen),
+        fewer_steps(&seen),
+        fewer_calls(&seen),
+    ];
+    Finding { figures: vec![steps_figure(&seen)], tables: vec![observations_table(&seen)], claims }
 }
 
 /// Observes the queries of a pass at one size.
@@ -174,47 +181,47 @@ fn observe_query(bodies: &Bodies, setting: &Setting, group: Group, seen: &mut Se
 }
 
 /// Creates a sample.
-fn sample(values: &[(Group, f64)]) -> Sample {
+fn group_sample(values: &[(Group, f64)]) -> Sample {
     Sample::of(values.iter().copied())
 }
 
 /// Returns the observations of one kind, by size.
-fn samples(seen: &[Seen], of: impl Fn(&Seen) -> &[(Group, f64)]) -> Vec<Sample> {
-    seen.iter().map(|at| sample(of(at))).collect()
+fn samples_by_size(seen: &[Seen], of: impl Fn(&Seen) -> &[(Group, f64)]) -> Vec<Sample> {
+    seen.iter().map(|at| group_sample(of(at))).collect()
 }
 
 /// Returns means with quartiles, by size.
-fn points(seen: &[Seen], of: impl Fn(&Seen) -> &[(Group, f64)]) -> Vec<Point> {
-    let point = |at: &Seen| Point::mean(mean(&at.vertices), &sample(of(at)).values());
+fn mean_points(seen: &[Seen], of: impl Fn(&Seen) -> &[(Group, f64)]) -> Vec<Point> {
+    let point = |at: &Seen| Point::mean(mean(&at.vertices), &group_sample(of(at)).values());
     seen.iter().map(point).collect()
 }
 
-fn figure(seen: &[Seen]) -> Figure {
+fn steps_figure(seen: &[Seen]) -> Figure {
     against_size(
         "section-3-cuts",
         "Minimisation steps with cuts shifted to the best point of the cell, and through the centroid",
-        axis("steps", false),
+        new_axis("steps", false),
         vec![
-            series("shifted (CTA)", points(seen, |at| &at.steps)),
-            series("through the centroid", points(seen, |at| &at.unshifted)),
+            new_series("shifted (CTA)", mean_points(seen, |at| &at.steps)),
+            new_series("through the centroid", mean_points(seen, |at| &at.unshifted)),
         ],
     )
 }
 
-fn table(seen: &[Seen]) -> Table {
+fn observations_table(seen: &[Seen]) -> Table {
     let columns = ["vertices", "left by a cut, %", "most sides, mean", "most sides, of all"]
         .map(String::from)
         .into_iter()
         .chain(CHANGES.map(|change| format!("inside N(p) at {} % D, %", 100.0 * change)));
     let row = |at: &Seen| {
-        let sides = sample(&at.sides).values();
+        let sides = group_sample(&at.sides).values();
         let mut row = vec![
-            thousands(mean(&at.vertices)),
-            short(100.0 * mean(&sample(&at.left).values())),
+            grouped_digits(mean(&at.vertices)),
+            short(100.0 * mean(&group_sample(&at.left).values())),
             short(mean(&sides)),
             format!("{}", sides.iter().copied().fold(0.0, f64::max)),
         ];
-        row.extend(at.inside.iter().map(|one| short(100.0 * mean(&sample(one).values()))));
+        row.extend(at.inside.iter().map(|one| short(100.0 * mean(&group_sample(one).values()))));
         row
     };
     Table {
@@ -226,17 +233,18 @@ fn table(seen: &[Seen]) -> Table {
     }
 }
 
-fn half(seen: &[Seen]) -> Claim {
-    let measured = estimate(&samples(seen, |at| &at.left), |s| mean(&super::means(s)));
-    let by_size = listed(&points(seen, |at| &at.left), 2);
+fn area_claim(seen: &[Seen]) -> Claim {
+    let measured =
+        estimate(&samples_by_size(seen, |at| &at.left), |s| mean(&super::sample_means(s)));
+    let by_size = listed_values(&mean_points(seen, |at| &at.left), 2);
     let details = format!("The mean over all sizes; by size {by_size}.");
     judged("3-half", vec![measured], details, || {
         Reason::Implementation.because(format!("Shares left by size: {by_size}."))
     })
 }
 
-fn sides(seen: &[Seen]) -> Claim {
-    let all = samples(seen, |at| &at.sides);
+fn sides_claim(seen: &[Seen]) -> Claim {
+    let all = samples_by_size(seen, |at| &at.sides);
     let most = estimate(&all, |s| quantile(&s.concat(), 0.99));
     let average = estimate(&all, |s| mean(&s.concat()));
     let details = "Sides that the region had at most during a query. Up to 8 are taken as few.";
@@ -246,9 +254,10 @@ fn sides(seen: &[Seen]) -> Claim {
     })
 }
 
-fn inside(seen: &[Seen]) -> Claim {
-    let all: Vec<_> = seen.iter().flat_map(|at| at.inside.iter().map(|one| sample(one))).collect();
-    let measured = estimate(&all, |s| 100.0 * mean(&super::means(s)));
+fn neighbourhood_claim(seen: &[Seen]) -> Claim {
+    let all: Vec<_> =
+        seen.iter().flat_map(|at| at.inside.iter().map(|one| group_sample(one))).collect();
+    let measured = estimate(&all, |s| 100.0 * mean(&super::sample_means(s)));
     let shares = all.iter().map(|one| 100.0 * mean(&one.values()));
     let [least, most] = [f64::min, f64::max].map(|f| shares.clone().reduce(f).unwrap_or(f64::NAN));
     let details = format!(
@@ -268,7 +277,8 @@ fn inside(seen: &[Seen]) -> Claim {
 
 /// Estimates the mean over the sizes of a number of shifted and unshifted steps.
 fn of_both(seen: &[Seen], number: impl Fn(f64, f64) -> f64) -> crate::statistics::Estimate {
-    let all = [samples(seen, |at| &at.steps), samples(seen, |at| &at.unshifted)].concat();
+    let all =
+        [samples_by_size(seen, |at| &at.steps), samples_by_size(seen, |at| &at.unshifted)].concat();
     estimate(&all, |s| {
         let (shifted, unshifted) = s.split_at(s.len() / 2);
         let each = shifted.iter().zip(unshifted).map(|(a, b)| number(mean(a), mean(b)));
@@ -279,8 +289,8 @@ fn of_both(seen: &[Seen], number: impl Fn(f64, f64) -> f64) -> crate::statistics
 fn both_by_size(seen: &[Seen]) -> String {
     format!(
         "Steps with shifted cuts {}, through the centroid {}",
-        listed(&points(seen, |at| &at.steps), 2),
-        listed(&points(seen, |at| &at.unshifted), 2)
+        listed_values(&mean_points(seen, |at| &at.steps), 2),
+        listed_values(&mean_points(seen, |at| &at.unshifted), 2)
     )
 }
 
@@ -299,7 +309,7 @@ fn fewer_steps(seen: &[Seen]) -> Claim {
 
 fn fewer_calls(seen: &[Seen]) -> Claim {
     let measured = of_both(seen, |shifted, unshifted| unshifted - shifted);
-    let vertices = listed(&points(seen, |at| &at.vertex_contacts), 2);
+    let vertices = listed_values(&mean_points(seen, |at| &at.vertex_contacts), 2);
     let details = format!(
         "Counted are planar problems. {}. Vertex contacts, in which the paper's shift takes O(log n) and ours does not: \
          {vertices}.",

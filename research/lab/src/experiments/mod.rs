@@ -332,39 +332,43 @@ fn expected_share(n: usize) -> f64 {
 }
 
 /// Creates an axis.
-fn axis(label: &str, log: bool) -> Axis {
+fn new_axis(label: &str, log: bool) -> Axis {
     Axis { label: label.into(), log }
 }
 
 /// Creates a figure with a logarithmic axis of sizes.
 fn against_size(id: &str, title: &str, y: Axis, series: Vec<Series>) -> Figure {
-    let x = axis("vertices of each body", true);
+    let x = new_axis("vertices of each body", true);
     Figure { id: id.into(), title: title.into(), x, y, series, references: Vec::new() }
 }
 
 /// Creates a curve.
-fn series(name: impl Into<String>, points: Vec<Point>) -> Series {
+fn new_series(name: impl Into<String>, points: Vec<Point>) -> Series {
     Series { name: name.into(), points }
 }
 
 /// Creates a curve for comparison, without spread.
-fn reference(name: &str, at: impl Iterator<Item = f64>, curve: impl Fn(f64) -> f64) -> Series {
+fn reference_curve(
+    name: &str,
+    at: impl Iterator<Item = f64>,
+    curve: impl Fn(f64) -> f64,
+) -> Series {
     let point = |x| {
         let y = curve(x);
         Point { x, y, low: y, high: y, count: 0 }
     };
-    series(name, at.map(point).collect())
+    new_series(name, at.map(point).collect())
 }
 
 /// Creates a reference of `curve`, scaled to the mean of the points on a logarithmic scale.
-fn fitted(name: &str, points: &[Point], curve: impl Fn(f64) -> f64) -> Series {
+fn fitted_reference(name: &str, points: &[Point], curve: impl Fn(f64) -> f64) -> Series {
     let logs: f64 = points.iter().map(|p| (p.y / curve(p.x)).ln()).sum();
     let scale = (logs / points.len() as f64).exp();
-    reference(name, points.iter().map(|p| p.x), |x| scale * curve(x))
+    reference_curve(name, points.iter().map(|p| p.x), |x| scale * curve(x))
 }
 
 /// Formats a time.
-fn time(nanoseconds: f64) -> String {
+fn time_text(nanoseconds: f64) -> String {
     if nanoseconds < 1e3 {
         format!("{nanoseconds:.0} ns")
     } else if nanoseconds < 1e6 {
@@ -375,34 +379,34 @@ fn time(nanoseconds: f64) -> String {
 }
 
 /// Formats the values of a curve from the first to the last point.
-fn listed(points: &[Point], digits: usize) -> String {
+fn listed_values(points: &[Point], digits: usize) -> String {
     let text: Vec<_> =
-        points.iter().map(|p| format!("{:.digits$} ({})", p.y, thousands(p.x))).collect();
+        points.iter().map(|p| format!("{:.digits$} ({})", p.y, grouped_digits(p.x))).collect();
     text.join(", ")
 }
 
 /// Formats a number of vertices with a separator of thousands.
-fn thousands(n: f64) -> String {
+fn grouped_digits(n: f64) -> String {
     let n = n.round() as u64;
     if n < 10_000 { n.to_string() } else { format!("{},{:03}", n / 1_000, n % 1_000) }
 }
 
 /// Returns the median of the medians.
-fn middle(samples: &[Vec<f64>]) -> f64 {
+fn median_of_medians(samples: &[Vec<f64>]) -> f64 {
     median(&samples.iter().map(|values| median(values)).collect::<Vec<_>>())
 }
 
 /// Returns the means of samples.
-fn means(samples: &[Vec<f64>]) -> Vec<f64> {
+fn sample_means(samples: &[Vec<f64>]) -> Vec<f64> {
     samples.iter().map(|values| mean(values)).collect()
 }
 
 /// Returns the medians of samples.
-fn medians(samples: &[Vec<f64>]) -> Vec<f64> {
+fn sample_medians(samples: &[Vec<f64>]) -> Vec<f64> {
     samples.iter().map(|values| median(values)).collect()
 }
 
 /// Returns the exponent of medians as a power of the sizes.
 fn exponent_of(sizes: &[f64], samples: &[Vec<f64>]) -> f64 {
-    exponent(sizes.iter().copied().zip(medians(samples)))
+    exponent(sizes.iter().copied().zip(sample_medians(samples)))
 }

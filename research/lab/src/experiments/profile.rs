@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use colltrans::observe::{Clock, Profile};
 
-use super::{Gathered, in_passes, thousands};
+use super::{Gathered, grouped_digits, in_passes};
 use crate::Experiment;
 use crate::claims::{Claim, Reason, judged};
 use crate::finding::{Finding, Table};
@@ -41,10 +41,10 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     // Equal sizes are measured once, as at the smallest scale.
     let mut sizes = [800, 12_800, 200_000].map(|n| plan.size(n)).to_vec();
     sizes.dedup();
-    let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
+    let told = |&n: &usize| (n, format!("{} vertices", grouped_digits(n as f64)));
     let profiled = in_passes(plan, progress, &sizes, told, |&n, pass| measure(plan, n, pass));
-    let claims = vec![planar_problems(&profiled), region(&profiled)];
-    Finding { figures: Vec::new(), tables: vec![table(&profiled)], claims }
+    let claims = vec![planar_problems(&profiled), region_claim(&profiled)];
+    Finding { figures: Vec::new(), tables: vec![shares_table(&profiled)], claims }
 }
 
 /// Profiles casts by the paper's algorithm.
@@ -102,8 +102,8 @@ impl Profiled {
 }
 
 /// Returns the table of all shares.
-fn table(profiled: &[Profiled]) -> Table {
-    let head = |p: &Profiled| format!("{} vertices", thousands(p.vertices()));
+fn shares_table(profiled: &[Profiled]) -> Table {
+    let head = |p: &Profiled| format!("{} vertices", grouped_digits(p.vertices()));
     let columns = std::iter::once("phase".into()).chain(profiled.iter().map(head)).collect();
     let first = &profiled[0].queries[0].1;
     let row = |(name, _): &(&'static str, f64)| {
@@ -114,15 +114,16 @@ fn table(profiled: &[Profiled]) -> Table {
         "Where the time of a query from scratch goes: CTA, balanced faces, bodies that collide, {} queries at \
          {} vertices, the slowest twentieth left out",
         profiled[0].queries.len(),
-        thousands(profiled[0].vertices())
+        grouped_digits(profiled[0].vertices())
     );
     let rows = first.phases().iter().map(row).collect();
     Table { id: "table-1".into(), title, columns, rows }
 }
 
 /// Formats a share at all sizes.
-fn parts(profiled: &[Profiled], part: impl Fn(&Profiled) -> f64) -> String {
-    let text = |p: &Profiled| format!("{:.1} % ({})", 100.0 * part(p), thousands(p.vertices()));
+fn shares_text(profiled: &[Profiled], part: impl Fn(&Profiled) -> f64) -> String {
+    let text =
+        |p: &Profiled| format!("{:.1} % ({})", 100.0 * part(p), grouped_digits(p.vertices()));
     profiled.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
@@ -131,8 +132,8 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
     let middle = &profiled[profiled.len() / 2];
     let details = format!(
         "{} of the whole query; of the minimisation alone {}.",
-        parts(profiled, |p| p.part(PLANAR)),
-        parts(profiled, |p| p.part_of_minimisation(PLANAR))
+        shares_text(profiled, |p| p.part(PLANAR)),
+        shares_text(profiled, |p| p.part_of_minimisation(PLANAR))
     );
     judged("table-1-planar", vec![middle.estimated(PLANAR)], details, || {
         if middle.part(PLANAR) > 0.5 {
@@ -158,10 +159,10 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
 
 /// Judges the share of the search region at the size where it is largest. The paper's "negligible" is taken
 /// as less than a twentieth.
-fn region(profiled: &[Profiled]) -> Claim {
+fn region_claim(profiled: &[Profiled]) -> Claim {
     let each = profiled.iter().map(|p| p.estimated(REGION));
     let most = each.max_by(|a, b| a.value.total_cmp(&b.value)).expect("three sizes");
-    let details = parts(profiled, |p| p.part(REGION)) + ".";
+    let details = shares_text(profiled, |p| p.part(REGION)) + ".";
     judged("table-1-region", vec![most], details, || {
         Reason::Implementation.because(
             "The region is cut and its centroid computed at every step, a few dozen operations, while \

@@ -4,8 +4,8 @@
 use colltrans_baselines::egjk::SupportSearch;
 
 use super::{
-    Coherence, Race, Results, against_size, axis, exponent_of, in_passes, listed, middle,
-    reference, series, thousands, time,
+    Coherence, Race, Results, against_size, exponent_of, grouped_digits, in_passes, listed_values,
+    median_of_medians, new_axis, new_series, reference_curve, time_text,
 };
 use crate::Experiment;
 use crate::claims::{Claim, Reason, Why, judged};
@@ -21,14 +21,14 @@ pub(super) const FIGURE_15: Experiment = Experiment {
     id: "figure-15",
     title: "balanced faces, beside EGJK and PQP",
     seconds: [20.0, 80.0],
-    run: balanced,
+    run: balanced_experiment,
 };
 
 pub(super) const FIGURE_16: Experiment = Experiment {
     id: "figure-16",
     title: "thin faces, beside EGJK and PQP",
     seconds: [22.0, 90.0],
-    run: thin,
+    run: thin_experiment,
 };
 
 pub(super) const FIGURE_17: Experiment = Experiment {
@@ -57,7 +57,7 @@ const HYBRID: usize = 4;
 struct Field(Vec<Results>);
 
 /// Runs a race on two kinds of bodies at all sizes.
-fn race(
+fn run_race(
     plan: &Plan,
     progress: &mut dyn Progress,
     figure: u64,
@@ -67,7 +67,7 @@ fn race(
     let items: Vec<_> =
         kinds.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
     let told = |&(kind, n): &(Kind, usize)| {
-        (n, format!("{} bodies, {} vertices", kind.name(), thousands(n as f64)))
+        (n, format!("{} bodies, {} vertices", kind.name(), grouped_digits(n as f64)))
     };
     let mut measured = in_passes(plan, progress, &items, told, |&(kind, n), pass| {
         let is_large = n >= 20_000;
@@ -128,11 +128,13 @@ impl Field {
     }
 
     fn figure(&self, id: &str, title: &str, paper: &[(&str, f64)]) -> Figure {
-        let lines = (1..WHO.len()).map(|who| series(WHO[who].name(), self.points(who))).collect();
-        let y = axis("time / time(CTA)", true);
+        let lines =
+            (1..WHO.len()).map(|who| new_series(WHO[who].name(), self.points(who))).collect();
+        let y = new_axis("time / time(CTA)", true);
         let title = format!("{title}: time over the time of CTA, median and quartiles");
         let mut figure = against_size(id, &title, y, lines);
-        let level = |name: &str, y: f64| reference(name, self.sizes().into_iter(), move |_| y);
+        let level =
+            |name: &str, y: f64| reference_curve(name, self.sizes().into_iter(), move |_| y);
         figure.references = vec![level("CTA", 1.0)];
         figure.references.extend(paper.iter().map(|(name, y)| level(name, *y)));
         figure
@@ -140,13 +142,13 @@ impl Field {
 
     /// Returns the table of median times and numbers of contradictions.
     fn table(&self, id: &str, title: &str) -> Table {
-        let head = |at: &Results| format!("{} vertices", thousands(at.vertices()));
+        let head = |at: &Results| format!("{} vertices", grouped_digits(at.vertices()));
         let columns = std::iter::once("median time (answers that contradict another)".into())
             .chain(self.0.iter().map(head))
             .collect();
         let row = |who: usize| {
             let cell = |at: &Results| {
-                format!("{} ({})", time(median(&at.times(who))), at.contradictions(who))
+                format!("{} ({})", time_text(median(&at.times(who))), at.contradictions(who))
             };
             std::iter::once(WHO[who].name()).chain(self.0.iter().map(cell)).collect()
         };
@@ -158,10 +160,11 @@ impl Field {
     fn times(&self, who: &[usize]) -> String {
         let ends = [self.0.first(), self.0.last()];
         let at = |at: &Results| {
-            let each =
-                |who: &usize| format!("{} {}", WHO[*who].name(), time(median(&at.times(*who))));
+            let each = |who: &usize| {
+                format!("{} {}", WHO[*who].name(), time_text(median(&at.times(*who))))
+            };
             let text: Vec<_> = who.iter().map(each).collect();
-            format!("at {} vertices {}", thousands(at.vertices()), text.join(", "))
+            format!("at {} vertices {}", grouped_digits(at.vertices()), text.join(", "))
         };
         ends.into_iter().flatten().map(at).collect::<Vec<_>>().join("; ")
     }
@@ -191,7 +194,7 @@ impl Field {
             "It is of EGJK that grows linearly (figure 15), and holds of that. Climbing it does not: at {} vertices it \
              takes {:.0} steps with {:.0} vertices climbed over, CTA {:.1} planar problems with {:.0} iterations. Median \
              times {}.",
-            thousands(last.vertices()),
+            grouped_digits(last.vertices()),
             mean(&last.steps(CLIMBING).values()),
             last.iterations(CLIMBING) - mean(&last.steps(CLIMBING).values()),
             mean(&last.steps(CTA).values()),
@@ -224,24 +227,24 @@ impl Field {
     fn all_ratios(&self) -> String {
         format!(
             "Medians by size: EGJK climbing {}; EGJK with linear search {}; PQP {}; the hybrid {}.",
-            listed(&self.points(CLIMBING), 2),
-            listed(&self.points(LINEAR), 2),
-            listed(&self.points(PQP), 1),
-            listed(&self.points(HYBRID), 2)
+            listed_values(&self.points(CLIMBING), 2),
+            listed_values(&self.points(LINEAR), 2),
+            listed_values(&self.points(PQP), 1),
+            listed_values(&self.points(HYBRID), 2)
         )
     }
 }
 
-fn balanced(plan: &Plan, progress: &mut dyn Progress) -> Finding {
+fn balanced_experiment(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let kinds = [Kind::Balanced, Kind::Triangles];
-    let [field, triangles] = race(plan, progress, 15, kinds, Meeting::Colliding);
+    let [field, triangles] = run_race(plan, progress, 15, kinds, Meeting::Colliding);
     let fifth = ("the paper, EGJK: from 1/5", 0.2);
     let band = [("the paper, PQP: 6.5", 6.5), ("the paper, PQP: 10", 10.0)];
     let five = ("the paper, PQP: 5.5", 5.5);
-    let mut claims = vec![grow(&field), egjk_rises(&field)];
-    claims.extend(fastest(["15-fastest", "15-fastest-climbing"], &field));
-    claims.push(pqp("15-pqp-trapezoids", &field));
-    claims.push(pqp("15-pqp-triangles", &triangles));
+    let mut claims = vec![growth_claim(&field), egjk_rises(&field)];
+    claims.extend(fastest_claims(["15-fastest", "15-fastest-climbing"], &field));
+    claims.push(pqp_claim("15-pqp-trapezoids", &field));
+    claims.push(pqp_claim("15-pqp-triangles", &triangles));
     Finding {
         figures: vec![
             field.figure("figure-15-trapezoids", "Balanced trapezoids", &[fifth, band[0], band[1]]),
@@ -255,7 +258,7 @@ fn balanced(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     }
 }
 
-fn grow(field: &Field) -> Claim {
+fn growth_claim(field: &Field) -> Claim {
     let measured =
         vec![field.exponent(LINEAR, 3_200.0), field.exponent(CTA, 0.0), field.exponent(PQP, 0.0)];
     let details = format!(
@@ -282,7 +285,7 @@ fn egjk_rises(field: &Field) -> Claim {
 }
 
 /// Judges the claims at the size above the paper's 20,000 vertices, which are between two of the sizes here.
-fn fastest(ids: [&str; 2], field: &Field) -> [Claim; 2] {
+fn fastest_claims(ids: [&str; 2], field: &Field) -> [Claim; 2] {
     let at = |who: &[usize]| who.iter().map(|who| field.ratio_at(*who, 51_200.0)).collect();
     [
         judged(ids[0], at(&[LINEAR, PQP]), field.all_ratios(), || field.why_egjk()),
@@ -290,15 +293,15 @@ fn fastest(ids: [&str; 2], field: &Field) -> [Claim; 2] {
     ]
 }
 
-fn pqp(id: &str, field: &Field) -> Claim {
-    let measured = estimate(&field.ratios(PQP), middle);
-    let details = format!("Medians by size: {}.", listed(&field.points(PQP), 1));
+fn pqp_claim(id: &str, field: &Field) -> Claim {
+    let measured = estimate(&field.ratios(PQP), median_of_medians);
+    let details = format!("Medians by size: {}.", listed_values(&field.points(PQP), 1));
     judged(id, vec![measured], details, || field.why_pqp())
 }
 
-fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
+fn thin_experiment(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let kinds = [Kind::Thin, Kind::ThinMeridians];
-    let fields = race(plan, progress, 16, kinds, Meeting::Colliding);
+    let fields = run_race(plan, progress, 16, kinds, Meeting::Colliding);
     let paper = [
         ("the paper, EGJK: from 1/5", 0.2),
         ("the paper, EGJK: to 14", 14.0),
@@ -335,7 +338,8 @@ fn beside_thin(
         field.ratio_at(LINEAR, 200_000.0),
         field.ratio_at(CLIMBING, 200_000.0),
     ];
-    let most = estimate(&field.ratios(PQP), |s| super::medians(s).into_iter().fold(0.0, f64::max));
+    let most =
+        estimate(&field.ratios(PQP), |s| super::sample_medians(s).into_iter().fold(0.0, f64::max));
     let exponent = field.exponent(PQP, 3_200.0);
     let details = "Above 0.9 is taken as linear.";
     [
@@ -347,10 +351,13 @@ fn beside_thin(
 
 fn thin_and_near(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let kinds = [Kind::Thin, Kind::ThinMeridians];
-    let [stretch, meridians] = race(plan, progress, 17, kinds, Meeting::PassingWithin(0.01));
+    let [stretch, meridians] = run_race(plan, progress, 17, kinds, Meeting::PassingWithin(0.01));
     let mut claims = Vec::new();
-    claims.extend(fastest(["17-fastest-stretch", "17-fastest-stretch-climbing"], &stretch));
-    claims.extend(fastest(["17-fastest-meridians", "17-fastest-meridians-climbing"], &meridians));
+    claims.extend(fastest_claims(["17-fastest-stretch", "17-fastest-stretch-climbing"], &stretch));
+    claims.extend(fastest_claims(
+        ["17-fastest-meridians", "17-fastest-meridians-climbing"],
+        &meridians,
+    ));
     let figure = |id: &str, title: &str, field: &Field| field.figure(id, title, &[]);
     let title = |reading: &str| format!("Thin trapezoids, {reading}, passing within 1 %");
     let titles = ["a stretch of 100", "16 meridians"].map(title);

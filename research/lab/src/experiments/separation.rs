@@ -1,8 +1,8 @@
 //! Figure 12: the cost of detecting that bodies pass each other.
 
 use super::{
-    Coherence, Gathered, Race, Results, against_size, axis, in_passes, listed, median, reference,
-    series, thousands, time,
+    Coherence, Gathered, Race, Results, against_size, grouped_digits, in_passes, listed_values,
+    median, new_axis, new_series, reference_curve, time_text,
 };
 use crate::Experiment;
 use crate::claims::{Claim, Reason, Why, judged};
@@ -41,25 +41,25 @@ impl Gathered for Measured {
 
 /// Runs the experiment.
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let told = |&n: &usize| (n, format!("{} vertices", thousands(n as f64)));
+    let told = |&n: &usize| (n, format!("{} vertices", grouped_digits(n as f64)));
     let all = in_passes(plan, progress, plan.sizes(), told, |&n, pass| measure(plan, n, pass));
     // For the paper's algorithm all distances are drawn, for others the smallest and the largest one.
     let drawn =
         [(CTA, 0), (CTA, 1), (CTA, 2), (CTA, 3), (HYBRID, NEAR), (PORTAL, NEAR), (PORTAL, FAR)];
     let lines = drawn.map(|(who, gap)| {
         let name = format!("{}, passing at {} D", WHO[who].name(), GAPS[gap]);
-        series(name, ratios(&all, who, gap))
+        new_series(name, time_ratios(&all, who, gap))
     });
     let mut figure = against_size(
         "figure-12",
         "Time to find a separation over the median time to find a collision, median and quartiles",
-        axis("time(separation) / time(collision)", true),
+        new_axis("time(separation) / time(collision)", true),
         lines.to_vec(),
     );
     let at = || all.iter().map(|m| m.colliding.vertices());
     figure.references = vec![
-        reference("the paper, 0.005 D: half", at(), |_| 0.5),
-        reference("the paper, 1.5 D: a third", at(), |_| 1.0 / 3.0),
+        reference_curve("the paper, 0.005 D: half", at(), |_| 0.5),
+        reference_curve("the paper, 1.5 D: a third", at(), |_| 1.0 / 3.0),
     ];
     let claims =
         vec![separation_claim(&all, "12-near", NEAR), separation_claim(&all, "12-far", FAR)];
@@ -90,7 +90,7 @@ fn measure(plan: &Plan, n: usize, pass: u32) -> Measured {
 }
 
 /// Returns the times of separations over the median time of collisions, for every size.
-fn ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
+fn time_ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
     let point = |m: &Measured| {
         let usual = median(&m.colliding.times(who));
         let ratios: Vec<_> = m.passing[gap].times(who).iter().map(|t| t / usual).collect();
@@ -113,14 +113,14 @@ fn separation_claim(all: &[Measured], id: &str, gap: usize) -> Claim {
     };
     let others: Vec<_> = (0..GAPS.len())
         .map(|k| {
-            let typical: Vec<_> = ratios(all, CTA, k).iter().map(|p| p.y).collect();
+            let typical: Vec<_> = time_ratios(all, CTA, k).iter().map(|p| p.y).collect();
             format!("{:.2} at {} D", mean(&typical), GAPS[k])
         })
         .collect();
     let details = format!(
         "The mean over all sizes; by size {}. All distances: {}. Of the hybrid {}: its collisions end at a gap of \
          {PAPER_GAP}, its separations do not.",
-        listed(&ratios(all, CTA, gap), 2),
+        listed_values(&time_ratios(all, CTA, gap), 2),
         others.join(", "),
         of(HYBRID)
     );
@@ -132,7 +132,7 @@ fn explanation(all: &[Measured]) -> Why {
     let m = &all[all.len() / 2];
     let each = |r: &Results| {
         let steps = mean(&r.steps(CTA).values());
-        let (each, inner) = (time(median(&r.times(CTA)) / steps), r.iterations(CTA) / steps);
+        let (each, inner) = (time_text(median(&r.times(CTA)) / steps), r.iterations(CTA) / steps);
         format!("{steps:.1}, {each} and {inner:.0} iterations each")
     };
     let passing: Vec<_> =
@@ -140,7 +140,7 @@ fn explanation(all: &[Measured]) -> Why {
     Reason::Implementation.because(format!(
         "Planar problems at {} vertices, and the time of a query shared out among them: {} for a \
          collision; {}.",
-        thousands(m.colliding.vertices()),
+        grouped_digits(m.colliding.vertices()),
         each(&m.colliding),
         passing.join("; ")
     ))

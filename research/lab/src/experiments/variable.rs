@@ -9,7 +9,10 @@
 
 use colltrans::cta;
 
-use super::{Coherence, Race, Results, axis, in_passes, means, series, thousands, time};
+use super::{
+    Coherence, Race, Results, grouped_digits, in_passes, new_axis, new_series, sample_means,
+    time_text,
+};
 use crate::Experiment;
 use crate::claims::{Claim, Reason, Why, judged};
 use crate::finding::{Figure, Finding, Point, Table};
@@ -71,26 +74,35 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let items: Vec<_> =
         sizes.into_iter().flat_map(|n| ALPHAS_DEG.map(|alpha| (n, alpha))).collect();
     let told = |&(n, alpha): &(usize, f64)| {
-        (n, format!("{} vertices, {alpha} degrees", thousands(n as f64)))
+        (n, format!("{} vertices, {alpha} degrees", grouped_digits(n as f64)))
     };
-    let mut measured =
-        in_passes(plan, progress, &items, told, |&(n, alpha), pass| orbits(plan, n, alpha, pass))
-            .into_iter();
+    let mut measured = in_passes(plan, progress, &items, told, |&(n, alpha), pass| {
+        measure_orbits(plan, n, alpha, pass)
+    })
+    .into_iter();
     let sweeps = sizes.map(|n| Sweeps {
         n: n as f64,
         results: measured.by_ref().take(ALPHAS_DEG.len()).collect(),
     });
     let figures =
         sweeps.iter().flat_map(|s| [CTA, WARM, WALK].map(|which| s.figure(which))).collect();
-    let mut claims = vec![affects(&sweeps), strong(&sweeps)];
-    claims.extend(worsens(["19-worsening-800", "19-worsening-800-walk"], &sweeps[0]));
-    claims.extend(worsens(["19-worsening-3200", "19-worsening-3200-walk"], &sweeps[1]));
-    claims.extend(disperses(["19-dispersion-high", "19-dispersion-high-walk"], &sweeps, HIGH));
-    claims.extend(disperses(["19-dispersion-low", "19-dispersion-low-walk"], &sweeps, LOW));
+    let mut claims = vec![effect_claim(&sweeps), initialisation_claim(&sweeps)];
+    claims
+        .extend(worst_parameter_claims(["19-worsening-800", "19-worsening-800-walk"], &sweeps[0]));
+    claims.extend(worst_parameter_claims(
+        ["19-worsening-3200", "19-worsening-3200-walk"],
+        &sweeps[1],
+    ));
+    claims.extend(dispersion_claims(
+        ["19-dispersion-high", "19-dispersion-high-walk"],
+        &sweeps,
+        HIGH,
+    ));
+    claims.extend(dispersion_claims(["19-dispersion-low", "19-dispersion-low-walk"], &sweeps, LOW));
     Finding { figures, tables: sweeps.iter().map(Sweeps::table).collect(), claims }
 }
 
-fn orbits(plan: &Plan, n: usize, alpha: f64, pass: u32) -> Results {
+fn measure_orbits(plan: &Plan, n: usize, alpha: f64, pass: u32) -> Results {
     let region = |half: f64| cta::Region::Fixed(half);
     let mut who: Vec<_> = HALF_SIDES.map(|h| Who::CtaCold(region(h))).to_vec();
     who.extend(HALF_SIDES.map(|h| Who::CtaRegion(region(h), Until::End)));
@@ -130,16 +142,16 @@ impl Sweeps {
             } else {
                 format!("half-side {} D", HALF_SIDES[parameter])
             };
-            series(what, points)
+            new_series(what, points)
         };
         Figure {
             id: format!("figure-19-{file}-{}", self.n),
             title: format!(
                 "{name}, {} vertices: iterations by coherence and parameter, mean and quartiles",
-                thousands(self.n)
+                grouped_digits(self.n)
             ),
-            x: axis("degrees from query to query", true),
-            y: axis("iterations", false),
+            x: new_axis("degrees from query to query", true),
+            y: new_axis("iterations", false),
             series: (0..PARAMETERS).map(line).collect(),
             references: Vec::new(),
         }
@@ -151,7 +163,7 @@ impl Sweeps {
             for k in 0..PARAMETERS {
                 let parameter = if which == WALK { LAYERS[k] } else { HALF_SIDES[k] };
                 let lane = PARAMETERS * which + k;
-                let cell = |alpha: usize| time(median(&self.results[alpha].times(lane)));
+                let cell = |alpha: usize| time_text(median(&self.results[alpha].times(lane)));
                 let head = format!("{name}, {what} {parameter}");
                 rows.push(std::iter::once(head).chain((0..ALPHAS_DEG.len()).map(cell)).collect());
             }
@@ -161,7 +173,7 @@ impl Sweeps {
             .collect();
         let title = format!(
             "Median time of a query, {} vertices, by degrees from query to query",
-            thousands(self.n)
+            grouped_digits(self.n)
         );
         Table { id: format!("figure-19-times-{}", self.n), title, columns, rows }
     }
@@ -184,7 +196,7 @@ impl Sweep<'_> {
 /// coherences.
 fn worst_over_best(samples: &[Vec<f64>]) -> f64 {
     let each = samples.chunks(PARAMETERS).map(|of| {
-        let means = means(of);
+        let means = sample_means(of);
         let worst = means.iter().copied().fold(0.0, f64::max);
         100.0 * (worst / means.iter().copied().fold(f64::INFINITY, f64::min) - 1.0)
     });
@@ -192,7 +204,7 @@ fn worst_over_best(samples: &[Vec<f64>]) -> f64 {
 }
 
 /// Returns deviation over mean with the best parameter in per cent, averaged over the coherences.
-fn dispersion(samples: &[Vec<f64>]) -> f64 {
+fn mean_dispersion(samples: &[Vec<f64>]) -> f64 {
     let each = samples.chunks(PARAMETERS).map(|of| {
         let stats = of.iter().map(|values| mean_and_deviation(values));
         let best = stats.min_by(|a, b| a[0].total_cmp(&b[0]));
@@ -223,7 +235,7 @@ fn of_all(
 }
 
 /// Formats the mean iterations with the best parameter by coherence.
-fn counts(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> String {
+fn iterations_text(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> String {
     let sweep = sweeps.sweep(which);
     let best = |alpha: usize| {
         let each = (0..PARAMETERS).map(|p| mean_and_deviation(&sweep.costs(alpha, p).values()));
@@ -233,13 +245,13 @@ fn counts(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> Stri
     format!("{} {}", SWEPT[which].0, alphas.map(best).collect::<Vec<_>>().join(", "))
 }
 
-fn affects(sweeps: &[Sweeps; 2]) -> Claim {
+fn effect_claim(sweeps: &[Sweeps; 2]) -> Claim {
     let [at, other] = sweeps.each_ref().map(|s| of_all(s, HIGH, worst_over_best));
     let details = format!(
         "At {} vertices; warm {} %. At {}: {} % and {} %.",
-        thousands(sweeps[0].n),
+        grouped_digits(sweeps[0].n),
         at.each[WARM],
-        thousands(sweeps[1].n),
+        grouped_digits(sweeps[1].n),
         other.each[CTA],
         other.each[WALK]
     );
@@ -254,13 +266,13 @@ fn strongest_over_weakest(samples: &[Vec<f64>]) -> f64 {
     mean(&each.collect::<Vec<_>>())
 }
 
-fn strong(sweeps: &[Sweeps; 2]) -> Claim {
+fn initialisation_claim(sweeps: &[Sweeps; 2]) -> Claim {
     let [at, other] = sweeps.each_ref().map(|s| of_all(s, LOW, strongest_over_weakest));
     let details = format!(
         "At {} vertices; warm {}. At {}: {} and {}. 0.9 or more is taken as no significant improvement.",
-        thousands(sweeps[0].n),
+        grouped_digits(sweeps[0].n),
         at.each[WARM],
-        thousands(sweeps[1].n),
+        grouped_digits(sweeps[1].n),
         other.each[CTA],
         other.each[WALK]
     );
@@ -270,7 +282,7 @@ fn strong(sweeps: &[Sweeps; 2]) -> Claim {
 }
 
 /// Judges the claim for CTA, and the one for H-Walk.
-fn worsens(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
+fn worst_parameter_claims(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
     let Statistic { each, ratio } = of_all(sweeps, LOW, worst_over_best);
     let details = format!(
         "On average over all coherences of more than 30 degrees; worst parameter over the best at each. With warm \
@@ -278,7 +290,7 @@ fn worsens(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
         each[WARM]
     );
     let why = |which: usize, reason: Reason| {
-        reason.because(format!("With the best parameter: {}.", counts(sweeps, which, LOW)))
+        reason.because(format!("With the best parameter: {}.", iterations_text(sweeps, which, LOW)))
     };
     [
         judged(ids[0], vec![each[CTA], ratio], details.clone(), || {
@@ -289,19 +301,23 @@ fn worsens(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
 }
 
 /// Judges the claim for CTA, and the one for H-Walk.
-fn disperses(ids: [&str; 2], sweeps: &[Sweeps; 2], alphas: std::ops::Range<usize>) -> [Claim; 2] {
-    let [at, other] = sweeps.each_ref().map(|s| of_all(s, alphas.clone(), dispersion));
+fn dispersion_claims(
+    ids: [&str; 2],
+    sweeps: &[Sweeps; 2],
+    alphas: std::ops::Range<usize>,
+) -> [Claim; 2] {
+    let [at, other] = sweeps.each_ref().map(|s| of_all(s, alphas.clone(), mean_dispersion));
     let details = format!(
         "Iterations, with the best parameter at each coherence, at {} vertices; with warm planar problems {} %. At \
          {}: CTA {} %, H-Walk {} %.",
-        thousands(sweeps[0].n),
+        grouped_digits(sweeps[0].n),
         at.each[WARM],
-        thousands(sweeps[1].n),
+        grouped_digits(sweeps[1].n),
         other.each[CTA],
         other.each[WALK]
     );
     let why = |which: usize, reason: Reason| -> Why {
-        let counts = counts(&sweeps[0], which, alphas.clone());
+        let counts = iterations_text(&sweeps[0], which, alphas.clone());
         let [of_means, poisson] = of_sequences(&sweeps[0], which, alphas.clone());
         reason.because(format!(
             "Mean and deviation of iterations: {counts}. As many independent steps would disperse by {} %; means over a \

@@ -7,7 +7,7 @@ use super::planar::{Instance, Placed, View};
 use super::sheet::{Anchor, Map, Sheet};
 
 /// Draws the edges of a body viewed along a direction; hidden edges are dashed.
-fn outline(
+fn draw_outline(
     sheet: &mut Sheet,
     body: &Placed,
     [class, fill]: [&str; 2],
@@ -38,14 +38,14 @@ const Q_SECTION: (&str, &str, f64) = ("fixed", "section of Q", 108.0);
 const FOOT: DVec2 = DVec2::new(26.0, 452.0);
 
 /// Draws figures 3, 4 and 5: two sections and both cubes, viewed along the direction.
-pub(super) fn instance(view: &View, instance: &Instance, title: &str) -> String {
+pub(super) fn sections_figure(view: &View, instance: &Instance, title: &str) -> String {
     let mut sheet = Sheet::new(title, 480.0, 470.0);
     let all: Vec<DVec2> =
         view.bodies.iter().flat_map(|b| b.vertices.iter().map(|&v| view.shadow(v))).collect();
     let map = Map::fitting(&all, [DVec2::new(24.0, 24.0), DVec2::new(456.0, 410.0)]);
     let place = |w: DVec3| map.at(view.shadow(w));
-    outline(&mut sheet, &view.bodies[1], FIXED, view.direction, place);
-    outline(&mut sheet, &view.bodies[0], MOVING, view.direction, place);
+    draw_outline(&mut sheet, &view.bodies[1], FIXED, view.direction, place);
+    draw_outline(&mut sheet, &view.bodies[0], MOVING, view.direction, place);
     let flat = instance
         .sections
         .each_ref()
@@ -53,16 +53,16 @@ pub(super) fn instance(view: &View, instance: &Instance, title: &str) -> String 
     sheet.polygon("fixed", &flat[1]);
     sheet.polygon("moving", &flat[0]);
     if instance.touch.meets() {
-        touching(&mut sheet, &flat, map.at(instance.points[0]));
+        draw_contact(&mut sheet, &flat, map.at(instance.points[0]));
     } else {
         let way = map.way(instance.line);
-        apart(&mut sheet, instance.points.map(|p| map.at(p)), way);
+        draw_gap(&mut sheet, instance.points.map(|p| map.at(p)), way);
     }
     sheet.finish()
 }
 
 /// Draws the contact, its sides, and the intersection line of the section planes.
-fn touching(sheet: &mut Sheet, flat: &[Vec<DVec2>; 2], at: DVec2) {
+fn draw_contact(sheet: &mut Sheet, flat: &[Vec<DVec2>; 2], at: DVec2) {
     for (ring, class) in [(&flat[1], "fixed-mark"), (&flat[0], "moving-mark")] {
         for (k, &from) in ring.iter().enumerate() {
             let way = ring[(k + 1) % ring.len()] - from;
@@ -82,7 +82,7 @@ fn touching(sheet: &mut Sheet, flat: &[Vec<DVec2>; 2], at: DVec2) {
 }
 
 /// Draws the lines `r` and `s` through the corners that bound the gap.
-fn apart(sheet: &mut Sheet, points: [DVec2; 2], way: DVec2) {
+fn draw_gap(sheet: &mut Sheet, points: [DVec2; 2], way: DVec2) {
     for (at, name) in points.into_iter().zip(["r", "s"]) {
         sheet.line("shifted", at - way * 190.0, at + way * 190.0);
         sheet.dot("dot", at, 4.5);
@@ -113,7 +113,7 @@ impl Oblique {
 }
 
 /// Draws both cubes from the side, with the section of the moving one at its start and in contact.
-fn spatial(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2]) {
+fn draw_side_view(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2]) {
     let view = &scene.view;
     let look = Oblique::new(view.direction);
     let moved = view.direction * instance.value;
@@ -124,11 +124,11 @@ fn spatial(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 
     let place = |w: DVec3| map.at(look.flat(w));
     let [p, q] = instance.sections.each_ref().map(|s| &s.corners);
     let at = |by: DVec3| p.iter().map(|&w| place(w + by)).collect::<Vec<_>>();
-    outline(sheet, &view.bodies[1], FIXED, look.seen, place);
+    draw_outline(sheet, &view.bodies[1], FIXED, look.seen, place);
     sheet.polygon("fixed", &q.iter().map(|&w| place(w)).collect::<Vec<_>>());
     sheet.lines("way", &p.iter().map(|&w| [place(w), place(w + moved)]).collect::<Vec<_>>());
     sheet.polygon("moving", &at(moved));
-    outline(sheet, &view.bodies[0], MOVING, look.seen, place);
+    draw_outline(sheet, &view.bodies[0], MOVING, look.seen, place);
     sheet.polygon("moving", &at(DVec3::ZERO));
     let lift = contact_point(view, instance);
     sheet.dot("dot", place(lift), 5.0);
@@ -148,11 +148,11 @@ fn contact_point(view: &View, instance: &Instance) -> DVec3 {
 }
 
 /// Draws figure 8: the section `R` sweeps `R'` in the plane of `S`, which reduces the problem to polygons.
-pub(super) fn reduction(scene: &Scene, instance: &Instance) -> String {
+pub(super) fn reduction_figure(scene: &Scene, instance: &Instance) -> String {
     let mut sheet =
         Sheet::new("From two sections in space to two polygons in a plane", 760.0, 470.0);
     sheet.text("bold", DVec2::new(24.0, 22.0), Anchor::Start, "In space");
-    spatial(&mut sheet, scene, instance, [DVec2::new(24.0, 34.0), DVec2::new(380.0, 424.0)]);
+    draw_side_view(&mut sheet, scene, instance, [DVec2::new(24.0, 34.0), DVec2::new(380.0, 424.0)]);
     sheet.text("bold", DVec2::new(424.0, 22.0), Anchor::Start, "On the plane of the fixed section");
     // The plane of `S` in true size: its own axes.
     let view = &scene.view;
@@ -201,7 +201,7 @@ pub(super) fn reduction(scene: &Scene, instance: &Instance) -> String {
 }
 
 /// Draws figure 1: the cubes, a pair of sections, and `phi` over all pairs.
-pub(super) fn function(scene: &Scene, instance: &Instance) -> String {
+pub(super) fn function_figure(scene: &Scene, instance: &Instance) -> String {
     let mut sheet =
         Sheet::new("Two cubes, a pair of sections, and the convex function φ", 800.0, 480.0);
     sheet.text(
@@ -210,7 +210,7 @@ pub(super) fn function(scene: &Scene, instance: &Instance) -> String {
         Anchor::Start,
         "A pair of sections, and how far until they touch",
     );
-    spatial(&mut sheet, scene, instance, [DVec2::new(24.0, 34.0), DVec2::new(370.0, 430.0)]);
+    draw_side_view(&mut sheet, scene, instance, [DVec2::new(24.0, 34.0), DVec2::new(370.0, 430.0)]);
     sheet.text("bold", DVec2::new(420.0, 22.0), Anchor::Start, "φ(x, y) over all pairs of levels");
     let [low, high] = scene.run.rectangle();
     // Each cell is a facet.

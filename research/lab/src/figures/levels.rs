@@ -10,7 +10,7 @@ use super::setting::{Run, Step, below, middle};
 use super::sheet::{Anchor, Map, Sheet, rectangle};
 
 /// Draws the cells and the names of the axes.
-fn mark(sheet: &mut Sheet, map: &Map, mark: &Mark, [low, high]: [DVec2; 2]) {
+fn draw_mark(sheet: &mut Sheet, map: &Map, mark: &Mark, [low, high]: [DVec2; 2]) {
     for cell in &mark.cells {
         let class = if cell.touch == Touch::Edges { "domain" } else { "vertex-cell" };
         sheet.polygon(class, &map.all(&cell.corners));
@@ -27,19 +27,19 @@ fn mark(sheet: &mut Sheet, map: &Map, mark: &Mark, [low, high]: [DVec2; 2]) {
 }
 
 /// Returns an interior point of each cell, and the planar problem there.
-fn samples(scene: &Scene) -> Vec<(DVec2, Instance)> {
+fn cell_samples(scene: &Scene) -> Vec<(DVec2, Instance)> {
     let inside = scene.mark.cells.iter().map(|cell| middle(&cell.corners));
     let all = inside.chain(scene.mark.outside.iter().copied());
     all.filter_map(|at| Some((at, scene.view.instance(at)?))).collect()
 }
 
 /// Draws figure 2: the orientation of the cut line in each cell.
-pub(super) fn orientations(scene: &Scene) -> String {
+pub(super) fn orientation_figure(scene: &Scene) -> String {
     let mut sheet = Sheet::new("The mark of φ, with the cut line of each cell", 560.0, 600.0);
     let levels = scene.run.rectangle();
     let map = Map::fitting(&levels, [DVec2::new(30.0, 34.0), DVec2::new(530.0, 534.0)]);
-    mark(&mut sheet, &map, &scene.mark, levels);
-    for (at, instance) in samples(scene) {
+    draw_mark(&mut sheet, &map, &scene.mark, levels);
+    for (at, instance) in cell_samples(scene) {
         let (at, downhill) = (map.at(at), map.way(-instance.gradient));
         let along = downhill.perp() * 17.0;
         sheet.line("shifted", at - along, at + along);
@@ -56,20 +56,20 @@ pub(super) fn orientations(scene: &Scene) -> String {
 }
 
 /// Returns a number from 0 to 4 that increases with the angle of a direction.
-fn turn(v: DVec2) -> f64 {
+fn turn_number(v: DVec2) -> f64 {
     let part = v.x / (v.x.abs() + v.y.abs());
     if v.y >= 0.0 { 1.0 - part } else { 3.0 + part }
 }
 
 /// Draws figure 6: the mark, and the sections in its cells.
-pub(super) fn qualities(scene: &Scene) -> String {
+pub(super) fn contact_figure(scene: &Scene) -> String {
     const ROOM: f64 = 128.0;
     let mut sheet =
         Sheet::new("The mark of φ, with sections of its cells seen along d", 720.0, 760.0);
     let (levels, center) = (scene.run.rectangle(), DVec2::new(360.0, 352.0));
     let half = DVec2::splat(165.0);
     let map = Map::fitting(&levels, [center - half, center + half]);
-    mark(&mut sheet, &map, &scene.mark, levels);
+    draw_mark(&mut sheet, &map, &scene.mark, levels);
     // Rooms once around the mark, and samples in the same order.
     let mut rooms = Vec::new();
     for (x, y) in [
@@ -91,10 +91,10 @@ pub(super) fn qualities(scene: &Scene) -> String {
     }
     let from_middle = |at: DVec2| {
         let v = at - center;
-        turn(DVec2::new(v.x, -v.y))
+        turn_number(DVec2::new(v.x, -v.y))
     };
     rooms.sort_by(|a, b| from_middle(*a).total_cmp(&from_middle(*b)));
-    let mut all = samples(scene);
+    let mut all = cell_samples(scene);
     all.truncate(rooms.len());
     all.sort_by(|a, b| from_middle(map.at(a.0)).total_cmp(&from_middle(map.at(b.0))));
     // Each has a room of its own; two change theirs while that makes their leaders shorter.
@@ -119,7 +119,7 @@ pub(super) fn qualities(scene: &Scene) -> String {
         let edge = way * (1.0 - 0.5 * ROOM / way.abs().max_element());
         sheet.line("leader", at, at + edge);
         sheet.dot("start", at, 3.5);
-        sketch(
+        draw_sections(
             &mut sheet,
             scene,
             instance,
@@ -138,7 +138,7 @@ pub(super) fn qualities(scene: &Scene) -> String {
 }
 
 /// Draws two sections, viewed along the direction, in a small area.
-fn sketch(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2]) {
+fn draw_sections(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2]) {
     let flat = instance
         .sections
         .each_ref()
@@ -154,7 +154,7 @@ fn sketch(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [DVec2; 2
 }
 
 /// Returns the part of the line `gradient . p = value` in a convex polygon.
-fn chord(polygon: &[DVec2], gradient: DVec2, value: f64) -> Option<[DVec2; 2]> {
+fn polygon_chord(polygon: &[DVec2], gradient: DVec2, value: f64) -> Option<[DVec2; 2]> {
     let mut ends = Vec::new();
     for (k, &from) in polygon.iter().enumerate() {
         let to = polygon[(k + 1) % polygon.len()];
@@ -170,7 +170,7 @@ fn chord(polygon: &[DVec2], gradient: DVec2, value: f64) -> Option<[DVec2; 2]> {
 }
 
 /// Draws one step: the region, the cut line at `c`, the shift to `q`, and the removed part.
-fn step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: &Step) {
+fn draw_step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: &Step) {
     let [c, q] = [problem.levels, problem.best].map(DVec2::from_array);
     let gradient = problem.gradient;
     if let Some(cut) = cut {
@@ -180,7 +180,7 @@ fn step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: &Step
     sheet.polygon("cell", &map.all(cell));
     sheet.polygon("left", &map.all(region));
     let mut line = |class: &str, at: DVec2| {
-        if let Some([a, b]) = chord(region, gradient, gradient.dot(at)) {
+        if let Some([a, b]) = polygon_chord(region, gradient, gradient.dot(at)) {
             sheet.line(class, map.at(a), map.at(b));
         }
     };
@@ -195,7 +195,7 @@ fn step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: &Step
 }
 
 /// Draws the letter of a point on the side opposite to `beside`.
-fn letter(sheet: &mut Sheet, at: DVec2, beside: DVec2, text: &str) {
+fn draw_letter(sheet: &mut Sheet, at: DVec2, beside: DVec2, text: &str) {
     sheet.text("math", at + beside + DVec2::Y * 4.0, Anchor::Middle, text);
 }
 
@@ -207,14 +207,14 @@ pub(super) fn two_steps(scene: &Scene) -> String {
         let left = 28.0 + 372.0 * k as f64;
         let map = Map::fitting(&levels, [DVec2::new(left, 52.0), DVec2::new(left + 335.0, 387.0)]);
         sheet.text("bold", DVec2::new(left, 20.0), Anchor::Start, &format!("Step {}", k + 1));
-        mark(&mut sheet, &map, &scene.mark, levels);
-        step(&mut sheet, &map, one);
+        draw_mark(&mut sheet, &map, &scene.mark, levels);
+        draw_step(&mut sheet, &map, one);
         let [c, q] = [one.problem.levels, one.problem.best].map(|p| map.at(DVec2::from_array(p)));
         let is_last = one.cut.is_none();
         sheet.dot(if is_last { "least" } else { "dot" }, q, 5.0);
         let aside = (c - q).normalize_or(DVec2::Y) * 15.0;
-        letter(&mut sheet, c, aside, "c");
-        letter(&mut sheet, q, -aside, "q");
+        draw_letter(&mut sheet, c, aside, "c");
+        draw_letter(&mut sheet, q, -aside, "q");
     }
     let entries = [
         ("left", "M", 58.0),
@@ -229,7 +229,7 @@ pub(super) fn two_steps(scene: &Scene) -> String {
 }
 
 /// Draws figure 10: steps that start at the last solution, in its neighbourhood.
-pub(super) fn focused(scene: &Scene, run: &Run, half: f64) -> String {
+pub(super) fn focus_figure(scene: &Scene, run: &Run, half: f64) -> String {
     let shown = run.steps.len().min(3);
     let wide = 344.0 + 328.0 * (shown as f64 - 1.0);
     let mut sheet = Sheet::new("Minimisation steps from the last solution p", wide, 452.0);
@@ -240,8 +240,8 @@ pub(super) fn focused(scene: &Scene, run: &Run, half: f64) -> String {
         let left = 22.0 + 328.0 * k as f64;
         let map = Map::fitting(&levels, [DVec2::new(left, 52.0), DVec2::new(left + 300.0, 352.0)]);
         sheet.text("bold", DVec2::new(left, 20.0), Anchor::Start, &format!("Step {}", k + 1));
-        mark(&mut sheet, &map, &scene.mark, levels);
-        step(&mut sheet, &map, one);
+        draw_mark(&mut sheet, &map, &scene.mark, levels);
+        draw_step(&mut sheet, &map, one);
         sheet.polygon("square", &map.all(&rectangle(p - around, p + around)));
         let centroid = centroid(&one.region);
         let [at_p, c, q, mid] = [
@@ -254,7 +254,7 @@ pub(super) fn focused(scene: &Scene, run: &Run, half: f64) -> String {
         if k > 0 {
             sheet.line("leader", mid, at_p);
             sheet.dot("start", mid, 3.0);
-            letter(
+            draw_letter(
                 &mut sheet,
                 mid,
                 (mid - at_p).normalize_or(DVec2::Y) * 15.0,
@@ -264,12 +264,12 @@ pub(super) fn focused(scene: &Scene, run: &Run, half: f64) -> String {
         sheet.dot("start", c, 4.5);
         sheet.dot(if one.cut.is_none() { "least" } else { "dot" }, q, 4.5);
         if k == 0 {
-            letter(&mut sheet, at_p, DVec2::new(0.0, 16.0), "p");
+            draw_letter(&mut sheet, at_p, DVec2::new(0.0, 16.0), "p");
         } else if c.distance(mid) > 6.0 {
-            letter(&mut sheet, c, DVec2::new(-15.0, -8.0), &format!("c{}*", "′".repeat(k)));
+            draw_letter(&mut sheet, c, DVec2::new(-15.0, -8.0), &format!("c{}*", "′".repeat(k)));
         }
         let corner = map.at(p + DVec2::new(-around, around));
-        letter(&mut sheet, corner, DVec2::new(20.0, -11.0), "N(p)");
+        draw_letter(&mut sheet, corner, DVec2::new(20.0, -11.0), "N(p)");
     }
     let entries = [
         ("square", "N(p)", 75.0),

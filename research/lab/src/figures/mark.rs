@@ -59,14 +59,17 @@ impl Mark {
                 }
             }
         }
-        let outside =
-            groups.iter().filter_map(|(_, all)| deepest(all)).map(|(i, j)| place(i, j)).collect();
+        let outside = groups
+            .iter()
+            .filter_map(|(_, all)| deepest_sample(all))
+            .map(|(i, j)| place(i, j))
+            .collect();
         let mut lines = Vec::new();
         for i in 0..SAMPLES - 1 {
             for j in 0..SAMPLES - 1 {
                 let square = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
                 let corners = square.map(|(i, j)| (place(i, j), look(i, j)));
-                lines.extend(borders(&corners, &seen));
+                lines.extend(cell_borders(&corners, &seen));
             }
         }
         Self { cells, lines, outside }
@@ -74,7 +77,7 @@ impl Mark {
 }
 
 /// Returns the sample that is farthest from the boundary of some samples; `None` for very few samples.
-fn deepest(all: &[(usize, usize)]) -> Option<(usize, usize)> {
+fn deepest_sample(all: &[(usize, usize)]) -> Option<(usize, usize)> {
     let depth = |&(i, j): &(usize, usize)| {
         (1..SAMPLES).find(|&far| {
             let ends =
@@ -89,7 +92,10 @@ fn deepest(all: &[(usize, usize)]) -> Option<(usize, usize)> {
 type Sample = Option<(Features, Touch)>;
 
 /// Returns the boundary between different cells within a small square in which the sections do not meet.
-fn borders(corners: &[(DVec2, Sample); 4], seen: &impl Fn(DVec2) -> Sample) -> Vec<[DVec2; 2]> {
+fn cell_borders(
+    corners: &[(DVec2, Sample); 4],
+    seen: &impl Fn(DVec2) -> Sample,
+) -> Vec<[DVec2; 2]> {
     let meets = |look: &Sample| look.is_none_or(|(_, touch)| touch.meets());
     if corners.iter().any(|(_, look)| meets(look)) {
         return Vec::new();

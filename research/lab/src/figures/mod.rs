@@ -102,16 +102,16 @@ pub fn figures() -> Result<Vec<(u32, String)>, Error> {
     let apart = scene.sample(Touch::Separated).ok_or(Error::Missing("separation"))?;
     let moved = Setting::new(AFTER, TURN_AFTER, TOWARDS_AFTER)?;
     let focused = moved.run_after(&Setting::new(BEFORE, TURN_AFTER, TOWARDS_AFTER)?, HALF)?;
-    let seen = |found: &Instance, title| instances::instance(&scene.view, found, title);
+    let seen = |found: &Instance, title| instances::sections_figure(&scene.view, found, title);
     Ok(vec![
-        (1, instances::function(&scene, &first)),
-        (2, levels::orientations(&scene)),
+        (1, instances::function_figure(&scene, &first)),
+        (2, levels::orientation_figure(&scene)),
         (3, seen(&edges, "Edge contact of two sections, seen along d")),
         (4, seen(&vertex, "Vertex contact of two sections, seen along d")),
         (5, seen(&apart, "Two sections that pass each other, seen along d")),
-        (6, levels::qualities(&scene)),
-        (8, instances::reduction(&scene, &first)),
+        (6, levels::contact_figure(&scene)),
+        (8, instances::reduction_figure(&scene, &first)),
         (9, levels::two_steps(&scene)),
-        (10, levels::focused(&Scene::new(&moved)?, &focused, HALF)),
+        (10, levels::focus_figure(&Scene::new(&moved)?, &focused, HALF)),
     ])
 }

@@ -5,7 +5,7 @@ use colltrans::{Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Solver
 use glam::{DQuat, DVec2, DVec3};
 
 /// Returns a cube of side 2 about its origin.
-fn cube() -> Result<ConvexPolyhedron, colltrans::BuildError> {
+fn cube_of_side_2() -> Result<ConvexPolyhedron, colltrans::BuildError> {
     let corner =
         |k: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(k >> axis & 1) * 2.0 - 1.0));
     ConvexPolyhedron::from_points(&(0..8).map(corner).collect::<Vec<_>>())
@@ -49,7 +49,11 @@ impl Setting {
     pub(super) fn new(at: [f64; 3], turn: [f64; 4], towards: [f64; 3]) -> Result<Self, Error> {
         let direction = DVec3::from_array(towards).normalize();
         let moving = Pose::new(DQuat::from_array(turn).normalize(), DVec3::from_array(at))?;
-        Ok(Self { bodies: [cube()?, cube()?], poses: [moving, Pose::IDENTITY], direction })
+        Ok(Self {
+            bodies: [cube_of_side_2()?, cube_of_side_2()?],
+            poses: [moving, Pose::IDENTITY],
+            direction,
+        })
     }
 
     /// Returns the cast of the cubes.

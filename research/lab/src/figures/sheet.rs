@@ -42,7 +42,7 @@ impl Sheet {
         let mut d = String::new();
         for (k, at) in points.iter().enumerate() {
             // Writing to a string does not fail.
-            let _ = write!(d, "{}{}", if k == 0 { "M" } else { "L" }, place(*at));
+            let _ = write!(d, "{}{}", if k == 0 { "M" } else { "L" }, point_text(*at));
         }
         self.put(&format!("<path class=\"{class}\" d=\"{d}{end}\"/>\n"));
     }
@@ -62,7 +62,7 @@ impl Sheet {
     /// Draws many lines of one class.
     pub(super) fn lines(&mut self, class: &str, lines: &[[DVec2; 2]]) {
         let all: Vec<String> =
-            lines.iter().map(|[a, b]| format!("M{}L{}", place(*a), place(*b))).collect();
+            lines.iter().map(|[a, b]| format!("M{}L{}", point_text(*a), point_text(*b))).collect();
         if !all.is_empty() {
             self.put(&format!("<path class=\"{class}\" d=\"{}\"/>\n", all.concat()));
         }
@@ -70,7 +70,7 @@ impl Sheet {
 
     /// Draws a dot.
     pub(super) fn dot(&mut self, class: &str, at: DVec2, radius: f64) {
-        let (x, y) = (number(at.x), number(at.y));
+        let (x, y) = (rounded(at.x), rounded(at.y));
         self.put(&format!("<circle class=\"{class}\" cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
     }
 
@@ -89,7 +89,7 @@ impl Sheet {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let (x, y) = (number(at.x), number(at.y));
+        let (x, y) = (rounded(at.x), rounded(at.y));
         let attributes = format!("x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\"");
         self.put(&format!("<text class=\"{class}\" {attributes}>{words}</text>\n"));
     }
@@ -130,13 +130,13 @@ pub(super) fn rectangle(low: DVec2, high: DVec2) -> [DVec2; 4] {
 }
 
 /// Rounds to a tenth of a pixel, without negative zeros.
-fn number(x: f64) -> f64 {
+fn rounded(x: f64) -> f64 {
     (x * 10.0).round() / 10.0 + 0.0
 }
 
 /// Formats a point.
-fn place(at: DVec2) -> String {
-    format!("{} {}", number(at.x), number(at.y))
+fn point_text(at: DVec2) -> String {
+    format!("{} {}", rounded(at.x), rounded(at.y))
 }
 
 /// A map from an area with `y` upwards to a rectangle of the sheet.

@@ -511,10 +511,10 @@ fn invalid_3mf_files_and_unknown_extensions_are_rejected() {
     says(&of(model("", &deep, item)), &["nested deeper than the accepted 64"]);
     let ring = "<object id=\"1\"><components><component objectid=\"1\"/></components></object>";
     says(&of(model("", ring, item)), &["in a cycle"]);
+    // A package that unpacks to far more than its size.
     let bomb = package(&[("3D/3dmodel.model", " ".repeat(100 << 20))]);
     assert!(bomb.len() < 1 << 20);
     says(&refusal("a.3mf", &[("a.3mf", bomb)]), &["unpacks to more than the accepted 256 times its size"]);
-    // A package that unpacks to far more than its size.
     // Elements of extensions are not elements of the core.
     let other = "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"";
     let sliced = cube.replace("</mesh>", "</mesh><s:vertex x=\"9\" y=\"9\" z=\"9\"/>");
@@ -661,10 +661,10 @@ fn referenced_files_are_confined_to_folder_of_source() {
         says(&manifest(name, options).unwrap_err(), &["not a regular file"]);
     }
     // Special files are rejected also as the source, and within a folder.
-    // A symbolic link to the source itself is followed.
     says(&read(at("in/pipe.off"), &open).unwrap_err().to_string(), &["not a regular file"]);
     says(&colltrans_mesh::read(at("in/pipe.off")).unwrap_err().to_string(), &["not a regular"]);
     says(&read(at("in"), &closed).unwrap_err().to_string(), &["rejected reference", "link.off"]);
+    // A symbolic link to the source itself is followed.
     write("in/n.json", &json!({"parts": [{"file": "k.off"}]}).to_string());
     symlink(at("in/n.json"), at("kit/n.json")).unwrap();
     assert_eq!(read(Path::new(&at("kit/n.json")), &closed).unwrap().parts().len(), 1);

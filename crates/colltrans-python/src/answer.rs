@@ -1,7 +1,7 @@
-//! Answers: the library's own with the query that was asked, frozen.
+//! Answers: frozen objects that hold the library's answer and the query.
 //!
-//! Arrays, points and features, the contacts in an answer and its proof are made on access. A *last*
-//! contact is the first one of the query turned round, and keeps that query, as in the library.
+//! Arrays, points, features, the contacts in an answer and its proof are built on access. A *last* contact is
+//! the first contact of the reversed query and holds the reversed query, as in the library.
 
 use std::fs;
 use std::path::Path;
@@ -13,18 +13,18 @@ use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// An answer of the library's, of any of its types.
+/// An answer type of the library that becomes a Python object.
 pub(crate) trait Answer: Serialize + DeserializeOwned + Send {
-    /// The class of what is asked.
+    /// The Python class of the query.
     type Query: PyClass;
 
-    /// As Python has it: a class for each case.
+    /// Converts the answer to an object of the Python class for its case.
     fn object<'py>(self, query: &Bound<'py, Self::Query>) -> PyResult<Bound<'py, PyAny>>;
 
-    /// What it says, as the command line writes it.
+    /// Returns the record of the answer, with the fields that the command line writes.
     fn record(&self, query: &Bound<'_, Self::Query>) -> PyResult<Record>;
 
-    /// Its proof, as a file.
+    /// Returns the proof of the answer as the text of a proof file.
     fn proof(&self, query: &Bound<'_, Self::Query>) -> PyResult<String>;
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct WithDents {
     pub(crate) dents: Option<Dents>,
 }
 
-/// An object of a class of Python.
+/// Builds a Python object of a class.
 pub(crate) fn object<T>(py: Python<'_>, of: T) -> PyResult<Bound<'_, PyAny>>
 where
     T: PyClass + Into<PyClassInitializer<T>>,
@@ -45,29 +45,30 @@ where
     Ok(Bound::new(py, of)?.into_any())
 }
 
-/// Writes a file of text, with an end of line.
+/// Writes a text and a newline to a file.
 pub(crate) fn save(path: &Path, text: String) -> PyResult<()> {
     fs::write(path, text + "\n").map_err(|error| {
         let words = error.to_string();
         let words = words.split(" (os error").next().unwrap_or_default().to_owned();
-        // Of these arguments Python makes the subclass, such as FileNotFoundError, and the name in its words.
+        // With these arguments Python creates the subclass, such as FileNotFoundError, and adds the file name
+        // to the message.
         PyOSError::new_err((error.raw_os_error(), words, path.to_owned()))
     })
 }
 
-/// What all classes of answers have. `$again` makes the library's answer once more of one of them.
+/// Defines the members that all answer classes share. `$again` rebuilds the library's answer from an object.
 macro_rules! answer {
     ($class:ident($($name:literal),*) of $of:ty, $query:ident, |$it:ident| $again:expr) => {
         $crate::frozen::match_args!($class($($name),*));
 
         $crate::frozen::getters!($class, |it| {
-            /// Cast or SolidCast or Pair: The query; of a last contact the one turned round.
+            /// Cast or SolidCast or Pair: The query. A last contact has the reversed query.
             query(py): Py<$query> = it.query.clone_ref(py);
         });
 
         #[pymethods]
         impl $class {
-            /// A picture: see :func:`colltrans.show`.
+            /// Draws a picture; see :func:`colltrans.show`.
             #[pyo3(signature = (**options))]
             fn show<'py>(
                 slf: &Bound<'py, Self>,
@@ -80,8 +81,10 @@ macro_rules! answer {
                 $crate::frozen::html(slf)
             }
 
-            /// What it says, as plain Python: the fields of ``--json`` of the command line, with the same
-            /// bits. None stands for a bound that is infinite.
+            /// Returns the answer as plain Python: the fields that ``--json`` of the command line writes,
+            /// with the same bits.
+            ///
+            /// None stands for an infinite bound.
             ///
             /// Returns
             /// -------
@@ -94,9 +97,10 @@ macro_rules! answer {
                 $crate::frozen::plain(py, &$crate::answer::WithDents { record, dents })
             }
 
-            /// The proof, with all that it is about, as text: the file of ``--save-proof``, which
-            /// ``colltrans verify`` and ``python -m colltrans.check`` check. Between solids the question is
-            /// asked once more for it.
+            /// Returns the proof with everything that it refers to, as text.
+            ///
+            /// The text is a file of ``--save-proof``, which ``colltrans verify`` and ``python -m
+            /// colltrans.check`` check. Between solids the query runs again to build it.
             ///
             /// Returns
             /// -------
@@ -105,13 +109,13 @@ macro_rules! answer {
             /// Raises
             /// ------
             /// CaseError
-            ///     Of a union of solids that was shrunk or grown as a whole.
+            ///     The answer is about a union of solids that was shrunk or grown as a whole.
             fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
                 let $it = self;
                 <$of as $crate::answer::Answer>::proof(&$again, self.query.bind(py))
             }
 
-            /// Writes :meth:`proof_json` as a file.
+            /// Writes :meth:`proof_json` to a file.
             ///
             /// Parameters
             /// ----------

@@ -1,13 +1,13 @@
-//! Arguments that are easily confused: which call takes what was given.
+//! Messages for confused arguments: the call that accepts a given object.
 //!
-//! Invariant: no class is known here, so that each class can use this.
+//! Invariant: this module uses no class of the extension, so that each class can use it.
 
 use pyo3::prelude::*;
 use pyo3::types::{PySequence, PyString};
 
 use crate::errors::input;
 
-/// Returns the call that makes a body of an argument which is not one.
+/// Returns a hint: the call that builds a body from an argument that is not a body.
 pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     Ok(if given.hasattr("vertices")? && given.hasattr("faces")? {
         "ConvexPolyhedron.from_trimesh(mesh) or Solid.from_trimesh(mesh) makes a body of a mesh"
@@ -20,9 +20,9 @@ pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     })
 }
 
-/// Refuses a mesh object, or the name of a file, where `class` expects an array of points.
+/// Rejects a mesh object or a file name where `class` expects an array of points.
 ///
-/// `call` is the call that takes a mesh.
+/// `call` is the call that accepts a mesh.
 pub(crate) fn refuse_mesh(
     given: &Bound<'_, PyAny>,
     name: &str,

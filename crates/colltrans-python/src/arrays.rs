@@ -1,8 +1,9 @@
-//! Numbers in and out: what Python holds to what the library takes, and back.
+//! Conversion of numbers between Python and the library.
 //!
-//! Small arguments (directions, poses) are read here if they are tuples or lists of numbers, or
-//! arrays in native double precision, strided or not: `get_owned` copies one number and borrows
-//! nothing. All else goes through `colltrans._arrays`, which takes what numpy takes, or says why not.
+//! Small arguments (directions, poses) are read here if they are tuples or lists of numbers, or arrays in
+//! native double precision, strided or not. `get_owned` copies one number and borrows nothing. All other
+//! arguments go through `colltrans._arrays`, which accepts what numpy accepts and reports what is wrong
+//! otherwise.
 
 use colltrans::glam::DVec3;
 use numpy::{
@@ -25,7 +26,7 @@ pub(crate) struct Numbers {
     pub(crate) shape: Shape,
 }
 
-/// Of numbers; those with more than fit have a shape only.
+/// The shape of the numbers. If they do not fit, only the shape is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
     Row(usize),
@@ -33,7 +34,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// As numpy writes it.
+    /// Formats the shape as numpy does.
     pub(crate) fn text(self) -> String {
         match self {
             Self::Row(n) => format!("({n},)"),
@@ -42,7 +43,7 @@ impl Shape {
     }
 }
 
-/// The numbers of the argument called `name`.
+/// Reads the numbers of the argument called `name`.
 pub(crate) fn numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Numbers> {
     if let Some(found) = plain_numbers(of) {
         return Ok(found);
@@ -51,19 +52,19 @@ pub(crate) fn numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Numbers> {
     of_array(&array).ok_or_else(|| wrong_shape(&array, name, "a row or a table of numbers"))
 }
 
-/// `vertices` and `faces` of a mesh as trimesh has them.
+/// Returns the attributes `vertices` and `faces` of a mesh object, as trimesh names them.
 pub(crate) fn mesh<'py>(of: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, PyAny>; 2]> {
     let part = |name| of.getattr(name).map_err(|_| input("mesh", format_args!("it has no {name}")));
     Ok([part("vertices")?, part("faces")?])
 }
 
-/// Those of a tuple or a list of numbers, or of an array that is as it should be.
+/// Reads a tuple or list of numbers, or an aligned array in double precision; `None` for anything else.
 #[inline]
 pub(crate) fn plain_numbers(of: &Bound<'_, PyAny>) -> Option<Numbers> {
     of_sequence(of).or_else(|| of_array(of))
 }
 
-/// A vector.
+/// Reads a vector with three coordinates.
 pub(crate) fn vector(of: &Bound<'_, PyAny>, name: &str) -> PyResult<DVec3> {
     let Numbers { values: [x, y, z, ..], shape } = numbers(of, name)?;
     if shape == Shape::Row(3) {
@@ -99,7 +100,7 @@ fn of_items<'py>(n: usize, items: impl Iterator<Item = Bound<'py, PyAny>>) -> Op
 
 fn of_array(of: &Bound<'_, PyAny>) -> Option<Numbers> {
     let mut values = [0.0; 16];
-    // What is more than an array may hide some of its numbers, as masked arrays do.
+    // A subclass of an array may hide some of its numbers, as masked arrays do.
     if !of.get_type().is(of.py().get_type::<PyUntypedArray>()) {
         return None;
     }
@@ -134,11 +135,11 @@ fn is_aligned<D: numpy::ndarray::Dimension>(array: &Bound<'_, PyArray<f64, D>>) 
     array.data().is_aligned() && array.strides().iter().all(|stride| stride % size == 0)
 }
 
-/// Points of shape `(N, 3)`.
+/// Reads points: an array of shape `(N, 3)`.
 pub(crate) fn points(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<DVec3>> {
     let array = helper(of.py(), "floats")?.call1((of, name))?;
     let refused = || wrong_shape(&array, name, "(N, 3)");
-    // Of nothing numpy makes a row.
+    // numpy converts an empty list to a row.
     if array.cast::<PyArray1<f64>>().is_ok_and(|row| row.is_empty()) {
         return Ok(Vec::new());
     }
@@ -150,7 +151,7 @@ pub(crate) fn points(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<DVec3>> 
     Ok(values.iter().copied().map(DVec3::from_array).collect())
 }
 
-/// Faces as lists of vertices.
+/// Reads faces as lists of vertex indices.
 pub(crate) fn faces(of: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
     let runs = helper(of.py(), "faces")?.call1((of,))?;
     let (corners, ends): (PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, u32>) = runs.extract()?;
@@ -158,7 +159,7 @@ pub(crate) fn faces(of: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
     Ok(ends.windows(2).map(|w| corners[w[0] as usize..w[1] as usize].to_vec()).collect())
 }
 
-/// A function of `colltrans._arrays`.
+/// Returns a function of `colltrans._arrays`.
 fn helper<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("colltrans._arrays")?.getattr(name)
 }
@@ -168,29 +169,29 @@ fn wrong_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &str) -> PyErr {
     input(name, format_args!("an array of shape {shape}, not {wanted}"))
 }
 
-/// An array that says that writing to it would change nothing.
+/// Marks an array as read-only, because writing to it would change nothing in the library.
 pub(crate) fn read_only<T: Element, D: numpy::ndarray::Dimension>(
     array: Bound<'_, PyArray<T, D>>,
 ) -> Bound<'_, PyArray<T, D>> {
     (*array.readwrite().make_nonwriteable()).clone()
 }
 
-/// Numbers of vertices or facets for Python.
+/// Converts numbers of vertices or facets to an array.
 pub(crate) fn ids<'py, T: Copy + Into<u32>>(py: Python<'py>, of: &[T]) -> Indices<'py> {
     PyArray1::from_iter(py, of.iter().map(|&number| number.into()))
 }
 
-/// A vector for Python, without -0: as the command line writes it.
+/// Converts a vector to an array without -0, as the command line writes it.
 pub(crate) fn row(py: Python<'_>, v: DVec3) -> Bound<'_, PyArray1<f64>> {
     PyArray1::from_slice(py, &coordinates(v))
 }
 
-/// Without -0.
+/// Returns the coordinates of a vector, with 0 for -0.
 pub(crate) fn coordinates(v: DVec3) -> [f64; 3] {
     v.to_array().map(|c| c + 0.0)
 }
 
-/// Rows of `K` numbers as a table.
+/// Converts rows of `K` numbers to a table.
 pub(crate) fn table<T: Element, const K: usize>(
     py: Python<'_>,
     rows: impl IntoIterator<Item = [T; K]>,

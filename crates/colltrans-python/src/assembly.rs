@@ -1,8 +1,8 @@
-//! Assemblies: which parts come out. What comes back are plain numbers and positions of parts, which
-//! `colltrans.assembly` makes classes of.
+//! Assemblies: which parts can be removed. The results are plain numbers and part indices, from which
+//! `colltrans.assembly` builds its classes.
 //!
-//! Work is done on threads of its own; the calling thread waits for it and looks for signals, and
-//! cancels it where one raises.
+//! The work runs on a thread of its own. The calling thread waits, polls for signals, and cancels the work if
+//! a signal handler raises.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -39,18 +39,18 @@ use crate::errors::{OrRaise, error};
 use crate::frozen::getters;
 use crate::pool;
 
-/// Time between two looks for signals.
+/// Time between two polls for signals.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// A vector, and the distance and the part (-1 for none) of rooms along it.
+/// For each direction the free travel of a part, and the part that blocks it (-1 for none).
 type RoomRow = (Vec<f64>, Vec<i64>);
 /// Parts, direction, travel and turn of a move.
 type LegRow = (Vec<usize>, [f64; 3], f64, Option<TurnRow>);
-/// A point of an axis, turns, where they begin, by how much aside, with which tolerance they are proven, and all in words.
+/// Point of the axis, number of turns, phase, lateral offset, proven tolerance, and a description.
 type TurnRow = ([f64; 3], f64, f64, [f64; 3], Option<f64>, String);
-/// Parts, direction, travel and its bounds, the moves out and back, the step that took the group out, the steps before it,
-/// the pairs that are ignored, what is let pass of others, and the parts that then fall, that are off balance, and the
-/// surfaces it rests on.
+/// A step of a plan: parts, direction, travel, bounds of the travel, moves out and back, the step that
+/// removed the group that contains these parts, the steps before it, ignored pairs, tolerated pairs, and
+/// three lists: parts that fall, parts that are off balance, support surfaces.
 type StepRow = (
     Vec<usize>,
     [f64; 3],
@@ -63,12 +63,12 @@ type StepRow = (
     Vec<PassedRow>,
     [Vec<usize>; 3],
 );
-/// Two parts, their role, their tolerance, and what is let pass in words.
+/// Two parts, their role, their tolerance, and a description of what is tolerated.
 type PassedRow = ([usize; 2], Option<&'static str>, Option<f64>, String);
-/// What is taken away, from and to which step, and how far.
+/// Label of a stage, its range of steps, and its travel.
 type StageRow = (String, [usize; 2], f64);
-/// Steps, stages, what is last, what is left, what is stuck, of a plan for some parts what goes, the rounds, how it is
-/// put together, the seconds of each step, and what a report is made of.
+/// A plan: steps, stages, last parts, parts that are left, stuck groups, the answer for wanted parts, rounds,
+/// order of assembly, seconds of each step, and the data for a report.
 type PlanRows = (
     Vec<StepRow>,
     Vec<StageRow>,
@@ -81,13 +81,14 @@ type PlanRows = (
     Vec<f64>,
     Planned,
 );
-/// Parts that are to come out, what else goes, whether that is the least, and whether they come out.
+/// Wanted parts, other removed parts, whether this set is proven to be the smallest, and whether the parts
+/// come out.
 type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
-/// Parts, how many directions were asked, in how many cells it is proven that no group leaves as one, the reason, and for
-/// each of some parts the sets that hold it.
+/// Parts, number of tested directions, number of cells in which it is proven that no group can be removed,
+/// reason, and for some parts the sets of parts that hold them.
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
 
-/// How tight the parts are, and what overlaps mean.
+/// The tolerance of the parts, and how overlaps at the start are treated.
 #[derive(Clone, Copy)]
 struct Choices {
     tolerance: Option<f64>,
@@ -105,14 +106,14 @@ impl Choices {
     }
 }
 
-/// Vertices and triangles.
+/// The vertices and triangles of a surface.
 type Surface<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 
-/// The extension's half of ``colltrans.Assembly``.
+/// The extension's part of ``colltrans.Assembly``.
 #[pyclass(frozen, module = "colltrans._colltrans")]
 pub(crate) struct Assembly(Arc<colltrans_assembly::Assembly>);
 
-/// A plan, and of what it is one.
+/// A plan with its assembly and its options.
 #[pyclass(frozen, module = "colltrans._colltrans")]
 pub(crate) struct Planned {
     assembly: Arc<colltrans_assembly::Assembly>,
@@ -124,7 +125,7 @@ pub(crate) struct Planned {
 
 #[pymethods]
 impl Planned {
-    /// The page that is printed for the workshop.
+    /// Returns the HTML page of the plan, for printing.
     fn report(&self, py: Python<'_>, title: &str) -> PyResult<String> {
         let Self { assembly, choices, question, plan, times } = self;
         interruptible(py, |watch| {
@@ -137,7 +138,7 @@ impl Planned {
 }
 
 impl Assembly {
-    /// The same with something asked of it.
+    /// Returns a copy of the assembly after a change.
     fn with(
         &self,
         change: impl FnOnce(
@@ -148,7 +149,7 @@ impl Assembly {
         Ok(Self(Arc::new(change(assembly).or_raise()?)))
     }
 
-    /// Work about the parts, as tight as asked for.
+    /// Runs a computation on the bodies, with the chosen tolerance.
     fn ask<T: Send>(
         &self,
         py: Python<'_>,
@@ -159,7 +160,7 @@ impl Assembly {
     }
 }
 
-/// Work on a thread of its own, cancelled where a signal raises.
+/// Runs a computation on a thread of its own, and cancels it if a signal handler raises.
 fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(Watch<'_>) -> Result<T, AssemblyError> + Send,
@@ -170,7 +171,7 @@ fn interruptible<T: Send>(
         std::thread::scope(|scope| {
             let watch = Watch::default().with_cancel(&cancel);
             let worker = scope.spawn(move || {
-                // Dropped when the work is done, however it ends.
+                // Dropped when the work ends, also if it panics.
                 let _done = done;
                 pool::run(|| work(watch))
             });
@@ -190,17 +191,17 @@ fn interruptible<T: Send>(
     without_threads(answer.map_err(internal)?)?.or_raise()
 }
 
-/// Returns what was computed, or the error that there are no threads for it.
+/// Converts a failure to start threads to an exception.
 fn without_threads<T>(answer: Result<T, rayon::ThreadPoolBuildError>) -> PyResult<T> {
     answer.map_err(|what| error("AssemblyError", format_args!("no threads: {what}")))
 }
 
-/// Unit vectors of directions.
+/// Normalises directions to unit vectors.
 fn units(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
     directions.iter().map(|d| unit(*d)).collect()
 }
 
-/// Which directions are worth asking: those given, and if none are those found.
+/// Chooses the directions to test: the given ones, or a search if none are given.
 fn choice(given: &[DVec3]) -> Result<Choice, AssemblyError> {
     Ok(Choice::default().with_given(units(given)?).with_search(given.is_empty()))
 }
@@ -225,21 +226,23 @@ fn passed_row(passed: &Passed) -> PassedRow {
     (parts, role.map(Role::name), tolerance, tolerated.words(role))
 }
 
-/// A table of handling times.
+/// Reads a table of handling times, in seconds.
 fn times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
     let refused = |reason: String| error("InputError", format!("times: {reason}"));
     let value = serde_json::to_value(given).map_err(|e| refused(e.to_string()))?;
     let times: Times = serde_json::from_value(value).map_err(|e| refused(e.to_string()))?;
     match times.wrong() {
-        Some((name, seconds)) => Err(refused(format!("{name}: {seconds} is no time in seconds"))),
+                Some((name, seconds)) => {
+                    Err(refused(format!("{name}: invalid time {seconds}; expected a number of seconds")))
+                }
         None => Ok(times),
     }
 }
 
-/// The role with a name.
+/// Returns the role with a name.
 fn role(name: Option<&str>) -> PyResult<Option<Role>> {
     let named = |name: &str| {
-        let refused = || error("InputError", format!("role: {name} is none of them"));
+        let refused = || error("InputError", format!("unknown role {name}"));
         Role::named(name).ok_or_else(refused)
     };
     name.map(named).transpose()
@@ -294,7 +297,7 @@ impl Assembly {
             .with_split(
                 split.parse().map_err(|e: String| error("AssemblyError", format!("split: {e}")))?,
             );
-        // What a STEP file was converted to.
+        // The bytes that a STEP file was converted to.
         let read = || match &glb {
             Some(bytes) => read::glb_with(&path, bytes, &options),
             None => read::read(&path, &options),
@@ -368,7 +371,7 @@ impl Assembly {
         self.0.group(&names).or_raise()
     }
 
-    /// The vertices and triangles of all parts, in the world.
+    /// Returns the vertices and triangles of all parts, in the world.
     fn meshes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Surface<'py>>> {
         let mesh = |part: &colltrans_assembly::Part| {
             let solid = part.solid();
@@ -491,7 +494,7 @@ impl Assembly {
         Ok((steps, stages, plan.last, plan.left, stuck, goes, rounds, reverse, seconds, planned))
     }
 
-    #[expect(clippy::type_complexity, reason = "a map has four parts")]
+        #[expect(clippy::type_complexity, reason = "the tuple has the four parts of a map")]
     fn removal_map(
         &self,
         py: Python<'_>,

@@ -16,20 +16,20 @@ use crate::offset::OffsetReport;
 
 /// A convex polyhedron in its own frame: the convex hull of points.
 ///
-/// Built once, asked as often as one likes, from any thread; it never changes. Flat polygons,
-/// segments and points are bodies too.
+/// The body never changes, and any thread can query it any number of times. Flat polygons, segments and
+/// points are bodies too.
 ///
 /// Parameters
 /// ----------
 /// points : array_like of shape (N, 3)
-///     In the body frame, in any unit of length. Interior points are dropped.
+///     Coordinates in the body frame, in any unit of length. Interior points are dropped.
 ///
 /// Raises
 /// ------
 /// BuildError
-///     No points, coordinates that are not finite or out of range.
+///     There are no points, or coordinates are not finite or out of range.
 /// InputError
-///     No array of that shape.
+///     The argument is not an array of that shape.
 ///
 /// Examples
 /// --------
@@ -40,15 +40,16 @@ use crate::offset::OffsetReport;
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct ConvexPolyhedron(
     pub(crate) colltrans::ConvexPolyhedron,
-    /// What was mended when it was read.
+    /// Descriptions of the repairs when the body was read.
     pub(crate) Vec<String>,
-    /// Depth of the dent of its mesh, where it has one and the precision of its file does not explain it.
+    /// Depth of the mesh's surface below the body; `None` if rounding or the precision of the file explains
+    /// it.
     Option<f64>,
 );
 
 impl ConvexPolyhedron {
-    /// Returns the depth of the mesh's surface below the body; `None` if rounding or the precision of its file
-    /// explains this depth.
+    /// Returns the depth of the mesh's surface below the body; `None` if rounding or the precision of its
+    /// file explains this depth.
     pub(crate) const fn dent(&self) -> Option<f64> {
         self.2
     }
@@ -68,7 +69,8 @@ getters!(ConvexPolyhedron, |it| {
     /// ndarray of shape (N, 3): The vertices, in the body frame.
     vertices(py): PyResult<Bound<'py, PyArray2<f64>>> =
         table(py, it.0.vertices().iter().map(DVec3::to_array)).map(read_only);
-    /// ndarray of shape (N,): For each vertex its index in the points or mesh it was made from.
+    /// ndarray of shape (N,): For each vertex its index in the points or the mesh from which the body was
+    /// built.
     input_indices(py): Indices<'py> = ids(py, it.0.input_indices());
     /// list of ndarray: The vertices of each face, counter-clockwise as seen from outside.
     faces(py): Vec<Indices<'py>> = {
@@ -77,14 +79,14 @@ getters!(ConvexPolyhedron, |it| {
     };
     /// int: 3 for a body with a volume, 2 for a flat polygon, 1 for a segment, 0 for a point.
     dimension: u8 = it.0.dimension();
-    /// float: How far from the body an input point lies at most, a length of the size of rounding.
+    /// float: The largest distance of an input point from the body, a length of the order of rounding errors.
     hull_error: f64 = it.0.hull_error();
     /// float: The volume, in the cube of the unit of length.
     volume: f64 = it.0.volume();
-    /// int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
-    /// once they are built (:meth:`prepare`).
+    /// int: Bytes of memory that the body occupies now. The sections for ``solver="cta"`` count once they are
+    /// built (:meth:`prepare`).
     nbytes: usize = it.0.memory_bytes();
-    /// list of str: What was mended when it was read from a file, and by how much its hull exceeds it.
+    /// list of str: Repairs when the body was read from a file, and by how much its hull exceeds the mesh.
     notes: Vec<String> = it.1.clone();
 });
 
@@ -99,17 +101,17 @@ impl ConvexPolyhedron {
         py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self::from)
     }
 
-    /// A closed convex surface.
+    /// Builds the convex hull of a closed convex surface.
     ///
     /// Parameters
     /// ----------
     /// vertices : array_like of shape (N, 3)
-    ///     In the body frame. Those that no face uses are ignored.
+    ///     Coordinates in the body frame. Vertices that no face uses are ignored.
     /// faces : array_like of shape (M, k), or a sequence of sequences
     ///     Vertex indices, counter-clockwise as seen from outside.
     /// convex_tolerance : float
-    ///     How far below the convex hull the surface may lie, a length. Rounding error is
-    ///     tolerated in any case. The hull is what is kept.
+    ///     The maximum depth of the surface below its convex hull, a length. Rounding errors are tolerated in
+    ///     any case. The result is the hull.
     ///
     /// Returns
     /// -------
@@ -118,7 +120,7 @@ impl ConvexPolyhedron {
     /// Raises
     /// ------
     /// BuildError
-    ///     A surface that is open, inside out or not convex, with the place.
+    ///     The surface is open, inside out or not convex. The message names the place.
     ///
     /// Examples
     /// --------
@@ -145,13 +147,13 @@ impl ConvexPolyhedron {
             .map(Self::from)
     }
 
-    /// From a mesh of trimesh, or anything with ``vertices`` and ``faces``: a closed convex surface.
+    /// Builds a body from a closed convex surface with ``vertices`` and ``faces``, such as a trimesh mesh.
     ///
     /// Parameters
     /// ----------
     /// mesh : object
     /// convex_tolerance : float
-    ///     As for :meth:`from_mesh`.
+    ///     See :meth:`from_mesh`.
     ///
     /// Returns
     /// -------
@@ -167,12 +169,12 @@ impl ConvexPolyhedron {
         Self::from_mesh(py, &vertices, &faces, convex_tolerance)
     }
 
-    /// The box between two corners.
+    /// Builds the axis-aligned box between two corners.
     ///
     /// Parameters
     /// ----------
     /// low, high : array_like of shape (3,)
-    ///     Opposite corners. A coordinate in common makes a flat box.
+    ///     Opposite corners. If they share a coordinate, the box is flat.
     ///
     /// Returns
     /// -------
@@ -189,18 +191,18 @@ impl ConvexPolyhedron {
         colltrans::ConvexPolyhedron::cuboid(low, high).or_raise().map(Self::from)
     }
 
-    /// From what `to_json` has written, exact in bits.
+    /// Reads the text that `to_json` wrote. The body has the same bits.
     #[staticmethod]
     fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
         py.detach(|| colltrans::ConvexPolyhedron::from_json(text)).or_raise().map(Self::from)
     }
 
-    /// The body as text: vertices and faces in their order, exact in bits.
+    /// Returns the body as text: vertices and faces in their order, exact in bits.
     fn to_json(&self) -> String {
         self.0.to_json()
     }
 
-    /// Unit normal of a face, outwards, in the body frame.
+    /// Returns the outward unit normal of a face, in the body frame.
     ///
     /// Parameters
     /// ----------
@@ -216,17 +218,17 @@ impl ConvexPolyhedron {
         Ok(row(py, self.0.face_normal(face)))
     }
 
-    /// float: How deep the surface of the mesh that the body was made of lies below the body.
+    /// float: The depth of the surface of the input mesh below the body.
     ///
-    /// 0 for a mesh that is convex to rounding error or to the precision of its file, and for a body that is
-    /// not made of a mesh. Otherwise the mesh is convex only to within the tolerance, and answers are about the
+    /// It is 0 if the mesh is convex up to rounding or the precision of its file, and for a body that was not
+    /// built from a mesh. Otherwise the mesh is convex only within the tolerance, and answers refer to the
     /// hull of its vertices.
     #[getter(dent)]
     fn dent_depth(&self) -> f64 {
         self.dent().unwrap_or_default()
     }
 
-    /// The vertex farthest along a direction.
+    /// Returns the vertex that is farthest along a direction.
     ///
     /// Parameters
     /// ----------
@@ -236,33 +238,33 @@ impl ConvexPolyhedron {
     /// Returns
     /// -------
     /// int
-    ///     One of the farthest, to within rounding error.
+    ///     One of the farthest vertices, up to rounding errors.
     fn support(&self, direction: &Bound<'_, PyAny>) -> PyResult<u32> {
         Ok(self.0.support(vector(direction, "direction")?).0)
     }
 
-    /// What lies at least so deep below every face plane.
+    /// Shrinks the body: returns the points at least ``amount`` below every face plane.
     ///
-    /// Every face plane moves inwards; where a face is too small to stay, the planes around it meet
-    /// without it. Vertices are numbered anew; ``input_indices`` of the result has for each the input
-    /// of the one that it comes from.
+    /// Every face plane moves inwards. If a face vanishes, the planes around it intersect without it. The
+    /// vertices get new numbers; for each of them ``input_indices`` of the result has the input index of the
+    /// vertex that it comes from.
     ///
     /// Parameters
     /// ----------
     /// amount : float
-    ///     A length, not negative. 0 is the body itself, whatever it is.
+    ///     A length, not negative. With 0 the result is the body itself, of any kind.
     ///
     /// Returns
     /// -------
     /// ConvexPolyhedron
     /// OffsetReport
-    ///     How far vertices went, and which faces are gone.
+    ///     The displacement of the vertices, and the faces that vanished.
     ///
     /// Raises
     /// ------
     /// BuildError
-    ///     A body that holds no ball of this radius, with a radius that it does hold; so also a flat
-    ///     polygon, a segment, a point. An amount that is negative or not finite.
+    ///     The body contains no ball of this radius; the message gives a radius that it contains. This
+    ///     includes flat polygons, segments and points. Or the amount is negative or not finite.
     ///
     /// Examples
     /// --------
@@ -281,27 +283,27 @@ impl ConvexPolyhedron {
         Ok((body.into(), report.into()))
     }
 
-    /// What lies at most so far outside every face plane, for a margin to be kept.
+    /// Grows the body: moves every face plane outwards by ``amount``, for a safety margin.
     ///
-    /// Every face plane moves outwards, and edges and corners stay as sharp as they are: all points
-    /// within the amount of the body are in it, and beyond sharp corners more. A flat polygon becomes
-    /// a plate twice as thick as the amount. Vertices are numbered as by :meth:`shrunk`.
+    /// Edges and corners stay sharp. The result contains all points within the amount of the body, and more
+    /// beyond sharp corners. A flat polygon becomes a plate twice as thick as the amount. Vertices are
+    /// numbered as in :meth:`shrunk`.
     ///
     /// Parameters
     /// ----------
     /// amount : float
-    ///     A length, not negative. 0 is the body itself, whatever it is.
+    ///     A length, not negative. With 0 the result is the body itself, of any kind.
     ///
     /// Returns
     /// -------
     /// ConvexPolyhedron
     /// OffsetReport
-    ///     How far vertices went, and which faces are gone.
+    ///     The displacement of the vertices, and the faces that vanished.
     ///
     /// Raises
     /// ------
     /// BuildError
-    ///     A segment or a point, which have no faces. An amount that is negative, not finite, or so
+    ///     The body is a segment or a point, which has no faces. Or the amount is negative, not finite, or so
     ///     large that coordinates leave the exact range.
     ///
     /// Examples
@@ -316,10 +318,10 @@ impl ConvexPolyhedron {
         Ok((body.into(), report.into()))
     }
 
-    /// Builds the planar sections on which ``solver="cta"`` works, unless they are there.
+    /// Builds the planar sections for ``solver="cta"``, unless they exist already.
     ///
-    /// The first cast with that solver builds them otherwise, and takes as much longer. Other solvers
-    /// need nothing of the kind.
+    /// Otherwise the first cast with this solver builds them and takes longer. Other solvers do not need
+    /// them.
     ///
     /// Examples
     /// --------
@@ -348,7 +350,7 @@ impl ConvexPolyhedron {
         Ok(Self(Self::from_json(py, text)?.0, notes, dent))
     }
 
-    /// A picture of it: see :func:`colltrans.show`.
+    /// Draws a picture of the body; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
@@ -378,26 +380,28 @@ impl ConvexPolyhedron {
 /// ----------
 /// path : str or os.PathLike
 /// hull : bool
-///     Take the convex hull of the vertices that faces use, of all if there are no faces.
+///     Whether to take the convex hull of the vertices that faces use, or of all vertices if there are no
+///     faces.
 /// scale : float
-///     Lengths are multiplied by this, after the tolerances, which are in the file's unit.
+///     Lengths are multiplied by this factor, after the tolerances are applied. These are in the unit of the
+///     file.
 /// convex_tolerance : float, optional
-///     How far below its convex hull the surface may lie. By default 1e-5 of its extent.
+///     The maximum depth of the surface below its convex hull. The default is 1e-5 of its extent.
 /// merge_tolerance : float, optional
-///     Up to which distance vertices on open edges are merged. By default a few units in the last
-///     place of the largest coordinate.
+///     Vertices on open edges within this distance are merged. The default is a few units in the last place
+///     of the largest coordinate.
 ///
 /// Returns
 /// -------
 /// ConvexPolyhedron
-///     The same as the command line makes of the file.
+///     The body that the command line makes of the file.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A file that cannot be read, with the place.
+///     The file cannot be read. The message names the place.
 /// BuildError
-///     A mesh that is not convex or not closed; ``hull=True`` takes its hull.
+///     The mesh is not convex or not closed; ``hull=True`` takes its hull.
 #[pyfunction]
 #[pyo3(signature = (path, *, hull=false, scale=1.0, convex_tolerance=None, merge_tolerance=None))]
 pub(crate) fn read(

@@ -1,11 +1,11 @@
-//! Rows answered in bulk, on any number of threads, without the interpreter's lock.
+//! Bulk queries: rows are answered on any number of threads, without the interpreter's lock.
 //!
-//! The rows are cut into chunks, each with its own part of every column; threads take chunks until
-//! none is left. Threads live for one call: a pool that is kept would be lost in a forked process,
-//! and starting a thread costs as much as some ten casts. A row without an answer is one of outcome *error*,
-//! with a message, even if it is a bug that ends it.
+//! The rows are cut into chunks, each with its own part of every column, and threads take chunks until none
+//! is left. Threads live for one call, because a forked process would lose a pool, and because starting a
+//! thread costs only as much as some ten casts. A row without an answer has the outcome *error* and a
+//! message, even if a panic ended it.
 //!
-//! The calling thread looks for signals ten times a second, so that Ctrl-C ends the call.
+//! The calling thread polls for signals ten times a second, so that Ctrl-C ends the call.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,25 +20,25 @@ use crate::arrays::table;
 use crate::columns::{Corners, FEATURES, NO_CORNERS, NUMBERS, Row, VECTORS};
 use crate::errors::error;
 
-/// Rows between two looks at the clock.
+/// Number of rows between two reads of the clock.
 const LOOK: usize = 16;
-/// Time between two looks for signals.
+/// Time between two polls for signals.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// The columns by their names, the names of the outcomes, and the messages by their rows.
+/// The columns by name, the names of the outcomes, and the messages by row.
 pub(crate) type Answered<'py> = (Bound<'py, PyDict>, &'static [&'static str], Bound<'py, PyDict>);
 
-/// Which columns are computed, of how many rows, and how.
+/// The rows, columns and threads of a bulk query.
 pub(crate) struct Plan<'a> {
     pub(crate) rows: usize,
-    /// Rows that a thread takes at a time.
+    /// Number of rows that a thread takes at a time.
     pub(crate) chunk: usize,
     pub(crate) columns: &'a [String],
-    /// Whether features are columns, too.
+    /// Whether to add the columns of features.
     pub(crate) featured: bool,
-    /// The last one is that of a row without an answer.
+    /// Names of the outcomes. The last one is that of a row without an answer.
     pub(crate) outcomes: &'static [&'static str],
-    /// All processors without.
+    /// Number of threads; `None` for all processors.
     pub(crate) threads: Option<usize>,
 }
 
@@ -75,11 +75,11 @@ struct Part<'a> {
     outcome: &'a mut [u8],
     numbers: Vec<&'a mut [f64]>,
     vectors: Vec<&'a mut [[f64; 3]]>,
-    /// None, or of both bodies.
+    /// Empty, or one column for each of the two bodies.
     features: Vec<&'a mut [Corners]>,
 }
 
-/// All columns; those of numbers and vectors with their places in a row.
+/// All columns. `places` has the index of each column of numbers and vectors in a [`Row`].
 struct Columns {
     places: [Vec<usize>; 2],
     outcome: Vec<u8>,
@@ -133,10 +133,10 @@ impl Columns {
     }
 }
 
-/// Rows without an answer, and why.
+/// Rows without an answer, with the reasons.
 type Failures = Mutex<Vec<(usize, String)>>;
 
-/// Fills a chunk, unless `stop` says not to.
+/// Answers the rows of a chunk, until `stop` returns true.
 fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> bool) {
     let Part { first, places, outcome, mut numbers, mut vectors, mut features } = part;
     for i in 0..outcome.len() {
@@ -157,13 +157,13 @@ fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> b
     }
 }
 
-/// Returns the answer of a row, or what is wrong with it, even if a bug ended the search.
+/// Returns the answer of a row or the reason for its absence. A panic becomes a message.
 fn answer_or_bug<T>(answer: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(answer))
         .unwrap_or_else(|_| Err("internal error; please report it".into()))
 }
 
-/// Answers rows that do not become columns, on some threads. The first bad row is raised.
+/// Answers rows that do not become columns, on `threads` threads. Raises the error of the first bad row.
 pub(crate) fn each<T: Send>(
     rows: usize,
     chunk: usize,
@@ -186,9 +186,10 @@ pub(crate) fn each<T: Send>(
     answers.into_iter().flatten().enumerate().map(answer).collect()
 }
 
-/// Works on all parts, on `threads` threads or on all processors.
+/// Processes all parts on `threads` threads, or on all processors.
 ///
-/// After a signal the second argument of `work` returns true, and what the signal raised is returned.
+/// After a signal the second argument of `work` returns true, and the exception of the signal handler is
+/// returned.
 fn on_threads<P: Send>(
     parts: Vec<P>,
     threads: Option<usize>,

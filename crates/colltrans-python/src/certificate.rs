@@ -1,4 +1,4 @@
-//! Proofs, and their checks.
+//! Proofs of casts, and their verification.
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use crate::errors::OrRaise;
 use crate::frozen::{Reduced, getters, match_args, pickled, read, reduced, written};
 use crate::query::Cast;
 
-/// A proof, and what it was made for: to bytes and back.
+/// Defines pickling of a proof with its query.
 macro_rules! of_a_query {
     ($class:ident($($name:literal),*)) => {
         match_args!($class($($name),*));
@@ -32,9 +32,9 @@ macro_rules! of_a_query {
     };
 }
 
-/// The proof of a contact: both bounds of the collision translation, rounded outwards.
+/// The proof of a contact: lower and upper bound of the collision translation, rounded outwards.
 ///
-/// A supporting plane proves the lower bound, three weighted pairs of vertices the upper one.
+/// A supporting plane proves the lower bound, three weighted pairs of vertices prove the upper one.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Certificate {
     pub(crate) proof: colltrans::Certificate,
@@ -46,39 +46,39 @@ of_a_query!(Certificate("lower", "upper"));
 getters!(Certificate, |it| {
     /// float: The proven lower bound, in multiples of the direction.
     lower: f64 = it.proof.lower;
-    /// float: The proven upper bound; infinite where bodies only touch sideways.
+    /// float: The proven upper bound; infinite if the bodies only touch sideways.
     upper: f64 = it.proof.upper;
     /// float: ``upper - lower``.
     gap: f64 = it.proof.gap();
-    /// float: What rounding alone can make of the gap.
+    /// float: The part of the gap that rounding alone can cause.
     rounding: f64 = it.proof.rounding;
     /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.
     normal(py): Vector<'py> = row(py, it.proof.normal);
-    /// ndarray of shape (3, 2): Vertices of the moving and of the fixed body (their own numbers).
+    /// ndarray of shape (3, 2): Pairs of vertex numbers, one of the moving and one of the fixed body.
     pairs(py): PyResult<Bound<'py, PyArray2<u32>>> =
         table(py, it.proof.pairs.map(|pair| [pair.moving.0, pair.fixed.0]));
-    /// ndarray of shape (3,): Weights of the pairs, not negative, of sum 1.
+    /// ndarray of shape (3,): Weights of the pairs, not negative, with sum 1.
     weights(py): Vector<'py> = PyArray1::from_slice(py, &it.proof.weights);
 });
 
 #[pymethods]
 impl Certificate {
-    /// Checks the proof against the two bodies alone.
+    /// Checks the proof with the two bodies alone, without a search.
     ///
     /// Parameters
     /// ----------
     /// query : Cast, optional
-    ///     What it is to be a proof of; by default the query that was answered.
+    ///     The query for which the proof is checked; by default the query that was answered.
     ///
     /// Returns
     /// -------
     /// float
-    ///     The gap that is really proven, in multiples of the direction.
+    ///     The gap that the check proves, in multiples of the direction.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     #[pyo3(signature = (query=None))]
     pub(crate) fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
         let query = query.map_or_else(|| self.query.get(), |cast| cast.get());
@@ -110,22 +110,22 @@ getters!(Separation, |it| {
 
 #[pymethods]
 impl Separation {
-    /// Checks the proof against the two bodies alone.
+    /// Checks the proof with the two bodies alone, without a search.
     ///
     /// Parameters
     /// ----------
     /// query : Cast, optional
-    ///     What it is to be a proof of; by default the query that was answered.
+    ///     The query for which the proof is checked; by default the query that was answered.
     ///
     /// Returns
     /// -------
     /// float
-    ///     The margin that is really proven, a length.
+    ///     The margin that the check proves, a length.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     #[pyo3(signature = (query=None))]
     pub(crate) fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
         let query = query.map_or_else(|| self.query.get(), |cast| cast.get());
@@ -153,12 +153,12 @@ getters!(SolidCertificate, |it| {
 
 #[pymethods]
 impl SolidCertificate {
-    /// The proof as text.
+    /// Returns the proof as text.
     pub(crate) fn to_json(&self) -> String {
         self.0.to_json()
     }
 
-    /// From what `to_json` has written. It is read, not believed.
+    /// Reads the text that `to_json` wrote, without a check of the proof.
     #[staticmethod]
     pub(crate) fn from_json(text: &str) -> PyResult<Self> {
         colltrans::solid::SolidCertificate::from_json(text).or_raise().map(Self)

@@ -1,4 +1,4 @@
-//! Answers about where the moving body is now: how far it can go, how deep it is, whether it meets.
+//! Answers about the start pose of the moving body: clearance, depth, intersection.
 
 use colltrans::glam::DVec3;
 use colltrans::record::{ClearanceRecord, Record};
@@ -11,7 +11,7 @@ use crate::frozen::getters;
 use crate::outcome::{Contact, Grazing, LastContact, contact_text, grazing_text};
 use crate::query::Cast;
 
-/// The moving body can move until it touches.
+/// The moving body can move until it touches the fixed one.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Blocked {
     distance: f64,
@@ -24,9 +24,9 @@ answer!(Blocked("distance", "contact") of Clearance, Cast, |it| {
 });
 
 getters!(Blocked, |it| {
-    /// float: How far it may safely move, in multiples of the direction: never more than it can.
+    /// float: The free travel in multiples of the direction, rounded down.
     distance: f64 = it.distance;
-    /// Contact: What stops it.
+    /// Contact: The contact that stops the body.
     contact(py): Contact = Contact { contact: it.contact, query: it.query(py) };
 });
 
@@ -37,7 +37,7 @@ impl Blocked {
     }
 }
 
-/// The moving body slides along the other one, as far as it likes.
+/// The moving body slides along the fixed one without a limit.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Slides {
     grazing: colltrans::Grazing,
@@ -49,7 +49,7 @@ answer!(Slides("grazing") of Clearance, Cast, |it| Clearance::Free(WhyFree::Slid
 getters!(Slides, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
-    /// Grazing: Along what it slides.
+    /// Grazing: The grazing contact along which the body slides.
     grazing(py): Grazing = Grazing { grazing: it.grazing, query: it.query(py) };
 });
 
@@ -60,7 +60,7 @@ impl Slides {
     }
 }
 
-/// The last contact lies behind, or is here and the moving body leaves it.
+/// The last contact is behind the moving body, or at its start pose with the body moving away.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Behind {
     contact: colltrans::Contact,
@@ -72,7 +72,7 @@ answer!(Behind("contact") of Clearance, Cast, |it| Clearance::Free(WhyFree::Behi
 getters!(Behind, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
-    /// Contact: The last one: the first one of the query turned round.
+    /// Contact: The last contact, which is the first contact of the reversed query.
     contact(py): PyResult<Contact> = last(py, it.contact, &it.query);
 });
 
@@ -83,7 +83,7 @@ impl Behind {
     }
 }
 
-/// The bodies overlap where they are, by more than rounding error.
+/// The bodies overlap at the start by more than rounding error.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Overlapping {
     ends: OverlapAhead,
@@ -93,7 +93,7 @@ pub(crate) struct Overlapping {
 answer!(Overlapping("first", "last") of Clearance, Cast, |it| Clearance::Overlapping(it.ends));
 
 getters!(Overlapping, |it| {
-    /// None: There is none.
+    /// None: An overlap has no clearance.
     distance: Option<f64> = None;
     /// Contact: The first contact, behind.
     first(py): Contact = Contact { contact: it.ends.first, query: it.query(py) };
@@ -109,7 +109,7 @@ impl Overlapping {
     }
 }
 
-/// How far the moving body has to go back until the overlap has ended.
+/// The travel backwards along the direction until an overlap ends.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct DirectionalDepth {
     depth: colltrans::DirectionalDepth,
@@ -119,9 +119,9 @@ pub(crate) struct DirectionalDepth {
 answer!(DirectionalDepth("depth") of colltrans::DirectionalDepth, Cast, |it| it.depth);
 
 getters!(DirectionalDepth, |it| {
-    /// float: In multiples of the direction, never less than the true depth; 0 without overlap.
+    /// float: The depth in multiples of the direction, never less than the true depth; 0 without an overlap.
     depth: f64 = it.depth.depth;
-    /// Blocked or Slides or Behind or Separated or Overlapping: What it follows from.
+    /// Blocked or Slides or Behind or Separated or Overlapping: The clearance that determines the depth.
     clearance(py): PyResult<Bound<'py, PyAny>> = it.depth.clearance.object(it.query.bind(py));
 });
 
@@ -132,7 +132,7 @@ impl DirectionalDepth {
     }
 }
 
-/// Whether the bodies meet where they are: true or false in a condition.
+/// Whether the bodies meet at their poses; converts to a bool.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Intersection {
     found: colltrans::Intersection,
@@ -142,11 +142,11 @@ pub(crate) struct Intersection {
 answer!(Intersection("meets") of colltrans::Intersection, Cast, |it| it.found);
 
 getters!(Intersection, |it| {
-    /// bool: Whether they have a point in common, to within rounding error.
+    /// bool: Whether the bodies have a common point, up to rounding error.
     meets: bool = it.found.meets;
-    /// ndarray of shape (3,): The direction between the centres, of the cast that found out.
+    /// ndarray of shape (3,): The direction between the centres, along which a cast decided the answer.
     direction(py): Vector<'py> = row(py, it.found.evidence.direction);
-    /// Contact or Grazing or Separated: What that cast found.
+    /// Contact or Grazing or Separated: The outcome of that cast.
     outcome(py): PyResult<Bound<'py, PyAny>> =
         it.found
             .evidence
@@ -165,12 +165,12 @@ impl Intersection {
     }
 }
 
-/// A last contact, which is the first one of the query turned round.
+/// Builds the last contact, which is the first contact of the reversed query.
 fn last(py: Python<'_>, contact: colltrans::Contact, query: &Py<Cast>) -> PyResult<Contact> {
     Ok(Contact { contact, query: Py::new(py, query.get().reversed(py))? })
 }
 
-/// The query that found out whether bodies meet.
+/// Builds the query along the direction that decided whether the bodies meet.
 fn along<'py>(query: &Bound<'py, Cast>, direction: DVec3) -> PyResult<Bound<'py, Cast>> {
     Bound::new(query.py(), query.get().along(query.py(), direction))
 }

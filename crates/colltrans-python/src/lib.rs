@@ -1,19 +1,18 @@
-//! The extension module of the Python package `colltrans`: thin conversions, nothing is computed here.
+//! The extension module of the Python package `colltrans`. It only converts between Python and the library.
 //!
-//! Each file uses only those before it:
+//! Each group of files uses only the groups before it:
 //!
-//! 1. `errors` (the library's errors as exceptions), `arrays` (numbers in and out), `pose`, `frozen` (what
-//!    frozen classes have in common);
+//! 1. `errors` (errors of the library as exceptions), `arrays` (conversion of numbers), `pose`, `frozen`
+//!    (shared parts of frozen classes);
 //! 2. bodies: `offset` (reports), `body`, `solid`;
-//! 3. queries as values: `query` between convex bodies, `solid_cast` between solids, `pair` without a
-//!    direction;
-//! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
-//!    `solid_answer`, `distance`, `directions`, `ways`, `motion` (queries and answers about bodies that turn);
-//! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `rows`, `repeats`,
-//!    `columns`, `bulk` and `many` (in bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
-//!    `assembly` (many parts), `robot` (links on paths of joints).
+//! 3. queries as values: `query` (convex bodies), `solid_cast` (solids), `pair` (without a direction);
+//! 4. answers: `certificate`, `features`, `answer` (shared parts), `outcome`, `clearance`, `solid_answer`,
+//!    `distance`, `directions`, `ways`, `motion` (queries and answers for bodies that turn);
+//! 5. entry points: `questions` (functions and methods of queries), `tracker` (sequences), `rows`, `repeats`,
+//!    `columns`, `bulk` and `many` (bulk queries), `obstacles` with `scene` and `scene_answers` (one body
+//!    among many), `assembly` (many parts), `robot` (links on joint paths).
 //!
-//! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
+//! The package itself is in `python/`. Its stub `_colltrans.pyi` has the types.
 
 mod answer;
 mod arguments;
@@ -51,7 +50,7 @@ mod solver;
 mod tracker;
 mod ways;
 
-/// The module.
+/// The extension module.
 #[pyo3::pymodule(gil_used = false)]
 mod _colltrans {
     #[pymodule_export]

@@ -189,7 +189,7 @@ def test_what_a_query_was_can_be_asked() -> None:
         ({"direction": [np.inf, 0, 0]}, "not finite"),
         ({"graze_tolerance": -1.0}, "the graze tolerance -1 is negative"),
         ({"graze_tolerance": np.nan}, "graze tolerance"),
-        ({"solver": "newton"}, 'no solver "newton": auto, cta or portal'),
+        ({"solver": "newton"}, 'unknown solver "newton"; known solvers: auto, cta, portal'),
     ],
 )
 def test_queries_that_are_refused(arguments: dict[str, Any], match: str) -> None:

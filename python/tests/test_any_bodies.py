@@ -54,7 +54,7 @@ def test_choices_of_the_other_kind_are_refused() -> None:
         clearance(CUBE, CUBE, DOWN, tolerance=1e-6)  # type: ignore[call-overload]
     with pytest.raises(QueryError, match="graze_tolerance and solver are for convex bodies"):
         intersects(CUBE, PLATE, DOWN, graze_tolerance=1e-6)  # type: ignore[call-overload]
-    with pytest.raises(QueryError, match="no solver"):
+    with pytest.raises(QueryError, match="unknown solver"):
         clearance(CUBE, PLATE, DOWN, solver="newton")  # type: ignore[call-overload]
     with pytest.raises(TypeError, match="fixed: neither a ConvexPolyhedron nor a Solid, but str"):
         clearance(CUBE, "cube", DOWN)  # type: ignore[call-overload]

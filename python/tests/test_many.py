@@ -110,7 +110,7 @@ def test_bad_rows_are_errors_and_lose_nothing() -> None:
         ({"moving_index": [0, 0], "fixed_index": [0, 0, 0]}, "2 rows.*3 rows"),
         ({"threads": 0}, "threads: 0"),
         ({"threads": 1.5}, "threads: 1.5"),
-        ({"solver": "newton"}, "no solver"),
+        ({"solver": "newton"}, "unknown solver"),
     ],
 )
 def test_arrays_that_do_not_go_together(arguments: dict[str, Any], match: str) -> None:

@@ -1,6 +1,6 @@
-//! Columns of answers in bulk: their names, and how each is taken from an answer.
+//! Columns of bulk answers: their names, and the conversion of an answer to a row.
 //!
-//! Which columns a question has is listed in Python, by the classes of its answers (`colltrans.columns`, ...).
+//! The classes of answers in Python list the columns of each question (`colltrans.columns`, ...).
 
 use colltrans::record::{
     Ending, FeatureRecord, FeaturesRecord, MotionRecord, Record, StartOverlapRecord,
@@ -14,25 +14,25 @@ use pyo3::prelude::*;
 use crate::arrays::coordinates;
 use crate::repeats::By;
 
-/// The numbers of an answer; NaN where there is none.
+/// The values of an answer; NaN for a missing number.
 #[derive(Clone, Copy)]
-pub(crate) struct Row {
+An index into the outcomes of the question.
     /// An index into the question's outcomes.
     pub(crate) outcome: u8,
     pub(crate) numbers: [f64; NUMBERS.len()],
     pub(crate) vectors: [[f64; 3]; VECTORS.len()],
-    /// The features of both bodies, if they are asked for.
+    /// The features of both bodies, if the features are requested.
     pub(crate) features: [Corners; 2],
 }
 
-/// The first vertices of a feature, by the numbers of the input: one of a vertex, two of an edge, three of a face;
-/// -1 where there is none.
+/// The first vertices of a feature, as numbers of the input: one for a vertex, two for an edge, three for a
+/// face; -1 for the remaining entries.
 pub(crate) type Corners = [i64; 3];
 pub(crate) const NO_CORNERS: Corners = [-1; 3];
 /// The names of the columns of features.
 pub(crate) const FEATURES: [&str; 2] = ["moving_feature", "fixed_feature"];
 
-/// Declares columns: for each its place in a row, and all names in the order of their places.
+/// Declares columns: a constant with the index of each one in a row, and a list of all names in this order.
 macro_rules! columns {
     ($(#[$documentation:meta])* $names:ident, $places:ident: $($place:ident = $name:literal,)*) => {
         $(#[$documentation])*
@@ -77,7 +77,7 @@ columns! {
     DIRECTION = "direction",
 }
 
-/// Which question is asked of every row.
+/// The question that is answered for every row.
 #[derive(Clone, Copy)]
 pub(crate) enum Question {
     Contact,
@@ -105,7 +105,7 @@ impl Question {
         }
     }
 
-    /// The names of the outcomes, by their numbers; the last is *error*.
+    /// Returns the names of the outcomes, in the order of their numbers. The last one is *error*.
     pub(crate) fn outcomes(self) -> &'static [&'static str] {
         match self {
             Self::Contact | Self::Range => &["contact", "grazing", "separated", "error"],
@@ -120,7 +120,7 @@ impl Question {
         }
     }
 
-    /// `featured`: with the features that touch.
+    /// Answers a question that has a direction, and adds the features in contact if `featured` is set.
     pub(crate) fn ask<'a>(
         self,
         cast: &Cast<'a>,
@@ -141,7 +141,7 @@ impl Question {
                 }
                 ContactRange::Separated(separated) => Row::separated(2, &separated),
             },
-            // The others have no direction.
+            // The other questions have no direction and do not reach this function.
             _ => Row::clearance(&by.clearance(cast)?, cast, featured),
         })
     }
@@ -165,7 +165,7 @@ impl Row {
         self
     }
 
-    /// Of bodies where they are.
+    /// Converts the record of a question about two bodies at fixed poses.
     pub(crate) fn of_record(question: Question, record: &Record) -> Self {
         let row = Self::ended(question, record.outcome());
         match record {
@@ -179,12 +179,12 @@ impl Row {
                 .bounded(of.lower, of.upper)
                 .parted_by(&of.start_overlaps)
                 .at(DIRECTION, of.direction),
-            // Asked of other rows.
+            // Records of other questions have no columns here.
             _ => row,
         }
     }
 
-    /// Of bodies that move.
+    /// Converts the record of a motion.
     pub(crate) fn of_motion(question: Question, of: &MotionRecord) -> Self {
         Self::ended(question, of.outcome)
             .bounded(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
@@ -254,7 +254,8 @@ impl Row {
             Clearance::Free(WhyFree::Slides(grazing)) => {
                 of(1, &grazing.contact).with(OVERLAP, grazing.overlap)
             }
-            // The last contact is the first one of the way back, whose bounds are not this way's.
+            // The last contact is the first one of the reversed cast, so its bounds do not apply to this
+            // direction.
             Clearance::Free(WhyFree::Behind(last)) => Self {
                 numbers: Self::NONE.with(ROUNDING, last.certificate.rounding).numbers,
                 ..Self::of(2, last, &cast.reversed(), featured)
@@ -270,7 +271,7 @@ impl Row {
     }
 }
 
-/// The first of a feature's vertices.
+/// Returns the first three vertices of a feature.
 fn corners(vertices: impl IntoIterator<Item = InputVertex>) -> Corners {
     let mut corners = NO_CORNERS;
     for (corner, vertex) in corners.iter_mut().zip(vertices) {

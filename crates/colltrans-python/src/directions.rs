@@ -1,4 +1,4 @@
-//! All directions along which a body leaves another one.
+//! All directions along which one body can leave another.
 
 use std::path::PathBuf;
 
@@ -14,13 +14,13 @@ use pyo3::prelude::*;
 
 use crate::answer::save;
 use crate::arrays::points;
-use crate::errors::{OrRaise, error};
+use crate::errors::{OrRaise, error, input};
 use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 use crate::solid_cast::{patiently, placed_bodies};
 
-/// All directions along which a body can leave another one, proven: see :func:`free_directions`.
+/// All directions along which one body can leave another, with proofs; see :func:`free_directions`.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct FreeDirections {
     bodies: [Piece; 2],
@@ -30,7 +30,7 @@ pub(crate) struct FreeDirections {
     record: FreeRecord,
 }
 
-/// What was asked, without the answer.
+/// The arguments of the query.
 struct Question {
     bodies: [Piece; 2],
     poses: [colltrans::Pose; 2],
@@ -53,7 +53,7 @@ fn raised(what: FreeError) -> PyErr {
 }
 
 impl FreeDirections {
-    /// Asks the library's own answer about each of some directions.
+    /// Evaluates a query of the library's answer for each direction.
     fn each<T>(
         &self,
         directions: &Bound<'_, PyAny>,
@@ -68,7 +68,7 @@ impl FreeDirections {
 }
 
 impl Question {
-    /// With the tolerance that the files ask for, if none is given.
+    /// Chooses the tolerance from the precision of the files, if none is given.
     fn settled(mut self) -> PyResult<Self> {
         let [moving, fixed] = placed(&self.bodies, &self.poses)?;
         let precisions = [0, 1].map(|k| self.bodies[k].precision());
@@ -92,32 +92,32 @@ impl Question {
 placed_bodies!(FreeDirections);
 
 getters!(FreeDirections, |it| {
-    /// str: ``"free"`` if some directions are, ``"blocked"`` if none is, which is proven, ``"undecided"`` if
-    /// none is known to be and not all are known.
+    /// str: ``"free"`` if some directions are free, ``"blocked"`` if it is proven that none is,
+    /// ``"undecided"`` if no direction is known to be free and some are undecided.
     outcome: &'static str = it.record.outcome.name();
-    /// tuple of (float, float): The share of all directions that is free, at least and at most, without
-    /// what is undecided.
+    /// tuple of (float, float): Lower and upper bound of the share of all directions that is free, without
+    /// the undecided ones.
     free_share: (f64, f64) = it.record.free_share.unwrap_or_default().into();
-    /// float: At most this share of all directions is not known.
+    /// float: An upper bound of the share of directions that are undecided.
     undecided_share: f64 = it.record.undecided_share.unwrap_or_default();
-    /// float: The tolerance that was used, a length: both bodies are shrunk by half of it.
+    /// float: The tolerance that was used, a length. Each body is shrunk by half of it.
     tolerance: f64 = it.proof.tolerance;
     /// list of dict: Connected regions, the largest first: ``share``, ``center``, ``corners`` and the convex
-    /// ``pieces`` that together are it.
+    /// ``pieces`` that form the region.
     regions(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.regions);
-    /// list of dict: Arcs of free directions beside which there is no region, exactly: each goes
-    /// counterclockwise around the ``normal`` of its ``plane``, from the first of its ``ends`` (points; none
-    /// of a whole circle) to the second, through the directions ``along``.
+    /// list of dict: Arcs of free directions that border no region, exactly. Each arc runs counterclockwise
+    /// around the ``normal`` of its ``plane``, from the first of its ``ends`` (points; None for a whole
+    /// circle) to the second, through the directions ``along``.
     arcs(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.arcs);
-    /// list of dict: Free directions with no other beside them: the ``direction``, rounded, and two
-    /// ``planes``, each with its ``normal`` and what it is ``of``: two ``triangles``, and three ``vertices``
-    /// that span it. The direction is exactly along the vector product of the normals.
+    /// list of dict: Isolated free directions: the ``direction``, rounded, and two ``planes``. Each plane has
+    /// its ``normal`` and its origin ``of``: two ``triangles``, and three ``vertices`` that span it. The
+    /// exact direction is the vector product of the normals.
     points(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.points);
 });
 
 #[pymethods]
 impl FreeDirections {
-    /// What is said of directions.
+    /// Classifies directions.
     ///
     /// Parameters
     /// ----------
@@ -127,7 +127,7 @@ impl FreeDirections {
     /// Returns
     /// -------
     /// list of str
-    ///     ``"free"``, ``"blocked"`` or ``"undecided"`` of each.
+    ///     ``"free"``, ``"blocked"`` or ``"undecided"`` for each direction.
     fn says(&self, py: Python<'_>, directions: &Bound<'_, PyAny>) -> PyResult<Vec<&'static str>> {
         let directions = points(directions, "directions")?;
         py.detach(|| {
@@ -146,12 +146,12 @@ impl FreeDirections {
         })
     }
 
-    /// Whether directions are that of a point, exactly.
+    /// Checks whether directions equal an isolated direction exactly.
     ///
     /// Parameters
     /// ----------
     /// number : int
-    ///     Which of :attr:`points`.
+    ///     An index into :attr:`points`.
     /// directions : array_like of shape (N, 3)
     ///     Of any length.
     ///
@@ -165,12 +165,12 @@ impl FreeDirections {
         self.each(directions, |free, d| free.is_at(point, d))
     }
 
-    /// Whether directions are on an arc or at one of its ends, exactly.
+    /// Checks whether directions are on an arc or at one of its ends, exactly.
     ///
     /// Parameters
     /// ----------
     /// number : int
-    ///     Which of :attr:`arcs`.
+    ///     An index into :attr:`arcs`.
     /// directions : array_like of shape (N, 3)
     ///     Of any length.
     ///
@@ -184,12 +184,12 @@ impl FreeDirections {
         self.each(directions, |free, d| free.is_on(arc, d))
     }
 
-    /// Checks what is said of every cell of the sphere, without a search.
+    /// Checks the proof for every cell of the sphere, without a search.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
             let [moving, fixed] = placed(&self.bodies, &self.poses)?;
@@ -198,7 +198,7 @@ impl FreeDirections {
         })
     }
 
-    /// What it says, as plain Python: the fields of ``colltrans directions --json``, with the same bits.
+    /// Returns the answer as plain Python: the fields of ``colltrans directions --json``, with the same bits.
     ///
     /// Returns
     /// -------
@@ -207,8 +207,10 @@ impl FreeDirections {
         plain(py, &self.record)
     }
 
-    /// The proof, with all that it is about, as text: the file of ``--save-proof``, which ``colltrans
-    /// verify`` and ``python -m colltrans.check`` check. The question is asked once more for it.
+    /// Returns the proof with everything that it refers to, as text.
+    ///
+    /// The text is a file of ``--save-proof``, which ``colltrans verify`` and ``python -m colltrans.check``
+    /// check.
     ///
     /// Returns
     /// -------
@@ -224,7 +226,7 @@ impl FreeDirections {
         })
     }
 
-    /// Writes :meth:`proof_json` as a file.
+    /// Writes :meth:`proof_json` to a file.
     ///
     /// Parameters
     /// ----------
@@ -240,20 +242,21 @@ impl FreeDirections {
     }
 }
 
-/// Along which directions can a body leave another one? All of them, proven.
+/// Finds all directions along which one body can leave another, with proofs.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : Solid or ConvexPolyhedron
-///     The body that moves, and the one that does not; closed.
+///     The moving and the fixed body, both closed.
 /// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
+///     Poses of the bodies in the world; see :class:`Pose`.
 /// tolerance, ignore_start_overlaps
-///     As of :class:`SolidCast`: a direction is free exactly where its clearance says so.
+///     See :class:`SolidCast`. A direction is free exactly if its clearance is free.
 /// depth : int
-///     How often the sides of a cube of directions are halved, at most; no more than 50.
+///     The maximum number of times that the sides of a cube of directions are halved; at most 50.
 /// looks : int
-///     How many pairs of boxes are looked at, at most; what is not decided by then stays undecided.
+///     The maximum number of pairs of boxes that are visited. Directions that are not decided by then stay
+///     undecided.
 ///
 /// Returns
 /// -------
@@ -262,7 +265,7 @@ impl FreeDirections {
 /// Raises
 /// ------
 /// QueryError
-///     Bodies that are open, or overlap where they are.
+///     A body is open, or the bodies overlap at their poses.
 ///
 /// Examples
 /// --------
@@ -291,7 +294,7 @@ pub(crate) fn free_directions(
     looks: u64,
 ) -> PyResult<FreeDirections> {
     if depth > 50 {
-        return Err(error("InputError", format!("depth: at most 50, not {depth}")));
+        return Err(input("depth", format_args!("{depth} is out of range; accepted: at most 50")));
     }
     let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];

@@ -1,4 +1,4 @@
-//! Answers about bodies where they are: how far apart, how deep, whether closer than a length.
+//! Answers about two bodies at fixed poses: distance, depth, comparison of the distance with a length.
 
 use colltrans::glam::DVec3;
 use colltrans::record::{DistanceRecord, PairAnswer, PairQuestion, Record};
@@ -17,14 +17,14 @@ use crate::pair::{Of, Pair};
 
 type DistanceOf = Of<colltrans::Distance, colltrans::Distance<Solid>>;
 
-/// A comparison with a length.
+/// The answer whether the distance is less than a length.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct WithinOf {
     length: f64,
     found: Of<(colltrans::Within, colltrans::Steps), (colltrans::Within<Solid>, SolidSteps)>,
 }
 
-/// How far two bodies are apart, and where they are nearest: ``lower <= true distance <= upper``.
+/// The distance of two bodies and their nearest points: ``lower <= true distance <= upper``.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Distance {
     found: DistanceOf,
@@ -33,7 +33,7 @@ pub(crate) struct Distance {
 
 answer!(Distance("lower", "upper") of DistanceOf, Pair, |it| it.found);
 
-/// What is read of either kind.
+/// Evaluates an expression for convex bodies or for solids.
 macro_rules! either {
     ($of:expr, $found:ident => $value:expr) => {
         match &$of {
@@ -44,21 +44,19 @@ macro_rules! either {
 }
 
 getters!(Distance, |it| {
-    /// float: The bodies are not nearer; 0 if they meet, or are less apart than rounding can tell.
+    /// float: A lower bound of the distance; 0 if the bodies meet or are closer than rounding errors.
     lower: f64 = either!(it.found, found => found.lower);
-    /// float: They are not farther; 0 where they are proven to meet.
+    /// float: An upper bound of the distance; 0 if the bodies are proven to meet.
     upper: f64 = either!(it.found, found => found.upper);
-    /// ndarray of shape (3,): The point of the moving body that is nearest to the fixed one, in the
-    /// world.
+    /// ndarray of shape (3,): The point of the moving body that is nearest to the fixed one, in the world.
     on_moving(py): Vector<'py> = row(py, either!(it.found, found => found.on_moving));
-    /// ndarray of shape (3,): The point of the fixed body that is nearest to the moving one, in the
-    /// world.
+    /// ndarray of shape (3,): The point of the fixed body that is nearest to the moving one, in the world.
     on_fixed(py): Vector<'py> = row(py, either!(it.found, found => found.on_fixed));
     /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one; None
     /// if they meet.
     normal(py): Option<Vector<'py>> =
         either!(it.found, found => found.normal).map(|normal| row(py, normal));
-    /// Features or None: What of each body faces the other one; None if they meet.
+    /// Features or None: The nearest feature of each body; None if they meet.
     features: PyResult<Option<Features>> = {
         let query = it.query.get();
         let features = either!(it.found, found => found.features);
@@ -68,7 +66,7 @@ getters!(Distance, |it| {
             fixed: Feature::of(fixed, pair.fixed()),
         })))
     };
-    /// Steps or None: Work done; None of solids.
+    /// Steps or None: Number of steps of the search; None for solids.
     steps: Option<Steps> = match it.found {
         Of::Convex(found) => Some(Steps(found.steps)),
         Of::Solids(_) => None,
@@ -77,12 +75,12 @@ getters!(Distance, |it| {
 
 #[pymethods]
 impl Distance {
-    /// Checks the proof against the bodies alone; between solids they are asked once more for it.
+    /// Checks the proof with the bodies alone. Between solids the query runs again to build the proof.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         proof_of(&self.found, self.query.bind(py))?.check().map(drop).or_raise()
     }
@@ -93,7 +91,7 @@ impl Distance {
     }
 }
 
-/// The shortest translation that parts two convex bodies: ``lower <= true depth <= upper``.
+/// The shortest translation that separates two convex bodies: ``lower <= true depth <= upper``.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Depth {
     depth: colltrans::Depth,
@@ -103,26 +101,27 @@ pub(crate) struct Depth {
 answer!(Depth("lower", "upper", "direction") of PairAnswer, Pair, |it| PairAnswer::Depth(it.depth.clone()));
 
 getters!(Depth, |it| {
-    /// float: After any shorter translation they overlap; 0 if they are apart, touch, or are flat.
+    /// float: After any shorter translation the bodies overlap; 0 if they are apart, touch, or are flat.
     lower: f64 = it.depth.lower;
-    /// float: After a translation of this length along ``direction`` they do not; 0 if they are apart.
+    /// float: After a translation of this length along ``direction`` they do not overlap; 0 if they are
+    /// apart.
     upper: f64 = it.depth.upper;
-    /// ndarray of shape (3,): Unit vector, in the world, along which the moving body leaves.
+    /// ndarray of shape (3,): Unit vector in the world, along which the moving body leaves the fixed one.
     direction(py): Vector<'py> = row(py, it.depth.direction);
-    /// ndarray of shape (3,): The translation of the moving body that parts the bodies.
+    /// ndarray of shape (3,): The translation of the moving body that separates the bodies.
     translation(py): Vector<'py> = row(py, it.depth.translation());
-    /// Steps: Work done.
+    /// Steps: Number of steps of the search.
     steps: Steps = Steps(it.depth.steps);
 });
 
 #[pymethods]
 impl Depth {
-    /// Checks the proof against the bodies alone.
+    /// Checks the proof with the bodies alone.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self) -> PyResult<()> {
         match self.query.get().asked()? {
             Of::Convex(pair) => pair.verify(&self.depth).or_raise().map(|_| ()),
@@ -137,7 +136,7 @@ impl Depth {
     }
 }
 
-/// How deep two solids overlap, by the measure that they have.
+/// The overlap of two solids, measured by the tolerance that removes it.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct OverlapDepth {
     depth: colltrans::solid::OverlapDepth,
@@ -147,10 +146,10 @@ pub(crate) struct OverlapDepth {
 answer!(OverlapDepth("meets", "least_tolerance") of PairAnswer, Pair, |it| PairAnswer::OverlapDepth(it.depth));
 
 getters!(OverlapDepth, |it| {
-    /// bool: Whether they have a point in common, decided exactly.
+    /// bool: Whether the solids have a common point, decided exactly.
     meets: bool = it.depth.meets;
-    /// float or None: The least tolerance with which they would not overlap: 0 if they do not, None if
-    /// there is none.
+    /// float or None: The smallest tolerance at which the solids no longer overlap. It is 0 if they do not
+    /// overlap, and None if no tolerance separates them.
     least_tolerance: Option<f64> = it.depth.least_tolerance;
 });
 
@@ -180,10 +179,10 @@ impl Within {
 }
 
 getters!(Within, |it| {
-    /// float: The length.
+    /// float: The length that is compared with the distance.
     length: f64 = it.found.length;
-    /// bool or None: Whether they are; None where the length lies between the bounds of the distance, a few
-    /// roundings apart.
+    /// bool or None: Whether the bodies are closer; None if the length is between the bounds of the distance,
+    /// which differ by a few rounding errors.
     closer: Option<bool> = {
         use colltrans::Within::{Closer, Farther, Undecided};
         either!(it.found.found, found => match found.0 {
@@ -192,17 +191,17 @@ getters!(Within, |it| {
             Undecided(_) => None,
         })
     };
-    /// float or None: The bodies are not nearer, where that was found out.
+    /// float or None: A lower bound of the distance, if the search computed one.
     lower(py): PyResult<Option<f64>> = Ok(it.told(py)?.lower);
-    /// float or None: They are not farther, where that was found out.
+    /// float or None: An upper bound of the distance, if the search computed one.
     upper(py): PyResult<Option<f64>> = Ok(it.told(py)?.upper);
-    /// tuple of (ndarray, ndarray) or None: Points of the moving and of the fixed body, in the world, that
-    /// are ``upper`` apart.
+    /// tuple of (ndarray, ndarray) or None: Points of the moving and of the fixed body, in the world, at the
+    /// distance ``upper``.
     points(py): PyResult<Option<[Vector<'py>; 2]>> = {
         let points = it.told(py)?.points;
         Ok(points.map(|points| points.map(|point| row(py, DVec3::from_array(point)))))
     };
-    /// Steps or None: Work done; None of solids.
+    /// Steps or None: Number of steps of the search; None for solids.
     steps: Option<Steps> = match it.found.found {
         Of::Convex((_, steps)) => Some(Steps(steps)),
         Of::Solids(_) => None,
@@ -211,12 +210,12 @@ getters!(Within, |it| {
 
 #[pymethods]
 impl Within {
-    /// Checks the proof against the bodies alone; between solids they are asked once more for it.
+    /// Checks the proof with the bodies alone. Between solids the query runs again to build the proof.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         within_proof(&self.found, self.query.bind(py))?.check().map(drop).or_raise()
     }
@@ -245,7 +244,7 @@ fn within_proof(of: &WithinOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> {
     }
 }
 
-/// An answer that is not of the bodies that it comes with.
+/// Builds the error for an answer that does not belong to the bodies of its query.
 fn other_bodies() -> PyErr {
     error("CaseError", "an answer of other bodies")
 }
@@ -302,7 +301,7 @@ impl Answer for WithinOf {
     }
 }
 
-/// A depth, of either kind.
+/// A depth of convex bodies or of solids.
 impl Answer for PairAnswer {
     type Query = Pair;
 
@@ -335,7 +334,7 @@ impl Answer for PairAnswer {
     }
 }
 
-/// The distance.
+/// Computes the distance.
 pub(crate) fn distance_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
     let found: DistanceOf = Pair::ask(query, false, |pair| {
         Ok(match pair {
@@ -346,7 +345,7 @@ pub(crate) fn distance_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, 
     found.object(query)
 }
 
-/// The depth of either kind.
+/// Computes the depth of convex bodies, or the overlap of solids.
 pub(crate) fn depth_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
     let found: PairAnswer = Pair::ask(query, true, |pair| {
         Ok(match pair {
@@ -357,7 +356,7 @@ pub(crate) fn depth_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyA
     found.object(query)
 }
 
-/// Whether the bodies are closer than a length.
+/// Checks whether the bodies are closer than a length.
 pub(crate) fn within_of<'py>(query: &Bound<'py, Pair>, length: f64) -> PyResult<Bound<'py, PyAny>> {
     let found = Pair::ask(query, false, move |pair| {
         Ok(match pair {

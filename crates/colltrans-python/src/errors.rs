@@ -1,7 +1,7 @@
-//! The library's errors as the exceptions of `colltrans.errors`, in the library's words.
+//! Converts errors of the library to the exceptions of `colltrans.errors`, with the same messages.
 //!
-//! The exceptions are classes of Python, because they have two bases: the package's own and the one
-//! of Python that a caller would expect.
+//! The exceptions are Python classes, because each has two bases: the base class of the package, and the
+//! built-in exception that a caller would expect.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -17,7 +17,7 @@ use colltrans_mesh::body::{LoadError, Refused, Take};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-/// The exception called `class`, with a message.
+/// Builds the exception of the class called `class`, with a message.
 pub(crate) fn error(class: &str, message: impl Display) -> PyErr {
     Python::attach(|py| match class_called(py, class) {
         Ok(class) => PyErr::from_type(class, message.to_string()),
@@ -25,7 +25,7 @@ pub(crate) fn error(class: &str, message: impl Display) -> PyErr {
     })
 }
 
-/// Something is wrong with the argument called `name`.
+/// Builds the exception for an invalid argument called `name`.
 pub(crate) fn input(name: &str, what: impl Display) -> PyErr {
     error("InputError", format_args!("{name}: {what}"))
 }
@@ -34,7 +34,7 @@ fn class_called<'py>(py: Python<'py>, class: &str) -> PyResult<Bound<'py, PyType
     Ok(py.import("colltrans.errors")?.getattr(class)?.cast_into()?)
 }
 
-/// A search without an answer, with the query to be replayed.
+/// Builds the exception for a failed query. A search that did not converge carries the query for a replay.
 pub(crate) fn query_error(what: &QueryError, case: impl FnOnce() -> String) -> PyErr {
     if !matches!(what, QueryError::NotConverged { .. }) {
         return error("QueryError", what);
@@ -46,9 +46,9 @@ pub(crate) fn query_error(what: &QueryError, case: impl FnOnce() -> String) -> P
     })
 }
 
-/// Errors that become an exception.
+/// An error of the library that becomes an exception.
 pub(crate) trait Raised: Display {
-    /// Returns the name of its class.
+    /// Returns the name of the exception class.
     fn class(&self) -> &'static str;
 }
 
@@ -77,7 +77,7 @@ impl Raised for ReadError {
     }
 }
 
-/// What was computed, or an exception.
+/// A result whose error becomes an exception.
 pub(crate) trait OrRaise<T> {
     fn or_raise(self) -> PyResult<T>;
 }
@@ -127,7 +127,7 @@ fn calls_instead(refused: &Refused) -> Option<String> {
     Some(calls.collect::<Vec<_>>().join(", ")).filter(|calls| !calls.is_empty())
 }
 
-/// Warns that a rotation of few digits was replaced by the nearest one.
+/// Warns that a rotation with few digits was replaced by the nearest rotation.
 pub(crate) fn warn_of_rounded_pose(py: Python<'_>, name: &str, defect: f64) -> PyResult<()> {
     let message = format!(
         "{name}: the rotation is off one by {defect:.1e}; the nearest rotation is used, and a \

@@ -1,4 +1,4 @@
-//! The work done for an answer, and the features that touch.
+//! The step counts of an answer, and the features in contact.
 
 use std::borrow::Cow;
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::Indices;
 use crate::frozen::{getters, match_args, pickled};
 
-/// Work done for one answer.
+/// Step counts of the search for one answer.
 #[pyclass(frozen, module = "colltrans")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Steps(pub(crate) colltrans::Steps);
@@ -18,17 +18,17 @@ pub(crate) struct Steps(pub(crate) colltrans::Steps);
 pickled!(Steps, Feature, Features);
 
 getters!(Steps, |it| {
-    /// int: Planar problems solved.
+    /// int: Number of planar problems that were solved.
     planar_problems: u32 = it.0.planar_problems;
-    /// int: Supporting planes computed.
+    /// int: Number of supporting planes that were computed.
     supports: u32 = it.0.supports;
-    /// int: Portals visited.
+    /// int: Number of portals that were visited.
     pivots: u32 = it.0.pivots;
-    /// int: Iterations of inner loops.
+    /// int: Number of iterations of inner loops.
     iterations: u32 = it.0.iterations;
-    /// int: Sides that the region of section levels had at most; 0 if there was none.
+    /// int: Maximum number of sides of the region of section levels; 0 if there was no region.
     region_sides: u32 = it.0.region_sides;
-    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
+    /// str: The start of the search: ``"scratch"``, or with a tracker ``"features"`` or ``"region"``.
     started_from: &'static str = it.0.started_from.name();
 });
 
@@ -45,7 +45,7 @@ impl Steps {
     }
 }
 
-/// A vertex, an edge or a face.
+/// A vertex, an edge or a face of a body.
 #[pyclass(frozen, module = "colltrans")]
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Feature {
@@ -56,7 +56,7 @@ pub(crate) struct Feature {
 match_args!(Feature("kind", "vertices"));
 
 impl Feature {
-    /// By the numbers of the input.
+    /// Converts a feature, with the vertex numbers of the input.
     pub(crate) fn of<B: Body>(feature: colltrans::Feature, body: &B) -> Self {
         Self {
             kind: feature.kind().into(),
@@ -68,7 +68,8 @@ impl Feature {
 getters!(Feature, |it| {
     /// str: ``"vertex"``, ``"edge"`` or ``"face"``.
     kind: &str = &it.kind;
-    /// ndarray: Its vertices, by the numbers of the points or the mesh that the body was made from.
+    /// ndarray: The vertices of the feature, as indices of the points or the mesh from which the body was
+    /// built.
     vertices(py): Indices<'py> = PyArray1::from_slice(py, &it.vertices);
 });
 
@@ -79,7 +80,7 @@ impl Feature {
     }
 }
 
-/// The parts of both bodies that touch.
+/// The features of both bodies that are in contact.
 #[pyclass(frozen, module = "colltrans")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Features {
@@ -98,9 +99,9 @@ impl Features {
 }
 
 getters!(Features, |it| {
-    /// Feature: Of the moving body.
+    /// Feature: The feature of the moving body.
     moving: Feature = it.moving.clone();
-    /// Feature: Of the fixed body.
+    /// Feature: The feature of the fixed body.
     fixed: Feature = it.fixed.clone();
 });
 

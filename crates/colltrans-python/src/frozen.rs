@@ -1,8 +1,8 @@
-//! What frozen classes have in common: names for `match`, pictures, and bytes for `pickle` and `copy`.
+//! Shared parts of frozen classes: names for `match`, pictures, and text for `pickle` and `copy`.
 //!
-//! `__reduce__` of a class names its static method `_of` and what that takes, as serde writes it: the
-//! same bits. What comes back is believed, as all that is pickled; a proof in it is checked by `verify`
-//! as ever. Pictures are made by the package's own `show`, which is Python.
+//! `__reduce__` of a class names its static method `_of` and the serialised state, which restores the same
+//! bits. Restored answers are trusted like any pickle; `verify` checks a proof in them as usual. The Python
+//! function `show` of the package draws pictures.
 
 use pyo3::PyClass;
 use pyo3::exceptions::PyValueError;
@@ -22,35 +22,35 @@ pub(crate) fn show<'py, T>(
     show.call((answer.as_any(),), options)
 }
 
-/// What a notebook shows of it.
+/// Builds the HTML that a notebook shows.
 pub(crate) fn html<'py, T>(thing: &Bound<'py, T>) -> Shown<'py> {
     thing.py().import("colltrans.light")?.getattr("html")?.call1((thing.as_any(),))
 }
 
-/// What `__reduce__` returns.
+/// The result of `__reduce__`.
 pub(crate) type Reduced<'py, T> = (Bound<'py, PyAny>, T);
 
-/// A thing of class `C`, made of this.
+/// Builds the result of `__reduce__`: the static method `_of` of class `C` and its arguments.
 pub(crate) fn reduced<C: PyClass, T>(py: Python<'_>, state: T) -> PyResult<Reduced<'_, T>> {
     Ok((py.get_type::<C>().getattr("_of")?, state))
 }
 
-/// What something says of itself, as text that reads back as the same bits.
+/// Serialises a value to text that restores the same bits.
 pub(crate) fn written<T: Serialize>(value: &T) -> PyResult<String> {
     serde_json::to_string(value).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
-/// From what is [`written`].
+/// Deserialises the text of [`written`].
 pub(crate) fn read<T: DeserializeOwned>(text: &str) -> PyResult<T> {
     serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
-/// The same as dictionaries, lists and numbers of Python.
+/// Converts a value to dictionaries, lists and numbers of Python.
 pub(crate) fn plain<'py, T: Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (written(value)?,))
 }
 
-/// Pickles of classes that serde writes as they are.
+/// Implements pickling for classes that serde serialises.
 macro_rules! pickled {
     ($($class:ident),*) => {$(
         #[pyo3::pymethods]
@@ -96,7 +96,7 @@ macro_rules! getters {
 }
 pub(crate) use getters;
 
-/// The names by which `match` takes a class apart.
+/// Defines the attributes by which `match` destructures a class.
 macro_rules! match_args {
     ($class:ident($($name:literal),*)) => {
         #[pyo3::pymethods]

@@ -1,7 +1,7 @@
-//! Queries in bulk: arrays in, columns out.
+//! Bulk queries: arrays in, columns out.
 //!
-//! Every row is answered by itself, or, where many ask about the same bodies turned in the same way
-//! ([`repeats`](crate::repeats)), by what these share, so the bits do not depend on the threads.
+//! Each row is answered by itself, or by shared data if many rows have the same bodies and rotations
+//! ([`repeats`](crate::repeats)). Therefore the bits of the answers do not depend on the number of threads.
 
 use std::collections::HashMap;
 
@@ -22,20 +22,20 @@ use crate::rows::{AnyBody, Bodies, Table};
 use crate::solid::Solid;
 use crate::solver::options_of;
 
-/// Rows of a chunk: some hundred microseconds.
+/// Number of rows in a chunk, which takes some hundred microseconds.
 const CHUNK: usize = 256;
 
-/// What is asked.
+/// A bulk query with its arguments.
 struct Work<'a> {
     question: Question,
     bodies: [Bodies<'a>; 2],
     poses: [Table<'a>; 2],
     with: With<'a>,
-    /// Whether features are columns, too.
+    /// Whether to add the columns of features.
     featured: bool,
 }
 
-/// What a question needs besides the bodies.
+/// The arguments of a question besides the bodies.
 enum With<'a> {
     Direction {
         directions: Table<'a>,
@@ -48,17 +48,17 @@ enum With<'a> {
     Motion {
         motions: [Motions<'a>; 2],
         keeps: Table<'a>,
-        /// NaN stands for none.
+        /// NaN stands for no tolerance.
         tolerances: Table<'a>,
     },
 }
 
-/// What a body does in each row.
+/// The motions of a body, one for each row.
 enum Motions<'a> {
-    /// One for all, or one for each.
+    /// One motion for all rows, or one for each row.
     Listed(Vec<&'a Motion>),
-    /// By three numbers a slide; by eight a screw: point, axis, angle, rise; by nine what is thrown: center,
-    /// velocity and angular velocity; from the pose on.
+    /// Numbers of a motion from the pose on: three for a slide, eight for a screw (point, axis, angle, rise),
+    /// nine for a throw (center, velocity, angular velocity).
     Numbers(Table<'a>),
 }
 
@@ -82,7 +82,7 @@ impl Motions<'_> {
 }
 
 impl<'a> Work<'a> {
-    /// The rows of which many have the same bodies and rotations, if that can be of use.
+    /// Finds rows with the same bodies and rotations; `None` if they cannot share data.
     fn repeats(&self, n: usize) -> Option<Repeats<'a>> {
         match &self.with {
             With::Direction { directions, keeps, options, .. } if options.solver != Solver::Cta => {
@@ -115,7 +115,7 @@ impl<'a> Work<'a> {
             .map_err(|what| what.to_string())
     }
 
-    /// Of bodies where they are.
+    /// Answers a question about two bodies at fixed poses.
     fn answer_placed(
         &self,
         bodies: [AnyBody<'_>; 2],
@@ -142,7 +142,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// When bodies that move first meet, or how far they can go.
+/// Computes the first contact of two moving bodies, or the clearance of their motion.
 fn moved(
     question: Question,
     bodies: [AnyBody<'_>; 2],
@@ -176,7 +176,7 @@ fn moved(
     record.map(|record| Row::of_motion(question, &record)).map_err(|what| what.to_string())
 }
 
-/// The bodies of a list; exceptions in it stand for bodies that could not be built.
+/// Returns the bodies of a list. An exception in the list stands for a body that could not be built.
 fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<AnyBody<'a>, String>>> {
     let body = |item: &'a Bound<'_, PyAny>| {
         if item.is_instance_of::<pyo3::exceptions::PyException>() {
@@ -191,20 +191,20 @@ fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<AnyBody<'a>, St
     of.iter().map(body).collect()
 }
 
-/// Bodies, and which one for each row.
+/// The bodies of one side, and the index of the body of each row.
 type Side<'py> = (Vec<Bound<'py, PyAny>>, Option<PyReadonlyArray1<'py, i64>>);
 
-/// An argument of all queries: a table of numbers, or motions.
+/// An argument of a bulk query: a table of numbers, or motions.
 #[derive(FromPyObject)]
 pub(crate) enum Argument<'py> {
-    // First, because an empty array is an empty list of motions, too.
+    // First, because an empty array also converts to an empty list of motions.
     Numbers(PyReadonlyArray2<'py, f64>),
     Motions(Vec<Bound<'py, crate::motion::Motion>>),
 }
 
 /// Answers `n` queries, whose arguments are tables of one row or `n` (`colltrans.queries` makes them).
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "they are the parts of a query")]
+#[expect(clippy::too_many_arguments, reason = "the Python caller passes each part of a query")]
 pub(crate) fn ask_many<'py>(
     py: Python<'py>,
     question: &str,
@@ -253,14 +253,14 @@ pub(crate) fn ask_many<'py>(
     plan.run(py, |row| work.answer(row, &by.as_ref().map_or(By::Cast, |by| by.of_row(row))))
 }
 
-/// Arguments by their names.
+/// The arguments by name.
 type Arguments<'py> = HashMap<String, Argument<'py>>;
 
 fn argument<'a, 'py>(name: &str, of: &'a Arguments<'py>) -> PyResult<&'a Argument<'py>> {
     of.get(name).ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
 }
 
-/// Returns one motion for all rows, or one for each, or their numbers.
+/// Returns one motion for all rows, one for each row, or the numbers of the motions.
 fn motions<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Motions<'a>> {
     match argument(name, of)? {
         Argument::Motions(all) if all.len() == n || all.len() == 1 => {
@@ -273,7 +273,7 @@ fn motions<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<
     }
 }
 
-/// An index for every row.
+/// Returns the body index of every row.
 fn index<'a>(of: Option<&'a PyReadonlyArray1<'_, i64>>, n: usize) -> PyResult<Option<&'a [i64]>> {
     let index = of.map(PyReadonlyArray1::as_slice).transpose()?;
     if index.is_some_and(|index| index.len() != n) {
@@ -282,7 +282,7 @@ fn index<'a>(of: Option<&'a PyReadonlyArray1<'_, i64>>, n: usize) -> PyResult<Op
     Ok(index)
 }
 
-/// Returns a table of one row or `n`.
+/// Returns a table with one row or `n` rows.
 fn numbers<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Table<'a>> {
     let Argument::Numbers(numbers) = argument(name, of)? else {
         return Err(PyValueError::new_err(format!("{name} is not a table of numbers")));

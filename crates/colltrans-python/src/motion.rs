@@ -1,4 +1,4 @@
-//! What a body does, and when two such bodies first meet.
+//! Motions of bodies, and the first contact of two moving bodies.
 
 use colltrans::glam::DVec3;
 use colltrans::motion::{self, MotionCase, MotionOutcome};
@@ -21,12 +21,12 @@ use crate::pose::{Bare, Pose, bare_numbers, of_bare, pose};
 use crate::solid::Piece;
 use crate::solid_cast::patiently;
 
-/// Where a body is at every time from 0 to 1: it rests, slides, turns, unscrews, is thrown, or goes
-/// through poses.
+/// A motion: the pose of a body at every time from 0 to 1.
 ///
-/// Made by :meth:`still`, :meth:`slide`, :meth:`turn`, :meth:`screw`, :meth:`thrown`, :meth:`between`,
-/// :meth:`through` and :meth:`about`. Angles are keywords, ``degrees=`` or ``radians=``. Answers hold of the
-/// motion as the real function of its numbers.
+/// The body rests, slides, turns, unscrews, is thrown, or passes through poses. Built by :meth:`still`,
+/// :meth:`slide`, :meth:`turn`, :meth:`screw`, :meth:`thrown`, :meth:`between`, :meth:`through` and
+/// :meth:`about`. Angles are keywords, ``degrees=`` or ``radians=``. Answers hold for the motion as a
+/// function of real numbers that the stored numbers define.
 ///
 /// Examples
 /// --------
@@ -44,25 +44,25 @@ pub(crate) struct Motion(pub(crate) motion::Motion);
 pickled!(Motion);
 
 getters!(Motion, |it| {
-    /// Pose: Where the body is at time 0.
+    /// Pose: The pose of the body at time 0.
     start: Pose = Pose(it.0.start());
 });
 
 #[pymethods]
 impl Motion {
-    /// None: the body rests at a pose.
+    /// Builds the motion of a body that rests at a pose.
     #[staticmethod]
     #[pyo3(signature = (pose=None))]
     fn still(pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         Ok(Self(motion::Motion::still(crate::pose::pose(pose, "pose")?)))
     }
 
-    /// A translation from a pose on, by a vector in world units.
+    /// Builds a translation from a pose by a vector, in world units.
     ///
     /// Raises
     /// ------
     /// QueryError
-    ///     A vector that is not finite or out of range; so do all others.
+    ///     The vector is not finite or out of range. All other methods raise this error too.
     #[staticmethod]
     #[pyo3(signature = (by, *, pose=None))]
     fn slide(by: &Bound<'_, PyAny>, pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -71,21 +71,21 @@ impl Motion {
             .map(Self)
     }
 
-    /// Turns about an axis through a point of the world, counter-clockwise as seen against the axis.
+    /// Builds a rotation about an axis through a point, counter-clockwise as seen against the axis.
     ///
     /// Parameters
     /// ----------
     /// point, axis : array_like of shape (3,)
-    ///     A point of the axis, and its direction, of any length above 0.
+    ///     A point of the axis and its direction in the world. The direction has any length above 0.
     /// degrees, radians : float
-    ///     The angle: one of the two, by its name.
+    ///     The angle, as exactly one of the two keywords.
     /// pose : array_like, Pose or object with ``as_matrix()``, optional
-    ///     Where the body is at time 0.
+    ///     The pose of the body at time 0.
     ///
     /// Raises
     /// ------
     /// InputError
-    ///     An angle without its unit, with both units, or none.
+    ///     The angle has no unit, has two units, or is missing.
     #[staticmethod]
     #[pyo3(signature = (point, axis, *angle, degrees=None, radians=None, pose=None))]
     fn turn(
@@ -100,14 +100,14 @@ impl Motion {
         Self::of_screw(point, axis, angle, 0.0, pose)
     }
 
-    /// Turns about an axis, which itself moves along its own direction by ``rise``, a length.
+    /// Builds a screw: a rotation about an axis that itself moves along its direction by ``rise``.
     ///
     /// Parameters
     /// ----------
     /// point, axis, degrees, radians, pose
-    ///     As for :meth:`turn`.
+    ///     See :meth:`turn`.
     /// rise : float
-    ///     By how much the axis moves along its direction.
+    ///     The translation of the axis along its direction, a length.
     #[staticmethod]
     #[pyo3(signature = (point, axis, *angle, rise, degrees=None, radians=None, pose=None))]
     fn screw(
@@ -123,8 +123,10 @@ impl Motion {
         Self::of_screw(point, axis, angle, rise, pose)
     }
 
-    /// A point of the body, given in the world, goes straight by ``velocity``, and the body turns about it
-    /// by the angular velocity's length in radians, about its direction.
+    /// Builds the motion of a thrown body.
+    ///
+    /// The point ``center``, given in the world, moves straight by ``velocity``. The body turns about it by
+    /// the length of ``angular_velocity`` in radians, about the direction of this vector.
     #[staticmethod]
     #[pyo3(signature = (center, velocity, angular_velocity, *, pose=None))]
     fn thrown(
@@ -140,7 +142,7 @@ impl Motion {
             .map(Self)
     }
 
-    /// The screw from one pose to another, by the shorter turn; it ends there to rounding.
+    /// Builds the screw from one pose to another with the smaller angle. It ends there up to rounding.
     #[staticmethod]
     fn between(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<Self> {
         motion::Motion::between(pose(Some(start), "start")?, pose(Some(end), "end")?)
@@ -148,12 +150,12 @@ impl Motion {
             .map(Self)
     }
 
-    /// Screws from each pose to the next one, in equal times.
+    /// Builds screws from each pose to the next one, in equal times.
     ///
     /// Parameters
     /// ----------
     /// poses : sequence
-    ///     Of array_like or :class:`Pose` each.
+    ///     Poses, each an array_like or a :class:`Pose`.
     #[staticmethod]
     fn through(poses: &Bound<'_, PyAny>) -> PyResult<Self> {
         let each = poses.try_iter()?.map(|item| pose(Some(&item?), "poses"));
@@ -161,8 +163,10 @@ impl Motion {
         motion::Motion::through(&poses).or_raise().map(Self)
     }
 
-    /// Makes a motion from the numbers that define it: the vector from a point of the axis to the origin of
-    /// the body's frame, the axis, the angle, and the translation of the axis.
+    /// Builds a motion from the numbers that define it.
+    ///
+    /// The numbers are the vector ``arm`` from a point of the axis to the origin of the body frame, the axis,
+    /// the angle, and the translation ``way`` of the axis.
     #[staticmethod]
     #[pyo3(signature = (arm, axis, way, *angle, degrees=None, radians=None, pose=None))]
     fn about(
@@ -180,12 +184,13 @@ impl Motion {
         motion::Motion::about(start, arm, axis, angle, way).or_raise().map(Self)
     }
 
-    /// Where the body is at a time from 0 to 1, to rounding.
+    /// Returns the pose of the body at a time from 0 to 1, up to rounding.
     fn at(&self, time: f64) -> PyResult<Pose> {
         self.0.at(time).or_raise().map(Pose)
     }
 
-    /// Writes a call that makes the motion again, to rounding: its kind, axis, angle and the pose at time 0.
+    /// Formats a call that builds the motion again, up to rounding: its kind, axis, angle and the pose at
+    /// time 0.
     fn __repr__(&self) -> String {
         let start = Pose(self.0.start()).text();
         let [piece] = self.0.pieces() else {
@@ -231,7 +236,7 @@ impl Motion {
     }
 }
 
-/// Returns the angle of `Motion.{call}, ...)` in radians. Refuses one that does not name its unit.
+/// Returns the angle of `Motion.{call}, ...)` in radians. Rejects an angle without a unit.
 fn angle_in_radians(
     call: &str,
     positional: &Bound<'_, PyTuple>,
@@ -255,8 +260,8 @@ fn angle_in_radians(
     })
 }
 
-/// Returns the motion that an argument gives: a motion, or a pose at which the body rests. Refuses three
-/// numbers, since they could be a displacement as well as a place.
+/// Returns the motion of an argument: a motion, or a pose at which the body rests. Rejects three numbers,
+/// because they could be a displacement or a position.
 fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Motion> {
     let Some(given) = of else { return Ok(motion::Motion::still(colltrans::Pose::IDENTITY)) };
     if let Ok(motion) = given.cast::<Motion>() {
@@ -271,7 +276,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
         return Err(input(
             name,
             format_args!(
-                "{vector:?} could be a displacement or a place: Motion.slide({vector:?}) moves the \
+                "{vector:?} could be a displacement or a position: Motion.slide({vector:?}) moves the \
                  body by it, Motion.still({vector:?}) lets the body rest there"
             ),
         ));
@@ -279,30 +284,30 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
     Ok(motion::Motion::still(of_bare(given.py(), &bare, name)?))
 }
 
-/// Two bodies and what they do, as a value: asked when they first meet, saved and replayed.
+/// Two bodies and their motions, as a value: query the first contact, save and replay it.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : ConvexPolyhedron or Solid
-///     If one of them is a solid, both are asked as solids.
+///     If one of them is a solid, both are treated as solids.
 /// moving_motion, fixed_motion : Motion, Pose or array_like, optional
-///     What they do. A :class:`Pose`, or seven numbers or a matrix that give one, stands for rest. Three
-///     numbers are refused, because they could be a displacement (:meth:`Motion.slide`) or a place
+///     The motions of the bodies. A :class:`Pose`, or seven numbers or a matrix of a pose, stands for rest.
+///     Three numbers are rejected, because they could be a displacement (:meth:`Motion.slide`) or a position
 ///     (:meth:`Motion.still`).
 /// keep : float
-///     A gap to be kept, a length: asked is when the bodies are first as near as that.
+///     A minimum gap, a length. The query then returns when the distance of the bodies first falls to it.
 /// tolerance : float, optional
-///     Of convex bodies, a depth that is tolerated, in the place of ``keep``: asked is when they first
-///     overlap by more. Solids are shrunk by half of it; by default by what the precision of their files,
-///     and rounding, ask for.
+///     For convex bodies a tolerated depth, instead of ``keep``: the query returns when they first overlap by
+///     more. Solids are shrunk by half of it; the default follows from the precision of their files and from
+///     rounding.
 /// ignore_start_overlaps : bool
-///     For :meth:`clearance` of solids: whether facets that cross when the motion begins do not count until
-///     they are apart.
+///     For :meth:`clearance` of solids: whether facets that cross at the start of the motion are ignored
+///     until they are apart.
 ///
 /// Raises
 /// ------
 /// QueryError, PoseError, InputError
-///     An argument that is refused.
+///     An argument is rejected.
 ///
 /// Examples
 /// --------
@@ -323,14 +328,14 @@ pub(crate) struct MotionCast {
     start_overlap: StartOverlap,
 }
 
-/// The library's cast.
+/// The cast of the library.
 type Asked<'a> = Of<motion::MotionCast<'a>, motion::MotionCast<'a, Solid>>;
 
-/// The bodies, and all else by name.
+/// The bodies, and all other arguments by name.
 type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
 
 impl MotionCast {
-    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
         Dents::of(self.bodies.each_ref().map(Piece::dent))
     }
@@ -356,7 +361,7 @@ impl MotionCast {
         })
     }
 
-    /// The library's.
+    /// Builds the cast of the library.
     fn asked(&self) -> PyResult<Asked<'_>> {
         let [a, b] = &self.motions;
         if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
@@ -371,7 +376,7 @@ impl MotionCast {
         Ok(Of::Solids(cast.with_start_overlap(self.start_overlap)))
     }
 
-    /// Asks the library; without the interpreter's lock, as it may take long.
+    /// Computes the first contact without the interpreter's lock, because it may take long.
     pub(crate) fn first(slf: &Bound<'_, Self>) -> PyResult<Found> {
         let query = slf.clone().unbind();
         patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
@@ -387,7 +392,7 @@ impl MotionCast {
 }
 
 impl MotionCast {
-    /// How far, of the library; as [`Self::first`].
+    /// Computes the clearance without the interpreter's lock, because it may take long.
     fn cleared(slf: &Bound<'_, Self>) -> PyResult<Cleared> {
         let query = slf.clone().unbind();
         patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
@@ -402,9 +407,10 @@ impl MotionCast {
     }
 }
 
-pub(crate) const EITHER: &str = "convex bodies have either keep or tolerance";
+pub(crate) const EITHER: &str =
+    "keep and tolerance are both given; convex bodies accept only one of them";
 
-/// Of convex bodies.
+/// Builds the cast of two convex bodies.
 pub(crate) fn convex_cast<'a>(
     [p, q]: [&'a ConvexPolyhedron; 2],
     [a, b]: [&'a motion::Motion; 2],
@@ -413,13 +419,13 @@ pub(crate) fn convex_cast<'a>(
 ) -> Result<motion::MotionCast<'a>, QueryError> {
     let cast = motion::MotionCast::new(p.along(a), q.along(b))?;
     match tolerance {
-        // Both: what is to be kept is refused where it is none, and one takes the place of the other.
+        // Both calls run: the first one rejects an invalid gap, the second one replaces the gap by the depth.
         Some(depth) => cast.keeping(keep)?.tolerating(depth),
         None => cast.keeping(keep),
     }
 }
 
-/// Of solids.
+/// Builds the cast of two solids.
 pub(crate) fn solid_cast<'a>(
     [p, q]: [&'a Solid; 2],
     [a, b]: [&'a motion::Motion; 2],
@@ -435,18 +441,18 @@ getters!(MotionCast, |it| {
     moving(py): Py<PyAny> = it.bodies[0].object(py);
     /// ConvexPolyhedron or Solid: The fixed body.
     fixed(py): Py<PyAny> = it.bodies[1].object(py);
-    /// Motion: What the moving body does.
+    /// Motion: The motion of the moving body.
     moving_motion: Motion = Motion(it.motions[0].clone());
-    /// Motion: What the fixed body does.
+    /// Motion: The motion of the fixed body.
     fixed_motion: Motion = Motion(it.motions[1].clone());
-    /// float: The gap to be kept; 0 if there is none.
+    /// float: The minimum gap; 0 if there is none.
     keep: f64 = it.keep;
-    /// float: The depth that is tolerated; of solids the tolerance that is used.
+    /// float: The tolerated depth; for solids the tolerance that is used.
     tolerance: PyResult<f64> = Ok(match it.asked()? {
         Of::Convex(cast) => cast.tolerance(),
         Of::Solids(cast) => cast.tolerance(),
     });
-    /// bool: Whether what overlaps when the motion begins is ignored.
+    /// bool: Whether overlaps at the start of the motion are ignored.
     ignore_start_overlaps: bool = it.start_overlap == StartOverlap::Ignore;
 });
 
@@ -478,19 +484,19 @@ impl MotionCast {
         Ok(query)
     }
 
-    /// When do the bodies first meet? See :func:`first_contact`.
+    /// Computes when the bodies first meet; see :func:`first_contact`.
     fn first_contact(slf: &Bound<'_, Self>) -> PyResult<FirstContact> {
         Ok(FirstContact { found: Self::first(slf)?, query: slf.clone().unbind() })
     }
 
-    /// How far can the body go? See :func:`motion_clearance`.
+    /// Computes how far the body can move; see :func:`motion_clearance`.
     fn clearance(slf: &Bound<'_, Self>) -> PyResult<MotionClearance> {
         Ok(MotionClearance { found: Self::cleared(slf)?, query: slf.clone().unbind() })
     }
 
-    /// The question as text, of convex bodies: bodies, motions and what is to be kept, exact in bits.
+    /// Returns the query of convex bodies as text: bodies, motions and the gap, exact in bits.
     ///
-    /// ``colltrans replay`` of the command line reads the same.
+    /// The command ``colltrans replay`` reads this text too.
     fn to_json(&self) -> PyResult<String> {
         match self.asked()? {
             Of::Convex(cast) => Ok(MotionCase::of(&cast).to_json()),
@@ -498,7 +504,7 @@ impl MotionCast {
         }
     }
 
-    /// From what `to_json`, or the command line, has written.
+    /// Reads the text that `to_json` or the command line wrote.
     #[staticmethod]
     fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
         let saved = MotionCase::from_json(text).or_raise()?;
@@ -517,7 +523,7 @@ impl MotionCast {
         })
     }
 
-    /// A picture of the bodies at the start, where they touch and at the end: see :func:`colltrans.show`.
+    /// Draws the bodies at the start, at the contact and at the end; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
@@ -527,7 +533,7 @@ impl MotionCast {
         html(slf)
     }
 
-    /// The arguments that make it once more, for `pickle` and `copy`.
+    /// Returns the arguments that build the query again, for `pickle` and `copy`.
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
         let named = PyDict::new(py);
         named.set_item("moving_motion", self.moving_motion())?;
@@ -546,17 +552,21 @@ impl MotionCast {
     }
 }
 
-/// An answer; those of solids are proven when that is asked for.
+/// An answer. For solids the proof is built on request.
 type Found = Of<MotionOutcome, MotionOutcome<()>>;
 
-/// When two bodies that move first meet, from 0 at the start of the motion to 1 at its end.
+/// The first contact of two moving bodies, at a time from 0 (start of the motion) to 1 (end).
 ///
-/// ``outcome`` is ``"contact"``: they do not meet before ``lower``, and at ``upper`` they do;
-/// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
-/// after it; ``"free"``: they never meet throughout the motion (never come as near as the gap to be kept, or
-/// never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins;
-/// ``"undecided"``: the search took its maximum number of steps, they do not meet before ``lower``, and whether
-/// they do later is open.
+/// The ``outcome`` is one of:
+///
+/// - ``"contact"``: the bodies do not meet before ``lower``, and meet at ``upper``;
+/// - ``"grazing"``: they do not meet before ``lower``, then come closer than rounding can resolve; the time
+///   after it is not examined;
+/// - ``"free"``: they never meet during the motion (never reach the minimum gap, or never overlap by more
+///   than the tolerance);
+/// - ``"overlapping"``: they overlap at the start of the motion;
+/// - ``"undecided"``: the search reached its maximum number of steps. They do not meet before ``lower``;
+///   later contacts are open.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct FirstContact {
     found: Found,
@@ -565,7 +575,7 @@ pub(crate) struct FirstContact {
 
 answer!(FirstContact("outcome", "lower", "upper") of Found, MotionCast, |it| it.found.clone());
 
-/// What there is of a contact, of either kind.
+/// Evaluates an expression for the contact in an answer, for convex bodies or solids.
 macro_rules! contact {
     ($of:expr, $contact:ident => $value:expr) => {
         match &$of {
@@ -593,7 +603,8 @@ impl FirstContact {
 getters!(FirstContact, |it| {
     /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
     outcome(py): PyResult<&'static str> = Ok(it.told(py)?.outcome().name());
-    /// float: The bodies do not meet before: 1 if they never do, 0 if they overlap when the motion begins.
+    /// float: The bodies do not meet before this time. It is 1 if they never meet, 0 if they overlap at the
+    /// start.
     lower: f64 = {
         let free = matches!(
             it.found,
@@ -602,7 +613,7 @@ getters!(FirstContact, |it| {
         let none = if free { 1.0 } else { 0.0 };
         contact!(it.found, contact => contact.lower).unwrap_or(none)
     };
-    /// float or None: At this time they do meet; None where that is not proven, or they never do.
+    /// float or None: The bodies meet at this time; None if that is not proven, or if they never meet.
     upper: Option<f64> = {
         let overlapping = matches!(
             it.found,
@@ -612,17 +623,17 @@ getters!(FirstContact, |it| {
             contact!(it.found, contact => contact.upper).filter(|upper| upper.is_finite());
         upper.or(overlapping.then_some(0.0))
     };
-    /// tuple of (Pose, Pose) or None: Where both bodies are at ``lower``, to rounding; None if they never
-    /// meet or overlap at the start.
+    /// tuple of (Pose, Pose) or None: The poses of both bodies at ``lower``, up to rounding; None if they
+    /// never meet or overlap at the start.
     poses: Option<(Pose, Pose)> =
         contact!(it.found, contact => (Pose(contact.poses[0]), Pose(contact.poses[1])));
-    /// ndarray of shape (3,) or None: The point of the fixed body that is nearest then, in the world.
+    /// ndarray of shape (3,) or None: The nearest point of the fixed body at that time, in the world.
     point(py): Option<Vector<'py>> =
         contact!(it.found, contact => contact.points)?.map(|points| row(py, points[1]));
     /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one.
     normal(py): Option<Vector<'py>> =
         contact!(it.found, contact => contact.normal)?.map(|normal| row(py, normal));
-    /// Features or None: What of each body faces the other one.
+    /// Features or None: The nearest feature of each body.
     features: PyResult<Option<Features>> = {
         let features = contact!(it.found, contact => contact.features).flatten();
         let Some(colltrans::Features { moving, fixed }) = features else { return Ok(None) };
@@ -638,7 +649,7 @@ getters!(FirstContact, |it| {
             }
         }
     };
-    /// int: At how many times the bodies were looked at.
+    /// int: Number of times at which the search sampled the distance.
     looks: u32 = match &it.found {
         Of::Convex(found) => found.steps().looks,
         Of::Solids(found) => found.steps().looks,
@@ -647,12 +658,12 @@ getters!(FirstContact, |it| {
 
 #[pymethods]
 impl FirstContact {
-    /// Checks the proof against the bodies alone; between solids they are asked once more for it.
+    /// Checks the proof with the bodies alone. Between solids the query runs again to build the proof.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         let (query, found) = (self.query.clone_ref(py), self.found.clone());
         let refused = |what: motion::MotionProofError| error("CertificateError", what);
@@ -676,7 +687,7 @@ impl FirstContact {
     }
 }
 
-/// An answer that is not of the bodies that it comes with.
+/// Builds the error for an answer that does not belong to the bodies of its query.
 fn other_bodies() -> PyErr {
     error("CaseError", "an answer of other bodies")
 }
@@ -709,18 +720,21 @@ impl Answer for Found {
     }
 }
 
-/// The proof of a first contact of solids, which are asked once more for it.
+/// Builds the proof of a first contact of solids, by running the query again.
 fn solid_proof(cast: &motion::MotionCast<'_, Solid>) -> PyResult<String> {
     ProofFile::with_solid_motion(cast).map(|(_, file)| file.to_json()).or_raise()
 }
 
-/// An answer about how far a body can go; those of solids are proven when that is asked for.
+/// A clearance. For solids the proof is built on request.
 type Cleared = Of<motion::MotionClearance, motion::MotionClearance<()>>;
 
-/// How far along its motion a body can go, from 0 at its start to 1 at its end.
+/// How far along its motion a body can move, as a time from 0 (start) to 1 (end).
 ///
-/// ``outcome`` is ``"blocked"``: up to ``time`` for certain, 0 if it is pushed in at once; ``"free"``: to the
-/// end; ``"overlapping"``: the bodies overlap when the motion begins, by more than is tolerated.
+/// The ``outcome`` is one of:
+///
+/// - ``"blocked"``: the body can move until ``time`` at least, which is 0 if it is pushed in at once;
+/// - ``"free"``: the body can move to the end;
+/// - ``"overlapping"``: at the start of the motion the bodies overlap by more than the tolerance.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct MotionClearance {
     found: Cleared,
@@ -729,8 +743,8 @@ pub(crate) struct MotionClearance {
 
 answer!(MotionClearance("outcome", "time") of Cleared, MotionCast, |it| it.found.clone());
 
-/// What stops a body: the bounds of when that meets in its true place, the tolerance, and the bounds of when the bodies
-/// meet as it leaves them.
+/// The contact that stops a body: bounds of its time for the nominal bodies, the tolerance, and bounds of the
+/// time at which the shrunk bodies meet.
 struct Stop {
     place: [f64; 2],
     tolerance: f64,
@@ -749,7 +763,7 @@ impl Stop {
     }
 }
 
-/// Bounds as Python has them: none where one is not proven.
+/// Converts bounds: an upper bound that is not proven becomes `None`.
 fn bounds([lower, upper]: [f64; 2]) -> (f64, Option<f64>) {
     (lower, Some(upper).filter(|upper| upper.is_finite()))
 }
@@ -770,19 +784,21 @@ getters!(MotionClearance, |it| {
         (Some(_), None) => "free",
         (None, None) => "overlapping",
     };
-    /// float or None: Up to then the body may go: 1 to the end; None if the bodies overlap when it begins.
+    /// float or None: The body can move until this time; 1 for the whole motion, None if the bodies overlap
+    /// at the start.
     time: Option<f64> = match &it.found {
         Of::Convex(found) => found.time(),
         Of::Solids(found) => found.time(),
     };
-    /// tuple of (float, float or None) or None: When what stops it meets in its true place: not before the
-    /// first, for certain at the second, if there is one.
+    /// tuple of (float, float or None) or None: Bounds of the time at which the stopping features meet in
+    /// their nominal position. The second one is None if it is not proven.
     bounds: Option<(f64, Option<f64>)> = it.stop().map(|stop| bounds(stop.place));
-    /// tuple of (float, float or None) or None: When the bodies meet as the tolerance leaves them.
+    /// tuple of (float, float or None) or None: Bounds of the time at which the bodies meet after the
+    /// tolerance is applied.
     shrunk: Option<(f64, Option<f64>)> = it.stop().map(|stop| bounds(stop.shrunk));
-    /// float or None: The tolerance that was used, a length, where something stops it.
+    /// float or None: The tolerance that was used, a length; None if nothing stops the body.
     tolerance: Option<f64> = it.stop().map(|stop| stop.tolerance);
-    /// float or None: The least tolerance with which the bodies would not overlap when the motion begins.
+    /// float or None: The smallest tolerance at which the bodies do not overlap at the start of the motion.
     least_tolerance: Option<f64> = match &it.found {
         Of::Convex(motion::MotionClearance::Overlapping(found))
         | Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
@@ -792,13 +808,15 @@ getters!(MotionClearance, |it| {
 
 #[pymethods]
 impl MotionClearance {
-    /// Checks the proof of the bounds ``shrunk`` against the bodies alone; between solids they are asked once
-    /// more for it.
+    /// Checks the proof of the bounds ``shrunk`` with the bodies alone.
+    ///
+    /// Between solids the query runs again to build the proof.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven; all, of bodies that overlap when the motion begins, or may.
+    ///     The proof does not hold. There is no proof if the bodies overlap at the start of the motion, or if
+    ///     such overlaps are ignored.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         let (query, found) = (self.query.clone_ref(py), self.found.clone());
         let refused = |what: motion::MotionProofError| error("CertificateError", what);
@@ -831,7 +849,8 @@ fn unproven() -> PyErr {
     error("CertificateError", "of bodies that overlap when the motion begins nothing is proven")
 }
 
-/// The first contact of the bodies as the tolerance leaves them, of which a clearance is made.
+/// Returns the first contact of the bodies after the tolerance is applied; `None` if they overlap at the
+/// start.
 fn first_of<P: Clone>(found: &motion::MotionClearance<P>) -> Option<MotionOutcome<P>> {
     match found {
         motion::MotionClearance::Blocked { contact, .. } => {
@@ -880,12 +899,12 @@ impl Answer for Cleared {
     }
 }
 
-/// When do two bodies that move first meet?
+/// Computes when two moving bodies first meet.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed, moving_motion, fixed_motion, keep, tolerance
-///     As for :class:`MotionCast`.
+///     See :class:`MotionCast`.
 ///
 /// Returns
 /// -------
@@ -915,13 +934,15 @@ pub(crate) fn first_contact(
     MotionCast::first_contact(&Bound::new(py, query)?)
 }
 
-/// How far along its motion can a body go? What touches may slide, turn and leave, and is stopped where it
-/// is pushed in: with the tolerance, or without one with what rounding can do to a fit.
+/// Computes how far along its motion a body can move.
+///
+/// Touching bodies may slide, turn and separate. A body is stopped where it is pushed in by more than the
+/// tolerance, or without a tolerance by more than rounding errors of a fit.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed, moving_motion, fixed_motion, keep, tolerance, ignore_start_overlaps
-///     As for :class:`MotionCast`.
+///     See :class:`MotionCast`.
 ///
 /// Returns
 /// -------

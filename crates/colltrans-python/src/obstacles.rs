@@ -1,7 +1,7 @@
-//! Many placed bodies, and one among them: the library's, kept behind a lock.
+//! Many placed bodies and queries of one body among them: the scene of the library behind a lock.
 //!
-//! Questions are asked without the interpreter's lock, any number of them at a time; what adds, moves and
-//! removes waits for them. Rows of many are answered on any number of threads, each by itself.
+//! Queries run without the interpreter's lock, any number of them at a time. Calls that add, move or remove
+//! bodies wait for them. Bulk queries answer their rows on any number of threads, each row by itself.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -23,14 +23,15 @@ use crate::scene_answers::{
 };
 use crate::solid::Piece;
 
-/// Rows that a thread takes at a time.
+/// Number of rows that a thread takes at a time.
 const CHUNK: usize = 64;
 
-/// Many placed bodies, of either kind, in a tree of boxes that is kept as they come, move and go.
+/// Many placed bodies of both kinds in a tree of boxes, which is updated as bodies are added, moved and
+/// removed.
 ///
-/// Answers are those of asking all obstacles one by one; of several that cannot be told apart, the one
-/// whose upper bound is least, and of equal ones the one that came first. Bounds hold for all obstacles
-/// together. A body that is added many times is kept once.
+/// Answers equal those of querying all obstacles one by one. If several obstacles cannot be distinguished,
+/// the answer names the one with the smallest upper bound, and among equal bounds the one that was added
+/// first. Bounds hold for all obstacles together. A body that is added many times is stored once.
 ///
 /// Examples
 /// --------
@@ -54,12 +55,12 @@ const CHUNK: usize = 64;
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Obstacles {
     scene: Arc<Scene>,
-    /// By the address of their objects, which are kept with them.
+    /// Bodies by the address of their Python objects, which are stored with them.
     bodies: Mutex<HashMap<usize, (Piece, AnyBody)>>,
 }
 
 impl Obstacles {
-    /// Asks about one body, without the interpreter's lock.
+    /// Runs a query of one body, without the interpreter's lock.
     fn ask<T: Send>(
         &self,
         py: Python<'_>,
@@ -76,7 +77,7 @@ impl Obstacles {
         Ok((found, Asked { scene: self.scene.clone(), changes, body, at, ignore }))
     }
 
-    /// Asks rows, on some threads.
+    /// Runs a query for many poses, on several threads.
     fn ask_rows<T: Send>(
         &self,
         py: Python<'_>,
@@ -95,7 +96,8 @@ impl Obstacles {
     }
 }
 
-/// How far a body may move that is to keep a gap, past what is met before a translation.
+/// Computes how far a body can move with a minimum gap. Obstacles beyond the translation `before` are
+/// ignored.
 fn clearance_keeping(
     among: &Among<'_>,
     direction: DVec3,
@@ -110,10 +112,10 @@ fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 fn unknown(obstacle: u64) -> PyErr {
-    PyKeyError::new_err(format!("there is no obstacle {obstacle}, or not any more"))
+    PyKeyError::new_err(format!("there is no obstacle {obstacle}: it was never added, or was removed"))
 }
 
-/// Poses of an array or a sequence.
+/// Reads the poses of an array or a sequence.
 fn poses(of: &Bound<'_, PyAny>) -> PyResult<Vec<colltrans::Pose>> {
     of.try_iter()?.map(|one| pose(Some(&one?), "poses")).collect()
 }
@@ -136,12 +138,12 @@ impl Obstacles {
     /// ----------
     /// body : ConvexPolyhedron or Solid
     /// pose : array_like or Pose, optional
-    ///     Where it is.
+    ///     The pose of the body.
     ///
     /// Returns
     /// -------
     /// int
-    ///     Its number, which stays valid whatever else comes, moves and goes, and is never used again.
+    ///     The number of the obstacle. It stays valid when other obstacles change, and is never used again.
     #[pyo3(signature = (body, pose=None))]
     fn add(
         &self,
@@ -154,12 +156,12 @@ impl Obstacles {
         Ok(ids[0])
     }
 
-    /// Adds many, in one pass.
+    /// Adds many bodies in one pass.
     ///
     /// Parameters
     /// ----------
     /// body : ConvexPolyhedron, Solid or sequence of them
-    ///     One for all poses, or one for each.
+    ///     One body for all poses, or one for each.
     /// poses : array_like of shape (N, ...), or sequence of Pose
     ///
     /// Returns
@@ -183,19 +185,19 @@ impl Obstacles {
         self.insert(py, &bodies, poses)
     }
 
-    /// Puts an obstacle elsewhere.
+    /// Moves an obstacle to another pose.
     ///
     /// Raises
     /// ------
     /// KeyError
-    ///     There is no such one.
+    ///     There is no such obstacle.
     fn set_pose(&self, py: Python<'_>, obstacle: u64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let at = self::pose(Some(pose), "pose")?;
         let set = || self.scene.change(|all| all.set_pose(ObstacleId(obstacle), at));
         py.detach(set).map_err(|_| unknown(obstacle))
     }
 
-    /// Puts many elsewhere, in one pass: all of them, or, with a KeyError, none.
+    /// Moves many obstacles in one pass: all of them, or none if a number is unknown (KeyError).
     fn set_poses(
         &self,
         py: Python<'_>,
@@ -212,18 +214,18 @@ impl Obstacles {
             .map_err(|what| unknown(what.id.0))
     }
 
-    /// Takes an obstacle away.
+    /// Removes an obstacle.
     ///
     /// Raises
     /// ------
     /// KeyError
-    ///     There is no such one.
+    ///     There is no such obstacle.
     fn remove(&self, py: Python<'_>, obstacle: u64) -> PyResult<()> {
         let removed = py.detach(|| self.scene.change(|all| all.remove(ObstacleId(obstacle))));
         removed.map(|_| ()).ok_or_else(|| unknown(obstacle))
     }
 
-    /// Where an obstacle is.
+    /// Returns the pose of an obstacle.
     ///
     /// Returns
     /// -------
@@ -245,25 +247,25 @@ impl Obstacles {
         format!("Obstacles({})", self.__len__(py))
     }
 
-    /// Which obstacle is nearest to a body, and how far is it?
+    /// Finds the obstacle that is nearest to a body, and its distance.
     ///
     /// Parameters
     /// ----------
     /// body : ConvexPolyhedron or Solid
     /// pose : array_like or Pose, optional
-    ///     Where it is.
+    ///     The pose of the body.
     /// ignore : iterable of int
-    ///     Obstacles that are not asked about: the parts of a gripper, say.
+    ///     Obstacles that are ignored, for example the parts of a gripper.
     ///
     /// Returns
     /// -------
     /// NearestObstacle or None
-    ///     None if there are none.
+    ///     None if there are no obstacles.
     ///
     /// Raises
     /// ------
     /// QueryError
-    ///     A convex body whose facets make no surface, where a solid is asked about it.
+    ///     The facets of a convex body do not form a surface, as a query with a solid needs.
     #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, pose=None, *, ignore=())")]
     fn nearest(
@@ -278,20 +280,20 @@ impl Obstacles {
         Ok(found.map(|found| NearestObstacle { found, asked }))
     }
 
-    /// Which obstacles are closer to a body than a length?
+    /// Finds the obstacles that are closer to a body than a length.
     ///
     /// Parameters
     /// ----------
     /// body, pose, ignore
-    ///     As for :meth:`nearest`.
+    ///     See :meth:`nearest`.
     /// length : float
-    ///     In world units.
+    ///     The length, in world units.
     ///
     /// Returns
     /// -------
     /// NearbyObstacles
-    ///     Those that are, and those of which rounding cannot tell, each in the order in which they came; it
-    ///     unpacks into the two.
+    ///     The closer obstacles, and those that rounding cannot decide, each in the order in which they were
+    ///     added. It unpacks into these two lists.
     #[pyo3(signature = (body, length, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, length, pose=None, *, ignore=())")]
     fn within(
@@ -307,18 +309,18 @@ impl Obstacles {
         Ok(NearbyObstacles { found, length, asked })
     }
 
-    /// How far can a body move along a direction, and what stops it?
+    /// Computes how far a body can move along a direction, and which obstacle stops it.
     ///
     /// Parameters
     /// ----------
     /// body, pose, ignore
-    ///     As for :meth:`nearest`.
+    ///     See :meth:`nearest`.
     /// direction : array_like of shape (3,)
-    ///     Of any length; translations count in multiples of it.
+    ///     A vector of any length. Translations are multiples of it.
     /// before : float, optional
-    ///     What is not met before this translation is of no interest.
+    ///     Obstacles that are not met before this translation are ignored.
     /// keep : float
-    ///     A gap to be kept, a length: how far until an obstacle is as near as that.
+    ///     A minimum gap, a length. The body stops when its distance from an obstacle falls to it.
     ///
     /// Returns
     /// -------
@@ -345,20 +347,20 @@ impl Obstacles {
         Ok(ObstacleClearance { found, direction, keep, asked })
     }
 
-    /// :meth:`nearest` of many poses, on some threads.
+    /// Runs :meth:`nearest` for many poses, on several threads.
     ///
     /// Parameters
     /// ----------
     /// body, ignore
-    ///     As for :meth:`nearest`.
+    ///     See :meth:`nearest`.
     /// poses : array_like of shape (N, ...), or sequence of Pose
     /// threads : int, optional
-    ///     By default as many as there are processors. Answers do not depend on it.
+    ///     The default is the number of processors. Answers do not depend on it.
     ///
     /// Returns
     /// -------
     /// dict of ndarray
-    ///     Columns ``obstacle`` (-1 if there are none), ``lower``, ``upper``, ``on_moving`` and ``on_fixed``.
+    ///     Columns ``obstacle`` (-1 without obstacles), ``lower``, ``upper``, ``on_moving`` and ``on_fixed``.
     #[pyo3(signature = (body, poses, *, ignore=HashSet::new(), threads=None),
         text_signature = "($self, body, poses, *, ignore=(), threads=None)")]
     fn nearest_many<'py>(
@@ -390,22 +392,22 @@ impl Obstacles {
         Ok(columns)
     }
 
-    /// :meth:`clearance` of many poses and directions, on some threads.
+    /// Runs :meth:`clearance` for many poses and directions, on several threads.
     ///
     /// Parameters
     /// ----------
     /// body, before, keep, ignore
-    ///     As for :meth:`clearance`.
+    ///     See :meth:`clearance`.
     /// directions : array_like of shape (N, 3) or (3,)
-    ///     One for each pose, or one for all.
+    ///     One direction for each pose, or one for all.
     /// poses, threads
-    ///     As for :meth:`nearest_many`.
+    ///     See :meth:`nearest_many`.
     ///
     /// Returns
     /// -------
     /// dict of ndarray
-    ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops it),
-    ///     ``distance`` (NaN where bodies overlap) and ``upper``.
+    ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops the
+    ///     body), ``distance`` (NaN for an overlap) and ``upper``.
     #[pyo3(signature = (body, directions, poses, *, before=None, keep=0.0,
         ignore=HashSet::new(), threads=None), text_signature = "($self, body, directions, poses, \
         *, before=None, keep=0.0, ignore=(), threads=None)")]
@@ -454,7 +456,7 @@ impl Obstacles {
 }
 
 impl Obstacles {
-    /// Bodies at poses: one for each, or one for all.
+    /// Inserts one body for each pose, or one body for all poses.
     fn insert(
         &self,
         py: Python<'_>,
@@ -468,7 +470,7 @@ impl Obstacles {
         Ok(ids.into_iter().map(|id| id.0).collect())
     }
 
-    /// A body as it is kept: one object once.
+    /// Returns the stored body of a Python object, which is converted once.
     fn body(&self, body: &Bound<'_, PyAny>) -> PyResult<AnyBody> {
         let piece = Piece::of(body, "body")?;
         let mut bodies = lock(&self.bodies);
@@ -483,7 +485,7 @@ impl Obstacles {
     }
 }
 
-/// Numbers of obstacles.
+/// Reads the numbers of obstacles.
 fn numbers(of: &Bound<'_, PyAny>) -> PyResult<HashSet<u64>> {
     of.try_iter()?.map(|one| one?.extract()).collect()
 }

@@ -1,4 +1,4 @@
-//! Reports of shrinking and growing.
+//! Reports of shrinking and growing a body.
 
 use colltrans::{InputFacet, InputVertex};
 use numpy::PyArray1;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::{Indices, ids};
 use crate::frozen::{getters, match_args, pickled};
 
-/// What became of a convex body whose faces were moved.
+/// The effect of moving the faces of a convex body.
 #[pyclass(frozen, module = "colltrans")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct OffsetReport {
@@ -27,9 +27,9 @@ impl From<colltrans::OffsetReport> for OffsetReport {
 }
 
 getters!(OffsetReport, |it| {
-    /// float: The largest distance of a vertex from the one that it comes from, a length.
+    /// float: The largest distance of a new vertex from the vertex that it comes from, a length.
     farthest: f64 = it.farthest;
-    /// ndarray: Faces of the body as it was of which nothing is left, in increasing order.
+    /// ndarray: Faces of the original body that vanished, in increasing order.
     vanished(py): Indices<'py> = PyArray1::from_slice(py, &it.vanished);
 });
 
@@ -41,7 +41,7 @@ impl OffsetReport {
     }
 }
 
-/// What shrinking, or growing, could not do to a solid as it should.
+/// The vertices and facets of a solid for which shrinking or growing failed.
 #[pyclass(frozen, module = "colltrans")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct ShrinkReport {
@@ -63,12 +63,11 @@ impl From<colltrans::solid::ShrinkReport> for ShrinkReport {
 getters!(ShrinkReport, |it| {
     /// float: The largest displacement of a vertex, a length.
     farthest: f64 = it.farthest;
-    /// ndarray: Vertices that stay, because no displacement is inwards for all facets around them;
-    /// indices of the input.
+    /// ndarray: Vertices that stay, because no displacement is inwards for all facets around them; indices of
+    /// the input.
     stuck(py): Indices<'py> = ids(py, &it.stuck);
-    /// ndarray: Facets that turned inside out, or passed through others, because the body (or a gap in
-    /// it that grows shut) is thinner than twice the amount there; indices of the input, in increasing
-    /// order.
+    /// ndarray: Facets that turned inside out or passed through others, because the body (or a gap that
+    /// closes by growing) is thinner than twice the amount there. Indices of the input, in increasing order.
     inverted(py): Indices<'py> = ids(py, &it.inverted);
 });
 

@@ -1,4 +1,4 @@
-//! Answers about all translations: where bodies meet first, or last, or never.
+//! Answers about all translations: first contact, last contact, or separation.
 
 use colltrans::record::{CastRecord, Record};
 use colltrans::{ContactRange as Range, Outcome, ProofFile};
@@ -13,7 +13,7 @@ use crate::frozen::{Reduced, getters, match_args, read, reduced, written};
 use crate::pose::Pose;
 use crate::query::Cast;
 
-/// Where the bodies first meet along the direction.
+/// The first contact of the bodies along the direction.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Contact {
     pub(crate) contact: colltrans::Contact,
@@ -23,8 +23,8 @@ pub(crate) struct Contact {
 answer!(Contact("translation", "normal", "point") of Outcome, Cast, |it| Outcome::Contact(it.contact));
 
 getters!(Contact, |it| {
-    /// float: The collision translation, in multiples of the direction. Negative: a contact that
-    /// lies behind, or an overlap now.
+    /// float: The collision translation, in multiples of the direction. If it is negative, the contact is
+    /// behind the body, or the bodies overlap at the start.
     translation: f64 = it.contact.translation;
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
     normal(py): Vector<'py> = row(py, it.contact.normal);
@@ -33,7 +33,7 @@ getters!(Contact, |it| {
         let points = it.query.get().with(|cast| it.contact.points(cast))?;
         Ok(row(py, points.on_fixed))
     };
-    /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
+    /// ndarray of shape (3,): The contact point on the moving body at its start pose, in the world.
     point_at_start(py): PyResult<Vector<'py>> = {
         let points = it.query.get().with(|cast| it.contact.points(cast))?;
         Ok(row(py, points.on_moving))
@@ -43,13 +43,12 @@ getters!(Contact, |it| {
     /// Certificate: Both bounds with their proofs.
     certificate(py): Certificate =
         Certificate { proof: it.contact.certificate, query: it.query.clone_ref(py) };
-    /// Pose: The moving body's pose after the motion up to this contact and not beyond, whatever
-    /// rounding does.
+    /// Pose: The pose of the moving body just before this contact; rounding never moves it beyond.
     pose_before: PyResult<Pose> =
         it.query.get().with(|cast| it.contact.pose_before(cast))?.or_raise().map(Pose);
-    /// str: The solver that found it.
+    /// str: The solver that found the contact.
     solver: &'static str = it.contact.solver.name();
-    /// Steps: Work done.
+    /// Steps: Number of steps of the search.
     steps: Steps = Steps(it.contact.steps);
 });
 
@@ -65,7 +64,7 @@ pub(crate) fn contact_text(contact: &colltrans::Contact) -> String {
     format!("Contact(translation={t:?}, normal={n:?})")
 }
 
-/// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
+/// Grazing bodies: their shadows overlap by at most the graze tolerance, so that they slide along each other.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Grazing {
     pub(crate) grazing: colltrans::Grazing,
@@ -75,13 +74,13 @@ pub(crate) struct Grazing {
 answer!(Grazing("overlap", "contact") of Outcome, Cast, |it| Outcome::Grazing(it.grazing));
 
 getters!(Grazing, |it| {
-    /// float: How far the shadows overlap, a length; negative if they miss by less than rounding
-    /// can tell.
+    /// float: The overlap of the shadows, a length. It is negative if they may be disjoint by less than
+    /// rounding errors.
     overlap: f64 = it.grazing.overlap;
-    /// ndarray of shape (3,): Unit vector of the world, across the direction, from the moving body's
-    /// shadow to the fixed one's.
+    /// ndarray of shape (3,): Unit vector of the world, perpendicular to the direction, from the moving
+    /// body's shadow to the fixed one's.
     separating_direction(py): Vector<'py> = row(py, it.grazing.separating_direction);
-    /// Contact: The contact if the overlap is taken for real.
+    /// Contact: The contact that results if the overlap is real.
     contact(py): Contact = Contact { contact: it.grazing.contact, query: it.query(py) };
 });
 
@@ -114,11 +113,11 @@ getters!(Separated, |it| {
     /// Separation: The proof.
     certificate(py): Separation =
         Separation { proof: it.separated.certificate, query: it.query.clone_ref(py) };
-    /// float: How far the moving body can move: infinitely.
+    /// float: The free travel of the moving body: infinite.
     distance: f64 = f64::INFINITY;
-    /// str: The solver that found it.
+    /// str: The solver that found the separation.
     solver: &'static str = it.separated.solver.name();
-    /// Steps: Work done.
+    /// Steps: Number of steps of the search.
     steps: Steps = Steps(it.separated.steps);
 });
 
@@ -129,7 +128,7 @@ impl Separated {
     }
 }
 
-/// All translations at which the bodies meet, with what touches at either end.
+/// All translations at which the bodies meet, with the contacts at both ends.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct ContactRange {
     range: Range,
@@ -171,12 +170,12 @@ impl ContactRange {
     }
 }
 
-/// Where the bodies last meet along the direction: beyond it they are apart.
+/// The last contact along the direction. The bodies are apart beyond it.
 ///
-/// ``turned`` is the same as the first contact of the query turned round, which has the proof.
+/// ``turned`` is the first contact of the reversed query, which has the proof.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct LastContact {
-    /// Of the query turned round.
+    /// The outcome of the reversed query.
     found: Outcome,
     query: Py<Cast>,
     turned: Py<Cast>,
@@ -185,7 +184,7 @@ pub(crate) struct LastContact {
 match_args!(LastContact("translation", "normal", "point"));
 
 impl LastContact {
-    /// By what the query turned round has found.
+    /// Builds a last contact from the outcome of the reversed query.
     pub(crate) fn of(py: Python<'_>, found: Outcome, query: &Py<Cast>) -> PyResult<Self> {
         let turned = Py::new(py, query.get().reversed(py))?;
         Ok(Self { found, query: query.clone_ref(py), turned })
@@ -203,7 +202,7 @@ impl LastContact {
 getters!(LastContact, |it| {
     /// float: The translation, in multiples of the direction.
     translation: PyResult<f64> = Ok(it.contact()?.exit().value + 0.0);
-    /// tuple of float: Proven bounds of the translation; beyond the second the bodies never meet.
+    /// tuple of float: Proven bounds of the translation. The bodies never meet beyond the second one.
     bounds: PyResult<(f64, f64)> = {
         let exit = it.contact()?.exit();
         Ok((exit.lower + 0.0, exit.upper + 0.0))
@@ -222,8 +221,8 @@ getters!(LastContact, |it| {
     };
     /// Cast: The query.
     query(py): Py<Cast> = it.query.clone_ref(py);
-    /// Contact or Grazing: The same as the first contact of the query turned round, with its proof:
-    /// translations count the other way.
+    /// Contact or Grazing: The first contact of the reversed query, with its proof. Its translations have the
+    /// opposite sign.
     turned(py): PyResult<Bound<'py, PyAny>> = it.found.object(it.turned.bind(py));
 });
 

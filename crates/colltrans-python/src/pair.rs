@@ -1,4 +1,4 @@
-//! Queries about two bodies where they are, as values.
+//! Queries of two bodies at fixed poses, as values.
 
 use colltrans::record::{Dents, PairQuestion};
 use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
@@ -11,14 +11,15 @@ use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 use crate::solid_cast::{patiently, placed_bodies};
 
-/// Two bodies where they are, as a value: asked how far they are apart, how deep they overlap.
+/// Two bodies at fixed poses, as a value: query their distance or the depth of their overlap.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : ConvexPolyhedron or Solid
-///     Nothing moves; the names tell them apart. If one of them is a solid, both are asked as solids.
+///     Neither body moves; the names only distinguish them. If one of them is a solid, both are treated as
+///     solids.
 /// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
+///     Poses of the bodies in the world; see :class:`Pose`.
 ///
 /// Examples
 /// --------
@@ -34,7 +35,7 @@ pub(crate) struct Pair {
     poses: [colltrans::Pose; 2],
 }
 
-/// Of convex bodies, or of solids.
+/// A value for convex bodies or for solids.
 #[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Of<C, S> {
@@ -45,11 +46,11 @@ pub(crate) enum Of<C, S> {
 /// The bodies, and their poses by name.
 type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
 
-/// The library's pair.
+/// The pair of the library.
 pub(crate) type Asked<'a> = Of<colltrans::Pair<'a>, colltrans::Pair<'a, Solid>>;
 
 impl Pair {
-    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
         Dents::of(self.bodies.each_ref().map(Piece::dent))
     }
@@ -65,7 +66,7 @@ impl Pair {
         })
     }
 
-    /// The library's.
+    /// Builds the pair of the library.
     pub(crate) fn asked(&self) -> PyResult<Asked<'_>> {
         let [at, to] = self.poses;
         let pair = if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
@@ -78,8 +79,8 @@ impl Pair {
         pair.or_raise()
     }
 
-    /// An answer of the library's; without the interpreter's lock where it may take long, as between
-    /// solids and, `is_long`, where convex bodies are asked for more than a microsecond's work.
+    /// Runs a query of the library. Releases the interpreter's lock for solids, and for convex bodies if
+    /// `is_long` is set, because such queries take more than a microsecond.
     pub(crate) fn ask<T: Send + 'static>(
         slf: &Bound<'_, Self>,
         is_long: bool,
@@ -100,7 +101,7 @@ impl Pair {
         }
     }
 
-    /// The proof between solids, for which they are asked once more.
+    /// Builds the proof between solids, by running the query again.
     pub(crate) fn solid_proof(&self, question: PairQuestion) -> PyResult<ProofFile> {
         let Of::Solids(pair) = self.asked()? else {
             return Err(error("CaseError", "the bodies are convex"));
@@ -115,7 +116,8 @@ impl Pair {
     }
 }
 
-const NO_PROOF: &str = "the depth of solids has no proof; a clearance has one of their overlap";
+const NO_PROOF: &str =
+    "the depth of solids has no proof; save the proof of a clearance, which proves their overlap";
 
 placed_bodies!(Pair);
 
@@ -134,7 +136,7 @@ impl Pair {
         Ok(query)
     }
 
-    /// A picture of the bodies and of the shortest way between them: see :func:`colltrans.show`.
+    /// Draws the bodies and the shortest segment between them; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
@@ -144,7 +146,7 @@ impl Pair {
         html(slf)
     }
 
-    /// The arguments that make it once more, for `pickle` and `copy`.
+    /// Returns the arguments that build the pair again, for `pickle` and `copy`.
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
         let named = PyDict::new(py);
         named.set_item("moving_pose", self.moving_pose())?;

@@ -1,4 +1,4 @@
-//! Poses, and all that stands for one.
+//! Poses, and the arguments that describe one.
 
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use numpy::{PyArray1, PyArray2};
@@ -14,18 +14,18 @@ use crate::frozen::getters;
 /// Parameters
 /// ----------
 /// source : array_like, Pose or object with ``as_matrix()``, optional
-///     A translation ``(3,)``; a translation and a unit quaternion ``(7,)``: x, y, z, then
-///     qx, qy, qz, qw; a matrix ``(3, 4)`` or ``(4, 4)``, whose entries are taken as they are; or
-///     something that has one (``scipy.spatial.transform``). The identity without. A rotation of few
-///     digits, off one by more than 1e-6 and at most 0.02, becomes the nearest rotation, with a
+///     A translation ``(3,)``; a translation and a unit quaternion ``(7,)``: x, y, z, then qx, qy, qz, qw; a
+///     matrix ``(3, 4)`` or ``(4, 4)``, whose entries are used without normalisation; or an object with a
+///     method ``as_matrix()`` (``scipy.spatial.transform``). The default is the identity. A rotation with few
+///     digits, with a defect above 1e-6 and at most 0.02, is replaced by the nearest rotation with a
 ///     ``RoundedPoseWarning``.
 ///
 /// Raises
 /// ------
 /// PoseError
-///     A rotation that is off one by more than 0.02, a translation that is not finite or out of range.
+///     The defect of the rotation exceeds 0.02, or the translation is not finite or out of range.
 /// InputError
-///     Another shape.
+///     The argument has another shape.
 ///
 /// Examples
 /// --------
@@ -42,7 +42,7 @@ pub(crate) struct Pose(pub(crate) colltrans::Pose);
 getters!(Pose, |it| {
     /// ndarray of shape (3,): The translation ``t``, in world units.
     translation(py): Vector<'py> = row(py, it.0.translation());
-    /// ndarray of shape (3, 3): The matrix ``R``, whose nine entries define where a body is.
+    /// ndarray of shape (3, 3): The matrix ``R``, whose nine entries define the rotation.
     rotation(py): PyResult<Bound<'py, PyArray2<f64>>> =
         table(py, it.0.matrix().transpose().to_cols_array_2d().map(|row| row.map(|c| c + 0.0)));
     /// ndarray of shape (4,): The rotation as a unit quaternion x, y, z, w, rounded.
@@ -57,19 +57,19 @@ impl Pose {
         pose(source, "source").map(Self)
     }
 
-    /// The matrix of shape (4, 4).
+    /// Returns the matrix of shape (4, 4).
     fn as_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (r, t) = (self.0.matrix(), self.0.translation());
         let line = |i: usize| [r.x_axis[i], r.y_axis[i], r.z_axis[i], t[i]].map(|c| c + 0.0);
         table(py, [line(0), line(1), line(2), [0.0, 0.0, 0.0, 1.0]])
     }
 
-    /// The pose that undoes this one, to rounding error.
+    /// Returns the inverse pose, up to rounding error.
     fn inverse(&self) -> PyResult<Self> {
         self.0.inverse().or_raise().map(Self)
     }
 
-    /// This pose after another.
+    /// Composes two poses: the result applies ``first``, then this pose.
     fn __matmul__(&self, first: &Self) -> PyResult<Self> {
         self.0.compose(&first.0).or_raise().map(Self)
     }
@@ -85,7 +85,7 @@ impl Pose {
 }
 
 impl Pose {
-    /// Returns the seven numbers that make the pose again, to rounding.
+    /// Formats the seven numbers that build the pose again, up to rounding.
     pub(crate) fn text(&self) -> String {
         let (t, q) = (self.0.translation(), self.0.rotation());
         let numbers = [t.x, t.y, t.z, q.x, q.y, q.z, q.w].map(|c| c + 0.0);
@@ -93,7 +93,7 @@ impl Pose {
     }
 }
 
-/// What an argument says about where a body is; nothing says that it is where its own frame is.
+/// Reads the pose of an argument; the identity if it is missing.
 pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltrans::Pose> {
     let Some(of) = of else { return Ok(colltrans::Pose::IDENTITY) };
     if let Ok(pose) = of.cast::<Pose>() {
@@ -104,13 +104,13 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
 
 /// The numbers of an argument that is not a [`Pose`].
 pub(crate) enum Bare {
-    /// As they are given.
+    /// The numbers of the argument itself.
     Numbers(Numbers),
-    /// Those of its method `as_matrix`.
+    /// The numbers that its method `as_matrix` returns.
     Matrix(Numbers),
 }
 
-/// Returns the numbers of an argument that gives a pose and is not a [`Pose`].
+/// Returns the numbers of an argument that describes a pose and is not a [`Pose`].
 pub(crate) fn bare_numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Bare> {
     if let Some(found) = plain_numbers(of) {
         return Ok(Bare::Numbers(found));
@@ -122,7 +122,7 @@ pub(crate) fn bare_numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Bare> 
     }
 }
 
-/// Returns the pose that three or seven numbers or a matrix give.
+/// Builds a pose from three or seven numbers or from a matrix.
 pub(crate) fn of_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<colltrans::Pose> {
     let found = match bare {
         Bare::Numbers(found) => found,
@@ -142,7 +142,8 @@ pub(crate) fn of_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<collt
     }
 }
 
-/// From a matrix with or without a fourth row; a rotation alone where the argument is known to be one.
+/// Builds a pose from a matrix with three or four rows. A matrix `(3, 3)` is accepted if `rotation_alone` is
+/// set.
 fn of_matrix(
     py: Python<'_>,
     found: &Numbers,
@@ -172,7 +173,7 @@ fn of_matrix(
     reported(py, rounded, name)
 }
 
-/// Returns the pose, with a warning if its rotation was replaced by the nearest one.
+/// Returns the pose, and warns if its rotation was replaced by the nearest one.
 fn reported(
     py: Python<'_>,
     (pose, defect): (colltrans::Pose, Option<f64>),
@@ -182,7 +183,7 @@ fn reported(
     Ok(pose)
 }
 
-/// Refuses a list of poses where one pose is expected.
+/// Rejects a list of poses where one pose is expected.
 fn refuse_list_of_poses(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
     let Ok(list) = given.cast::<PySequence>() else { return Ok(()) };
     if list.len()? == 0 || !list.get_item(0)?.is_instance_of::<Pose>() {

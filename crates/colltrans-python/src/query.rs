@@ -1,8 +1,7 @@
-//! Queries between convex bodies, as values: two placed bodies, a direction and the choices.
+//! Queries between convex bodies, as values: two placed bodies, a direction and options.
 //!
-//! A [`Cast`] is what every answer keeps to say more when it is asked: features, points, whether a proof
-//! is one. It holds its bodies by reference, so it is small, and the library's cast is made from it in
-//! no time.
+//! Every answer holds its [`Cast`] and computes features, points and checks of proofs from it on request. A
+//! cast holds its bodies by reference, so it is small, and building the library's cast from it is cheap.
 
 use colltrans::glam::DVec3;
 use colltrans::record::Dents;
@@ -28,31 +27,31 @@ pub(crate) struct Arguments<'a, 'py> {
     pub(crate) solver: Option<&'a Bound<'py, PyAny>>,
 }
 
-/// A query as a value: two placed bodies and a direction, asked what one likes, saved and replayed.
+/// Two placed bodies and a direction, as a value: query it, save it, replay it.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : ConvexPolyhedron
-///     The body that moves, and the one that does not.
+///     The moving and the fixed body.
 /// direction : array_like of shape (3,)
-///     Of the world, of any length; translations count in multiples of it.
+///     A vector of the world, of any length. Translations are multiples of it.
 /// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
+///     Poses of the bodies in the world; see :class:`Pose`.
 /// graze_tolerance : float
-///     Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
+///     Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding errors.
 /// keep : float
-///     A gap to be kept, a length: all questions are then about where the bodies are as near as that, not
-///     about where they touch. Points of answers are those that are the gap apart.
+///     A minimum gap, a length. With a gap all questions refer to the translation at which the distance falls
+///     to the gap instead of contact. Points of answers are then the gap apart.
 /// solver : {"auto", "cta", "portal"} or Cta
-///     How the search is narrowed. Answers and certificates are the same. A body's first query with
-///     "cta" that needs its sections makes them, and pays for it.
+///     The search algorithm. Answers and certificates are the same. With "cta", the first query of a body
+///     that needs its sections builds them, which takes longer.
 ///
 /// Raises
 /// ------
 /// QueryError
-///     A direction that is zero or out of range, a tolerance or a gap that is negative.
+///     The direction is zero or out of range, or a tolerance or a gap is negative.
 /// PoseError
-///     A pose that is none.
+///     An argument does not describe a pose.
 ///
 /// Examples
 /// --------
@@ -73,12 +72,12 @@ pub(crate) struct Cast {
 }
 
 impl Cast {
-    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
         Dents::of([&self.moving, &self.fixed].map(|body| body.get().dent()))
     }
 
-    /// Not checked yet.
+    /// Builds a query without checking it.
     pub(crate) fn of(arguments: Arguments<'_, '_>) -> PyResult<Self> {
         let Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver } =
             arguments;
@@ -91,7 +90,7 @@ impl Cast {
         })
     }
 
-    /// The library's.
+    /// Builds the cast of the library.
     #[inline]
     fn cast(&self) -> Result<colltrans::Cast<'_>, QueryError> {
         let (moving, fixed) = (&self.moving.get().0, &self.fixed.get().0);
@@ -99,7 +98,7 @@ impl Cast {
             .with_options(self.options)
     }
 
-    /// An answer of the library's, or its exception; without the interpreter's lock where it takes long.
+    /// Runs a query of the library. Releases the interpreter's lock if the query takes long.
     #[inline]
     pub(crate) fn ask<'a, T: Send>(
         &'a self,
@@ -107,14 +106,15 @@ impl Cast {
         question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, QueryError> + Send,
     ) -> PyResult<T> {
         let work = || self.cast().and_then(|cast| question(&cast));
-        // All others take about a microsecond, of bodies of any size: waiting for the lock would take longer.
+        // All other queries take about a microsecond for bodies of any size; waiting for the lock would take
+        // longer.
         let options = &self.options;
         let is_long = options.keep != 0.0 || options.solver == colltrans::Solver::Cta;
         let found = if is_long { py.detach(work) } else { work() };
         found.map_err(|what| self.error(&what))
     }
 
-    /// What is made of the library's cast without a search.
+    /// Computes a value from the library's cast without a search.
     pub(crate) fn with<'a, T>(
         &'a self,
         make: impl FnOnce(&colltrans::Cast<'a>) -> T,
@@ -126,7 +126,7 @@ impl Cast {
         query_error(what, || self.cast().map_or_else(|e| e.to_string(), |cast| cast.to_json()))
     }
 
-    /// The same bodies where they are, along another direction.
+    /// Returns the query of the same placed bodies along another direction.
     pub(crate) fn along(&self, py: Python<'_>, direction: DVec3) -> Self {
         let (moving, fixed) = (self.moving.clone_ref(py), self.fixed.clone_ref(py));
         Self { moving, fixed, direction, ..*self }
@@ -138,17 +138,17 @@ getters!(Cast, |it| {
     moving(py): Py<ConvexPolyhedron> = it.moving.clone_ref(py);
     /// ConvexPolyhedron: The fixed body.
     fixed(py): Py<ConvexPolyhedron> = it.fixed.clone_ref(py);
-    /// Pose: Where the moving body is.
+    /// Pose: The pose of the moving body.
     moving_pose: Pose = Pose(it.poses[0]);
-    /// Pose: Where the fixed body is.
+    /// Pose: The pose of the fixed body.
     fixed_pose: Pose = Pose(it.poses[1]);
     /// ndarray of shape (3,): The direction, as given.
     direction(py): Vector<'py> = row(py, it.direction);
-    /// float: Sideways overlaps up to this length count as grazing.
+    /// float: Lateral overlaps up to this length count as grazing.
     graze_tolerance: f64 = it.options.graze_tolerance;
-    /// float: The gap to be kept; 0 if there is none.
+    /// float: The minimum gap; 0 if there is none.
     keep: f64 = it.options.keep;
-    /// str: How the search is narrowed.
+    /// str: The search algorithm.
     solver: &'static str = it.options.solver.name();
 });
 
@@ -177,19 +177,19 @@ impl Cast {
         Ok(query)
     }
 
-    /// The same bodies where they are, and the direction turned round.
+    /// Returns the query of the same placed bodies along the opposite direction.
     pub(crate) fn reversed(&self, py: Python<'_>) -> Self {
         self.along(py, -self.direction)
     }
 
-    /// The query as text: bodies, poses, direction and choices, exact in bits.
+    /// Returns the query as text: bodies, poses, direction and options, exact in bits.
     ///
-    /// ``colltrans replay`` of the command line reads the same.
+    /// The command ``colltrans replay`` reads this text too.
     fn to_json(&self) -> PyResult<String> {
         self.with(|cast| cast.to_json())
     }
 
-    /// From what `to_json`, or the command line, has written.
+    /// Reads the text that `to_json` or the command line wrote.
     #[staticmethod]
     fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
         let saved = colltrans::Case::from_json(text).or_raise()?;
@@ -205,7 +205,7 @@ impl Cast {
         })
     }
 
-    /// A picture of the bodies and of the first contact: see :func:`colltrans.show`.
+    /// Draws the bodies and the first contact; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Shows<'_, 'py>>) -> Shown<'py> {
         show(slf, options)

@@ -1,4 +1,4 @@
-//! Questions: the functions of the package, and the methods of queries that ask.
+//! Queries: the functions of the package, and the query methods of casts and pairs.
 
 use colltrans::solid::SolidCast as _;
 use colltrans::{QueryError, Solver};
@@ -16,7 +16,7 @@ use crate::solid_answer::SolidOverlapping;
 use crate::solid_cast::SolidCast;
 use crate::solver::options_of;
 
-/// The answer as Python has it.
+/// Runs a query and converts its answer to a Python object.
 fn answered<'py, A: Answer<Query = Cast>>(
     query: &Bound<'py, Cast>,
     question: impl FnOnce(&colltrans::Cast<'_>) -> Result<A, QueryError> + Send,
@@ -26,32 +26,32 @@ fn answered<'py, A: Answer<Query = Cast>>(
 
 #[pymethods]
 impl Cast {
-    /// At which translation do the bodies first meet? See :func:`cast`.
+    /// Computes the translation at which the bodies first meet; see :func:`cast`.
     fn first_contact<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         answered(slf, |cast| cast.first_contact())
     }
 
-    /// At which translations do they first and last meet? See :func:`contact_range`.
+    /// Computes the translations at which the bodies first and last meet; see :func:`contact_range`.
     fn contact_range<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         answered(slf, |cast| cast.contact_range())
     }
 
-    /// How far can the moving body move from where it is? See :func:`clearance`.
+    /// Computes how far the moving body can move from its pose; see :func:`clearance`.
     fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         answered(slf, |cast| cast.clearance())
     }
 
-    /// How far must it go back until the overlap ends? See :func:`directional_depth`.
+    /// Computes how far the moving body must go back until the overlap ends; see :func:`directional_depth`.
     fn directional_depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         answered(slf, |cast| cast.directional_depth())
     }
 
-    /// Do the bodies meet where they are? See :func:`intersects`.
+    /// Checks whether the bodies meet at their poses; see :func:`intersects`.
     fn intersects<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         answered(slf, |cast| cast.intersects())
     }
 
-    /// Checks a proof against the two bodies, with nothing of the search that found it.
+    /// Checks a proof with the two bodies alone, without a search.
     ///
     /// Parameters
     /// ----------
@@ -60,12 +60,12 @@ impl Cast {
     /// Returns
     /// -------
     /// float
-    ///     The gap, in multiples of the direction, or the margin, a length, that is really proven.
+    ///     The proven gap, in multiples of the direction, or the proven margin, a length.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(slf: &Bound<'_, Self>, proof: &Bound<'_, PyAny>) -> PyResult<f64> {
         if let Ok(separation) = proof.cast::<Separation>() {
             return separation.get().verify(Some(slf));
@@ -76,26 +76,26 @@ impl Cast {
 
 #[pymethods]
 impl Pair {
-    /// How far apart are the bodies, and where? See :func:`distance`.
+    /// Computes the distance of the bodies and their nearest points; see :func:`distance`.
     fn distance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         distance_of(slf)
     }
 
-    /// How deep do they overlap? See :func:`depth`.
+    /// Computes the depth of the overlap; see :func:`depth`.
     fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         depth_of(slf)
     }
 
-    /// Are they closer than a length? See :func:`within`.
+    /// Checks whether the bodies are closer than a length; see :func:`within`.
     fn within<'py>(slf: &Bound<'py, Self>, length: f64) -> PyResult<Bound<'py, PyAny>> {
         within_of(slf, length)
     }
 }
 
-/// They run without the interpreter's lock.
+/// These methods run without the interpreter's lock.
 #[pymethods]
 impl SolidCast {
-    /// How far can the moving body move from where it is, and what stops it?
+    /// Computes how far the moving body can move from its pose, and what stops it.
     ///
     /// Returns
     /// -------
@@ -104,7 +104,7 @@ impl SolidCast {
         Self::ask(slf, |cast| cast.clearance())?.or_raise()?.object(slf)
     }
 
-    /// The clearance, with a proof that :meth:`verify` checks.
+    /// Computes the clearance with a proof that :meth:`verify` checks.
     ///
     /// Returns
     /// -------
@@ -116,7 +116,7 @@ impl SolidCast {
         Ok((answer.object(slf)?, SolidCertificate(proof)))
     }
 
-    /// Checks a proof against the two bodies.
+    /// Checks a proof with the two bodies alone, without a search.
     ///
     /// Parameters
     /// ----------
@@ -125,32 +125,33 @@ impl SolidCast {
     /// Returns
     /// -------
     /// float
-    ///     How far the bounds of the distance are apart, in multiples of the direction.
+    ///     The difference of the bounds of the distance, in multiples of the direction.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(slf: &Bound<'_, Self>, proof: &Bound<'_, SolidCertificate>) -> PyResult<f64> {
         let proof = proof.clone().unbind();
         Self::ask(slf, move |cast| cast.verify(&proof.get().0))?.or_raise()
     }
 
-    /// Whether the bodies as they are, as closed sets, have a point in common. The gap to be kept plays no
-    /// part.
+    /// Checks whether the nominal bodies, as closed sets, have a common point. The minimum gap is ignored.
     fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
         Ok(Self::ask(slf, |cast| cast.intersects())?.or_raise()?.meets)
     }
 
-    /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
-    /// none up to their size.
+    /// Computes the smallest tolerance at which the bodies do not overlap.
+    ///
+    /// It is 0 if they do not overlap, and None if no tolerance up to their size separates them.
     fn least_tolerance(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
         Self::ask(slf, |cast| cast.least_tolerance())
     }
 
-    /// Where the bodies, shrunk by half the tolerance, overlap, and with which tolerance they
-    /// would not; None if they do not: what
-    /// an answer with ``ignore_start_overlaps`` has ignored.
+    /// Finds a place where the bodies, shrunk by half the tolerance, overlap; None if they do not.
+    ///
+    /// This is the overlap that an answer with ``ignore_start_overlaps`` ignores. The result also has the
+    /// smallest tolerance without an overlap.
     ///
     /// Returns
     /// -------
@@ -172,13 +173,14 @@ impl SolidCast {
         Ok(found.map(|overlap| SolidOverlapping { overlap, query: slf.clone().unbind() }))
     }
 
-    /// Where the bodies, as they are, meet last, in multiples of the direction; None if nothing faces.
-    /// The best estimate: for one that is safe see ``exit_bounds``.
+    /// Estimates the last translation at which the nominal bodies meet, in multiples of the direction; None
+    /// if no facets face each other. Proven bounds are in ``exit_bounds``.
     fn exit(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
         Self::ask(slf, |cast| cast.exit().map(|exit| exit.value))
     }
 
-    /// The proven bounds of ``exit``, None if nothing faces: beyond the second they never meet again.
+    /// Computes proven bounds of ``exit``: the bodies do not meet beyond the second one. None if no facets
+    /// face each other.
     fn exit_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<(f64, f64)>> {
         Self::ask(slf, |cast| cast.exit().map(|exit| exit.bounds().into()))
     }
@@ -186,12 +188,15 @@ impl SolidCast {
 
 fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
     if query.get().options.keep != 0.0 {
-        return Err(error("QueryError", "solids that keep a gap are asked by `within`"));
+        return Err(error(
+            "QueryError",
+            "intersects does not accept a gap for solids; call within(moving, fixed, length)",
+        ));
     }
     Ok(PyBool::new(query.py(), SolidCast::intersects(query)?).to_owned().into_any())
 }
 
-/// A function of Python that asks one question.
+/// Defines a function for one question of convex bodies.
 macro_rules! question {
     ($(#[$doc:meta])* $name:ident => $ask:ident) => {
         $(#[$doc])*
@@ -221,7 +226,7 @@ macro_rules! question {
     };
 }
 
-/// A function of Python that asks one question of bodies of any kind.
+/// Defines a function for one question of bodies of both kinds.
 macro_rules! question_of_any {
     ($(#[$doc:meta])* $name:ident => $ask:ident, $ask_solids:path) => {
         $(#[$doc])*
@@ -279,33 +284,35 @@ const FOR_SOLIDS: &str =
 const FOR_CONVEX: &str = "graze_tolerance and solver are for convex bodies; solids have tolerance";
 
 question! {
-    /// At which translation along a direction do two bodies first meet?
+    /// Computes the translation along a direction at which two bodies first meet.
     ///
     /// Parameters
     /// ----------
     /// moving, fixed : ConvexPolyhedron
-    ///     The body that moves, and the one that does not.
+    ///     The moving and the fixed body.
     /// direction : array_like of shape (3,)
-    ///     Of the world, of any length; translations count in multiples of it.
+    ///     A vector of the world, of any length. Translations are multiples of it.
     /// moving_pose, fixed_pose : array_like or Pose, optional
-    ///     Where the bodies are; see :class:`Pose`.
+    ///     Poses of the bodies in the world; see :class:`Pose`.
     /// graze_tolerance : float
-    ///     Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
+    ///     Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding
+    ///     errors.
     /// keep : float
-    ///     A gap to be kept, a length: asked is where the bodies are first as near as that, not where they
-    ///     touch.
+    ///     A minimum gap, a length. With a gap the result is the translation at which the distance of the
+    ///     bodies first falls to it.
     /// solver : {"auto", "cta", "portal"} or Cta
-    ///     How the search is narrowed. Answers and certificates are the same.
+    ///     The search algorithm. Answers and certificates are the same.
     ///
     /// Returns
     /// -------
     /// Contact or Grazing or Separated
-    ///     A negative translation is a contact behind, or an overlap now.
+    ///     If the translation is negative, the contact is behind the body, or the bodies overlap at the
+    ///     start.
     ///
     /// Raises
     /// ------
     /// QueryError, PoseError, InputError
-    ///     An argument that is refused, with its name or its value.
+    ///     An argument is rejected; the message has its name or its value.
     ///
     /// Examples
     /// --------
@@ -321,12 +328,12 @@ question! {
 }
 
 question! {
-    /// At which translations along a direction do two bodies first and last meet?
+    /// Computes the translations along a direction at which two bodies first and last meet.
     ///
     /// Parameters
     /// ----------
     /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, keep, solver
-    ///     As for :func:`cast`.
+    ///     See :func:`cast`.
     ///
     /// Returns
     /// -------
@@ -342,31 +349,31 @@ question! {
 }
 
 question_of_any! {
-    /// How far can the moving body move from where it is, and what stops it?
+    /// Computes how far the moving body can move from its pose, and what stops it.
     ///
-    /// Contacts behind and grazing slides do not block. Bodies that touch block each other if the
+    /// Contacts behind the body and grazing contacts do not block. Touching bodies block each other if the
     /// motion would make them overlap.
     ///
     /// Parameters
     /// ----------
     /// moving, fixed : ConvexPolyhedron or Solid
-    ///     The body that moves, and the one that does not.
+    ///     The moving and the fixed body.
     /// direction, moving_pose, fixed_pose
-    ///     As for :func:`cast`.
+    ///     See :func:`cast`.
     /// keep : float
-    ///     A gap to be kept, a length: how far until the bodies are as near as that. Bodies that are nearer at
-    ///     the start overlap.
+    ///     A minimum gap, a length. The body stops when the distance falls to it. Bodies that are closer at
+    ///     the start count as overlapping.
     /// graze_tolerance, solver
-    ///     As for :func:`cast`; between convex bodies.
+    ///     See :func:`cast`; only for convex bodies.
     /// tolerance, ignore_start_overlaps
-    ///     As for :class:`SolidCast`; if one of the bodies is a solid.
+    ///     See :class:`SolidCast`; only if one of the bodies is a solid.
     ///
     /// Returns
     /// -------
     /// Blocked or Slides or Behind or Separated or Overlapping
-    ///     All have a ``distance``: infinite where nothing blocks, None where the bodies overlap.
+    ///     All have a ``distance``: infinite if nothing blocks, None if the bodies overlap.
     /// SolidBlocked or SolidFree or SolidOverlapping
-    ///     The same, if one of the bodies is a solid.
+    ///     The corresponding answers if one of the bodies is a solid.
     ///
     /// Examples
     /// --------
@@ -384,12 +391,12 @@ question_of_any! {
 }
 
 question! {
-    /// How far must the moving body go back, against the direction, until the overlap ends?
+    /// Computes how far the moving body must go back, against the direction, until the overlap ends.
     ///
     /// Parameters
     /// ----------
     /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, keep, solver
-    ///     As for :func:`cast`.
+    ///     See :func:`cast`.
     ///
     /// Returns
     /// -------
@@ -405,22 +412,23 @@ question! {
 }
 
 question_of_any! {
-    /// Do the bodies, as closed sets and to within rounding error, meet where they are?
+    /// Checks whether the bodies, as closed sets and up to rounding error, meet at their poses.
     ///
     /// Parameters
     /// ----------
     /// moving, fixed : ConvexPolyhedron or Solid
     /// direction, moving_pose, fixed_pose, graze_tolerance, solver, tolerance, ignore_start_overlaps
-    ///     As for :func:`clearance`. The direction and the tolerances play no part.
+    ///     See :func:`clearance`. The answer does not depend on the direction and the tolerances.
     /// keep : float
-    ///     Of convex bodies, a gap, a length: are they as near as that? For solids ask :func:`within`.
+    ///     For convex bodies a gap, a length: checks whether their distance is at most the gap. For solids
+    ///     call :func:`within`.
     ///
     /// Returns
     /// -------
     /// Intersection
-    ///     True or false in a condition, with the proof.
+    ///     Converts to a bool, and has the proof.
     /// bool
-    ///     If one of the bodies is a solid.
+    ///     The result if one of the bodies is a solid.
     ///
     /// Examples
     /// --------
@@ -431,17 +439,18 @@ question_of_any! {
     intersects => intersects, solids_meet
 }
 
-/// How far apart are two bodies where they are, and where are they nearest?
+/// Computes the distance of two bodies at fixed poses, and their nearest points.
 ///
-/// The bounds hold exactly, however near the bodies are: ``lower <= true distance <= upper``, a few
-/// roundings apart.
+/// The bounds hold exactly at any distance: ``lower <= true distance <= upper``. They differ by a few
+/// rounding errors.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : ConvexPolyhedron or Solid
-///     Nothing moves; the names tell them apart. If one of them is a solid, both are asked as solids.
+///     Neither body moves; the names only distinguish them. If one of them is a solid, both are treated as
+///     solids.
 /// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
+///     Poses of the bodies in the world; see :class:`Pose`.
 ///
 /// Returns
 /// -------
@@ -450,7 +459,7 @@ question_of_any! {
 /// Raises
 /// ------
 /// PoseError, InputError, BuildError
-///     An argument that is refused.
+///     An argument is rejected.
 ///
 /// Examples
 /// --------
@@ -474,17 +483,17 @@ pub(crate) fn distance<'py>(
     distance_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?)
 }
 
-/// How deep do two bodies overlap: which shortest translation, over all directions, parts them?
+/// Computes how deep two bodies overlap: the shortest translation, over all directions, that separates them.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed, moving_pose, fixed_pose
-///     As for :func:`distance`.
+///     See :func:`distance`.
 ///
 /// Returns
 /// -------
 /// Depth or OverlapDepth
-///     Of solids the second: the least tolerance with which they would not overlap.
+///     Solids have an OverlapDepth: the smallest tolerance at which they would not overlap.
 ///
 /// Examples
 /// --------
@@ -507,14 +516,15 @@ pub(crate) fn depth<'py>(
     depth_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?)
 }
 
-/// Are two bodies closer than a length where they are? Ended as soon as that is known.
+/// Checks whether two bodies at fixed poses are closer than a length. The search ends when the comparison is
+/// decided.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed, moving_pose, fixed_pose
-///     As for :func:`distance`.
+///     See :func:`distance`.
 /// length : float
-///     Not negative, in the unit of the bodies.
+///     A length, not negative, in the unit of the bodies.
 ///
 /// Returns
 /// -------
@@ -523,7 +533,7 @@ pub(crate) fn depth<'py>(
 /// Raises
 /// ------
 /// QueryError
-///     A length that is negative or not a number.
+///     The length is negative or not a number.
 ///
 /// Examples
 /// --------

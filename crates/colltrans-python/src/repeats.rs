@@ -1,7 +1,8 @@
-//! Rows that ask about the same bodies, turned in the same way, often enough that the faces of their difference pay.
+//! Groups of rows with the same bodies and rotations. Large groups are answered with the faces of their
+//! Minkowski difference.
 //!
-//! Which rows these are depends on the rows alone, so the bits do not depend on threads or on the order of rows.
-//! What is made for them is made by the first thread that needs it.
+//! The grouping depends on the rows alone, so the bits of the answers depend neither on the threads nor on
+//! the order of rows. The first thread that needs the data of a group computes them.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -15,16 +16,17 @@ use colltrans::{
 
 use crate::rows::{Bodies, Table};
 
-/// So many groups of rows are answered by faces, those of most rows: faces take some 100 KB each.
+/// Maximum number of groups that use faces, because faces take some 100 KB per group. The largest groups are
+/// chosen.
 const MOST_GROUPS: usize = 256;
 
-/// A group for each row, or none.
+/// The group of each row, if it has one.
 pub(crate) struct Repeats<'a> {
     of_row: Vec<u32>,
     groups: Vec<Group<'a>>,
 }
 
-/// The number of no group.
+/// Marks a row without a group.
 const NONE: u32 = u32::MAX;
 
 /// Rows with the same bodies and rotations.
@@ -32,14 +34,14 @@ struct Group<'a> {
     bodies: [&'a ConvexPolyhedron; 2],
     first: usize,
     rows: usize,
-    /// Of all its rows.
+    /// The direction of all rows, if it is the same.
     direction: Option<DVec3>,
     poses: Option<[Pose; 2]>,
     rotations: OnceLock<FixedRotations<'a>>,
 }
 
 impl<'a> Repeats<'a> {
-    /// Of so many rows.
+    /// Groups `n` rows. Only rows that `is_asked` accepts are grouped.
     pub(crate) fn find(
         n: usize,
         bodies: &[Bodies<'a>; 2],
@@ -99,7 +101,7 @@ impl<'a> Repeats<'a> {
         repeats
     }
 
-    /// Others have no poses.
+    /// Sets the poses of the groups for which faces save time. The other groups have no poses.
     fn keep_those_that_pay(&mut self, poses: &[Table<'a>; 2]) {
         let pays = |group: &&mut Group<'a>| {
             let [moving, fixed] = group.bodies;
@@ -117,14 +119,14 @@ impl<'a> Repeats<'a> {
     }
 }
 
-/// Who answers a row.
+/// The method that answers a row.
 pub(crate) enum By<'m, 'r, 'a> {
     Cast,
     Rotations(&'m FixedRotations<'a>),
     Approach(&'m Approach<'r, 'a>),
 }
 
-/// The groups, with maps of those that have one direction.
+/// The groups, with an approach map for each group that has a single direction.
 pub(crate) struct Answerers<'r, 'a> {
     repeats: &'r Repeats<'a>,
     maps: Vec<OnceLock<Option<Approach<'r, 'a>>>>,

@@ -1,4 +1,4 @@
-//! Robots on paths of joint values: which two links first meet, each other or what stands around.
+//! Robots on joint paths: the first contact between two links, or between a link and the scene.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,30 +25,30 @@ use crate::frozen::{
 };
 use crate::solid::Piece;
 
-/// Between two looks for signals.
+/// Time between two polls for signals.
 const PATIENCE: Duration = Duration::from_millis(100);
-/// The names of the outcomes, by their numbers; the last is that of a row without an answer.
+/// The names of the outcomes, in the order of their numbers. The last one is that of a row without an answer.
 const OUTCOMES: [&str; 6] = ["contact", "grazing", "free", "overlapping", "undecided", "error"];
 
-/// A robot of URDF: links with what they collide with, and the joints between them.
+/// A robot of a URDF file: links with their collision bodies, and the joints between them.
 ///
-/// Made by :meth:`read`.
+/// Built by :meth:`read`.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Robot {
     arm: Arm,
-    /// Which links are not held against each other, of an SRDF file.
+    /// Pairs of links that an SRDF file excludes from collision checks.
     listed: Option<Vec<[String; 2]>>,
 }
 
-/// What is asked about one path, or many: the robot among what stands around, and the gap to be kept.
+/// A query for one path or many: the robot in its scene, and the minimum gap.
 struct Asked {
     cell: Cell,
     keep: f64,
 }
 
-/// A path, as somebody gives it.
+/// A path as the caller gives it.
 struct Rows {
-    /// Of a file its name, with a colon.
+    /// The name of the file and a colon; empty for an array.
     place: String,
     table: Table,
     rest: BTreeMap<String, f64>,
@@ -111,7 +111,7 @@ impl Asked {
 }
 
 impl Rows {
-    /// Of a file, or of an array.
+    /// Reads the rows of a file or an array.
     fn of(
         path: &Bound<'_, PyAny>,
         columns: Option<Vec<String>>,
@@ -124,19 +124,22 @@ impl Rows {
             return Ok(Self { place, table, rest });
         }
         if columns.is_some() || times.is_some() {
-            return Err(input("path", "a file has its own columns and times"));
+            return Err(input(
+                "path",
+                "columns and times are given, but a path file has its own; drop them",
+            ));
         }
         let file: PathBuf = path.extract()?;
         let place = file.display().to_string();
         let text = colltrans_mesh::file::text(&file)
-            .map_err(|what| input("path", format_args!("{place}: cannot be read: {what}")))?;
+            .map_err(|what| input("path", format_args!("cannot read {place}: {what}")))?;
         let table =
             Table::parse(&text).map_err(|what| input("path", format_args!("{place}: {what}")))?;
         Ok(Self { place: format!("{place}: "), table, rest })
     }
 }
 
-/// An array of rows.
+/// Converts an array of rows.
 fn table_of(
     rows: &Bound<'_, PyAny>,
     names: Option<Vec<String>>,
@@ -167,11 +170,11 @@ fn table_of(
 }
 
 getters!(Robot, |it| {
-    /// str: Its name.
+    /// str: The name of the robot.
     name: &str = it.arm.name();
     /// list of str: The names of its links.
     links: Vec<&str> = it.arm.links().iter().map(|link| link.name.as_str()).collect();
-    /// list of str: The joints that move by themselves, in the order of the values of a row.
+    /// list of str: The independent joints, in the order of the values of a row.
     joints: Vec<&str> = {
         let own = it.arm.joints().iter().filter(|joint| joint.mimic.is_none());
         own.map(|joint| joint.name.as_str()).collect()
@@ -182,32 +185,32 @@ getters!(Robot, |it| {
         let joints = it.arm.joints().iter();
         joints.filter_map(|joint| Some((joint.name.as_str(), of(joint)?))).collect()
     };
-    /// list of str: What was noted when it was read.
+    /// list of str: Diagnostics of reading the file.
     notes: Vec<String> = it.arm.notes().to_vec();
 });
 
 #[pymethods]
 impl Robot {
-    /// A robot of a URDF file, in metres and radians.
+    /// Reads a robot from a URDF file, in metres and radians.
     ///
     /// Joints may be revolute, continuous, prismatic or fixed, and may follow others (``mimic``). Cylinders
-    /// and spheres are taken as polyhedra around them.
+    /// and spheres are replaced by circumscribed polyhedra.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
     /// srdf : str or os.PathLike, optional
-    ///     A file whose ``disable_collisions`` says which links are not held against each other. Without
-    ///     it these are links with one moving joint between them.
+    ///     A file whose ``disable_collisions`` excludes pairs of links from collision checks. The default
+    ///     excludes links with one moving joint between them.
     /// packages : list of str or os.PathLike
-    ///     Where ``package://`` is looked for.
+    ///     Folders in which ``package://`` references are searched.
     /// skip_missing : bool
-    ///     Leave out meshes that cannot be found, with a note.
+    ///     Whether to leave out meshes that cannot be found, with a note.
     /// allow_outside : bool
-    ///     Read files that the robot's file names and that lie outside of its folder and all packages.
+    ///     Whether to read files outside the folder of the robot's file and outside all packages.
     /// hulls : list of str
-    ///     Links whose meshes are taken as their convex hulls, for meshes that are no surface of a body;
-    ///     ``"*"`` is all links.
+    ///     Links whose meshes are replaced by their convex hulls, for meshes that do not bound a body;
+    ///     ``"*"`` stands for all links.
     ///
     /// Returns
     /// -------
@@ -216,7 +219,7 @@ impl Robot {
     /// Raises
     /// ------
     /// AssemblyError
-    ///     What is wrong with a file, and where.
+    ///     A file is invalid; the message has the reason and the place.
     #[staticmethod]
     #[pyo3(signature = (path, *, srdf=None, packages=Vec::new(), skip_missing=false,
         allow_outside=false, hulls=Vec::new()))]
@@ -237,7 +240,7 @@ impl Robot {
         py.detach(|| {
             let arm = read::robot(&path, &options).or_raise()?;
             let listed = srdf.as_deref().map(read::disabled).transpose().or_raise()?;
-            // What it names are links of this robot.
+            // Checks that the names in the SRDF file are links of this robot.
             arm.pairs(listed.as_deref()).map_err(|what| match &srdf {
                 Some(file) => input("srdf", format_args!("{}: {what}", file.display())),
                 None => input("srdf", what),
@@ -246,28 +249,28 @@ impl Robot {
         })
     }
 
-    /// Which two bodies first meet on a path, and when?
+    /// Computes when two bodies first meet on a joint path, and which.
     ///
-    /// All links are held against the scene, and against each other but for neighbours, or for what the
-    /// SRDF file names. From row to row each joint goes evenly.
+    /// All links are checked against the scene and against each other, except neighbours, or the pairs that
+    /// the SRDF file excludes. Each joint moves linearly from row to row.
     ///
     /// Parameters
     /// ----------
     /// path : array_like of shape (N, J), or str or os.PathLike
-    ///     Rows of joint values, radians or metres, in the order of :attr:`joints`; or a CSV or JSON file
-    ///     of them.
+    ///     Rows of joint values, in radians or metres, in the order of :attr:`joints`; or a CSV or JSON file
+    ///     of such rows.
     /// scene : dict of str to ConvexPolyhedron or Solid, optional
-    ///     What stands in the world, in metres, by name.
+    ///     Bodies of the scene, in metres, by name.
     /// ignore : list of tuple of (str, str)
-    ///     Pairs of links, or of a link and what stands there, that are not held against each other.
+    ///     Pairs of links, or of a link and a scene body, that are excluded from collision checks.
     /// keep : float
-    ///     A gap to be kept: asked is when two are first as near as that.
+    ///     A minimum gap. The query then returns when the distance of two bodies first falls to it.
     /// joints : dict of str to float, optional
-    ///     Joints that rest, and their values; they have no column.
+    ///     Joints with fixed values. These joints have no column.
     /// columns : list of str, optional
-    ///     The joints of the columns, where they are in another order.
+    ///     The joints of the columns, if their order differs.
     /// times : array_like of shape (N,), optional
-    ///     When the rows are reached; without them rows are counted from 0.
+    ///     The times of the rows. Without them the rows are counted from 0.
     ///
     /// Returns
     /// -------
@@ -276,9 +279,9 @@ impl Robot {
     /// Raises
     /// ------
     /// InputError
-    ///     Rows that do not fit the joints, names that nothing has.
+    ///     The rows do not fit the joints, or a name is unknown.
     /// QueryError
-    ///     What the library refuses.
+    ///     The library rejects the query.
     #[pyo3(signature = (path, scene=None, *, ignore=Vec::new(), keep=0.0, joints=BTreeMap::new(),
         columns=None, times=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
@@ -312,7 +315,8 @@ impl Robot {
     }
 }
 
-/// Work on a thread of its own, which signals end by ending the waiting.
+/// Runs work on a thread of its own and polls for signals. If a signal handler raises, the exception is
+/// returned after the work ends.
 fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let done = Mutex::new(None);
     py.detach(|| {
@@ -337,31 +341,35 @@ fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
     found.ok_or_else(|| error("QueryError", "internal error; please report it"))
 }
 
-/// Which two bodies first meet on a path of joint values, and when.
+/// The first contact of two bodies on a joint path.
 ///
-/// ``outcome`` is ``"contact"``: no two meet before ``lower``, and at ``upper`` these two do;
-/// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
-/// after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins;
-/// ``"undecided"``: the search between the two of ``pair`` took its maximum number of steps, no two meet before
-/// ``lower``, and whether these two do later is open.
+/// The ``outcome`` is one of:
+///
+/// - ``"contact"``: no two bodies meet before ``lower``, and at ``upper`` the bodies of ``pair`` do;
+/// - ``"grazing"``: no two meet before ``lower``, then these two come closer than rounding can resolve; the
+///   time after it is not examined;
+/// - ``"free"``: no two meet on the whole path;
+/// - ``"overlapping"``: two bodies overlap at the start of the path;
+/// - ``"undecided"``: the search for ``pair`` reached its maximum number of steps. No two meet before
+///   ``lower``; later contacts of these two are open.
 #[pyclass(frozen, module = "colltrans", name = "PathContact")]
 pub(crate) struct PathAnswer {
     question: Question,
-    /// When the path ends, and the number of its last row.
+    /// The end of the path, and the index of its last row.
     end: (f64, usize),
     found: PathOutcome,
     record: PathRecord,
     notes: Vec<String>,
 }
 
-/// What was asked: of a robot, or as a pickle has it.
+/// The query of an answer: of a robot, or restored from a pickle.
 enum Question {
     Asked(Arc<Asked>, JointPath),
     Saved(Box<ProofFile>),
 }
 
 impl Question {
-    /// What is asked, and the names of its bodies.
+    /// Calls a function with the cast and the names of its bodies.
     fn with<T>(
         &self,
         of: impl FnOnce(&PathCast<'_>, &[String]) -> Result<T, String>,
@@ -378,7 +386,7 @@ impl Question {
 
 const NO_PATH: &str = "the proof is not about a path";
 
-/// Where the proof of an answer is.
+/// Returns the proof in an answer.
 fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
     match found {
         PathOutcome::Contact(of)
@@ -390,10 +398,10 @@ fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
     }
 }
 
-/// A name, the vertices in the world, triangles.
+/// A name, vertices in the world, and triangles.
 type NamedMesh<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 
-/// The vertices of a body in its frame, and its triangles: faces of more corners as fans.
+/// Returns the vertices of a body in its frame, and its triangles. Faces with more vertices become fans.
 fn mesh(body: AnyPlaced<'_>) -> (&[DVec3], Vec<[u32; 3]>) {
     match body {
         AnyPlaced::Solid(placed) => (placed.body.vertices(), placed.body.triangles().to_vec()),
@@ -426,7 +434,7 @@ impl PathAnswer {
         }
     }
 
-    /// The question as a file with its proof, of which the answer is asked once more.
+    /// Runs the query again and returns its answer and the file with its proof.
     fn saved(&self, py: Python<'_>) -> PyResult<(PathOutcome, ProofFile)> {
         let told = answered(py, || {
             self.question.with(|cast, names| {
@@ -440,43 +448,46 @@ impl PathAnswer {
 getters!(PathAnswer, |it| {
     /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
     outcome: &'static str = it.record.outcome.name();
-    /// float: No two meet before: the end of the path if none do, its beginning if two overlap there.
+    /// float: No two bodies meet before this time: the end of the path if none meet, its start if two overlap
+    /// there.
     lower: f64 = it.contact().map_or(it.end.0, |contact| contact.lower);
-    /// float or None: At this time two do meet; None where that is not proven, or none do.
+    /// float or None: Two bodies meet at this time; None if that is not proven, or if none meet.
     upper: Option<f64> =
         it.contact().map(|contact| contact.upper).filter(|upper| upper.is_finite());
-    /// tuple of (str, str) or None: The two, links or what stands around.
+    /// tuple of (str, str) or None: The two bodies, links or scene bodies.
     pair: Option<(&str, &str)> = it.record.pair.as_ref().map(|[a, b]| (a.as_str(), b.as_str()));
-    /// tuple of (int, float) or None: Where ``lower`` is: the row before, and which part of the way to the
-    /// next one.
+    /// tuple of (int, float) or None: The position of ``lower`` on the path: the row before it, and the
+    /// fraction of the step to the next row.
     place: Option<(usize, f64)> = it.record.place.map(|place| (place.row, place.share));
-    /// ndarray of shape (3,) or None: Where the first one is nearest to the second then, in the world.
+    /// ndarray of shape (3,) or None: The point of the first body that is nearest to the second at that time,
+    /// in the world.
     point(py): Option<Vector<'py>> = it.contact()?.points.map(|points| row(py, points[0]));
-    /// ndarray of shape (3,) or None: Unit normal in the world, from the first to the second.
+    /// ndarray of shape (3,) or None: Unit normal in the world, from the first body to the second.
     normal(py): Option<Vector<'py>> = it.contact()?.normal.map(|normal| row(py, normal));
-    /// list of tuple of (str, str): Where the path begins with overlaps, all pairs that overlap there, or are as
-    /// near as ``keep``.
+    /// list of tuple of (str, str): All pairs that overlap at the start of the path, or are as near as
+    /// ``keep`` there.
     overlaps: Vec<(String, String)> = it.record.overlaps.iter().cloned().map(Into::into).collect();
-    /// list of str: Links for whose meshes their convex hulls stand; a contact of one is that of its hull.
+    /// list of str: Links whose meshes are replaced by their convex hulls. A contact of such a link is one of
+    /// its hull.
     hulls: Vec<String> = it.record.hulls.clone();
-    /// int: How many pairs of bodies were asked about.
+    /// int: Number of pairs of bodies that were checked.
     pairs: usize = it.record.pairs;
-    /// int: How often two bodies were looked at.
+    /// int: Number of distance samples.
     looks: u32 = it.record.looks;
-    /// int: Planes in the proof.
+    /// int: Number of planes in the proof.
     planes: usize = it.record.planes;
-    /// list of str: What was not asked though nobody said so, and values beyond a joint's limits.
+    /// list of str: Pairs that were excluded by default, and values beyond the limits of a joint.
     notes: Vec<String> = it.notes.clone();
 });
 
 #[pymethods]
 impl PathAnswer {
-    /// Checks the proof against the robot, its path and the scene alone, without a search.
+    /// Checks the proof with the robot, its path and the scene alone, without a search.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         let checked = answered(py, || {
             self.question
@@ -485,8 +496,10 @@ impl PathAnswer {
         checked.map(|_| ()).map_err(|what| error("CertificateError", what))
     }
 
-    /// The proof, with all that it is about, as text: the file of ``--save-proof`` of ``colltrans path``,
-    /// which ``colltrans verify`` checks. The question is asked once more for it.
+    /// Returns the proof with everything that it refers to, as text.
+    ///
+    /// The text is a file of ``--save-proof`` of ``colltrans path``, which ``colltrans verify`` checks. The
+    /// query runs again to build it.
     ///
     /// Returns
     /// -------
@@ -495,7 +508,7 @@ impl PathAnswer {
         Ok(self.saved(py)?.1.to_json())
     }
 
-    /// Writes :meth:`proof_json` as a file.
+    /// Writes :meth:`proof_json` to a file.
     ///
     /// Parameters
     /// ----------
@@ -504,7 +517,8 @@ impl PathAnswer {
         save(&path, self.proof_json(py)?)
     }
 
-    /// What it says, as plain Python: the fields of ``--json`` of ``colltrans path``, with the same bits.
+    /// Returns the answer as plain Python: the fields of ``--json`` of ``colltrans path``, with the same
+    /// bits.
     ///
     /// Returns
     /// -------
@@ -513,24 +527,24 @@ impl PathAnswer {
         plain(py, &self.record)
     }
 
-    /// All bodies as meshes, where they are in the world at a place of the path, to rounding.
+    /// Returns all bodies as meshes, at a position on the path and up to rounding.
     ///
     /// Parameters
     /// ----------
     /// place : tuple of (int, float), optional
-    ///     A row, and which part of the way to the next one; without it that of ``lower``, where the path ends if
-    ///     nothing meets.
+    ///     A row, and the fraction of the step to the next row. The default is the position of ``lower``, or
+    ///     the end of the path if no bodies meet.
     ///
     /// Returns
     /// -------
     /// list of tuple of (str, ndarray of shape (V, 3), ndarray of shape (T, 3))
-    ///     The links' bodies, then what stands around: the name of what each belongs to, its vertices, and its
-    ///     triangles by their numbers.
+    ///     The bodies of the links, then the scene bodies: for each the name of its owner, its vertices in
+    ///     the world, and its triangles as indices of vertices.
     ///
     /// Raises
     /// ------
     /// InputError
-    ///     A place beyond the path.
+    ///     The position is beyond the path.
     #[pyo3(signature = (place=None))]
     fn meshes<'py>(
         &self,
@@ -563,13 +577,13 @@ impl PathAnswer {
         arrays.collect()
     }
 
-    /// A picture: see :func:`colltrans.show`.
+    /// Draws a picture; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
     }
 
-    /// What a pickle has: the file of the proof, the answer but for that, and what was noted.
+    /// Returns the state for a pickle: the file of the proof, the answer without its proof, and the notes.
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
@@ -577,7 +591,7 @@ impl PathAnswer {
         let (mut found, file) = self.saved(py)?;
         let record = file.path().map(|(cast, names)| PathRecord::of(&found, &cast, &names));
         if record.is_none_or(|record| record != self.record) {
-            return Err(error("CaseError", "the bodies are not what their file makes of them"));
+            return Err(error("CaseError", "the saved proof file restores other bodies"));
         }
         if let Some(proof) = proof_of(&mut found) {
             *proof = PathProof::default();
@@ -643,9 +657,9 @@ fn row_of(outcome: &PathOutcome) -> Row {
         })
 }
 
-/// The extension's half of ``colltrans.path_many``.
+/// The extension's part of ``colltrans.path_many``.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "they are those of path_many")]
+#[expect(clippy::too_many_arguments, reason = "they are the arguments of path_many")]
 pub(crate) fn ask_paths<'py>(
     py: Python<'py>,
     robot: &Bound<'py, Robot>,

@@ -1,14 +1,14 @@
-//! The rows of a call: the bodies, poses and numbers of each.
+//! The rows of a bulk call: bodies, poses and numbers.
 
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::solid::AsSolid;
 use colltrans::{ConvexPolyhedron, Pose};
 
-/// A body of any kind.
+/// A body of either kind.
 #[derive(Clone, Copy)]
 pub(crate) enum AnyBody<'a> {
     Convex(&'a ConvexPolyhedron),
-    /// And how far its file rounds coordinates.
+    /// A solid, and the rounding of the coordinates in its file.
     Solid(&'a colltrans::Solid, f64),
 }
 
@@ -16,7 +16,7 @@ impl<'a> AnyBody<'a> {
     pub(crate) fn convex(self) -> Result<&'a ConvexPolyhedron, String> {
         match self {
             Self::Convex(body) => Ok(body),
-            Self::Solid(..) => Err("a solid is asked for its clearance or distance".into()),
+            Self::Solid(..) => Err("a solid has no cast; query its clearance or distance".into()),
         }
     }
 
@@ -27,7 +27,7 @@ impl<'a> AnyBody<'a> {
         }
     }
 
-    /// How far its file rounds coordinates.
+    /// Returns the rounding of the coordinates in the body's file, a length.
     pub(crate) fn precision(self) -> f64 {
         match self {
             Self::Convex(_) => 0.0,
@@ -36,11 +36,11 @@ impl<'a> AnyBody<'a> {
     }
 }
 
-/// A body of every row, or why there is none.
+/// The body of every row, or the reason for its absence.
 pub(crate) struct Bodies<'a> {
     pub(crate) name: &'static str,
     pub(crate) all: &'a [Result<AnyBody<'a>, String>],
-    /// Which one for each row; the only one without.
+    /// The index of the body of each row; `None` if all rows have the same body.
     pub(crate) index: Option<&'a [i64]>,
 }
 
@@ -56,7 +56,7 @@ impl<'a> Bodies<'a> {
     }
 }
 
-/// A table with a row for each query, or one for all.
+/// A table with one row for each query, or one row for all.
 pub(crate) struct Table<'a> {
     pub(crate) name: &'static str,
     pub(crate) numbers: &'a [f64],
@@ -69,21 +69,21 @@ impl<'a> Table<'a> {
         &self.numbers[row * self.width..(row + 1) * self.width]
     }
 
-    /// Three numbers.
+    /// Returns a row of three numbers.
     pub(crate) fn vector(&self, row: usize) -> DVec3 {
         DVec3::from_slice(self.row(row))
     }
 
-    /// Of a pose what says how it is turned.
+    /// Iterates over the numbers of a pose that define its rotation.
     pub(crate) fn rotation(&self, row: usize) -> impl Iterator<Item = f64> + use<'a> {
         let row = self.row(row);
-        // Of a matrix its first three columns.
+        // Entries of the first three columns, if the row is a matrix.
         let of_matrix = row.len() > 7;
         let kept = move |k: &usize| if of_matrix { k % 4 < 3 && *k < 12 } else { *k >= 3 };
         (0..row.len()).filter(kept).map(|k| row[k])
     }
 
-    /// A translation, with a quaternion, or a matrix of three or four rows.
+    /// Reads a pose: a translation, a translation with a quaternion, or a matrix of three or four rows.
     pub(crate) fn pose(&self, row: usize) -> Result<Pose, String> {
         let of_matrix = |r: &[f64]| {
             let column = |j: usize| DVec3::new(r[j], r[4 + j], r[8 + j]);

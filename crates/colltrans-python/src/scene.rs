@@ -1,4 +1,4 @@
-//! Obstacles behind a lock, and a body that was asked about among them.
+//! The obstacles behind a lock, and queries of one body among them.
 
 use std::collections::HashSet;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
@@ -10,11 +10,11 @@ use pyo3::prelude::*;
 use crate::errors::{OrRaise, error};
 use crate::solid::Piece;
 
-/// Obstacles; whoever waits for them does so without the interpreter's lock.
+/// Obstacles behind a lock. Callers release the interpreter's lock before they wait for it.
 #[derive(Default)]
 pub(crate) struct Scene(RwLock<Kept>);
 
-/// The obstacles, and how often they have changed.
+/// The obstacles, and the number of their changes.
 #[derive(Default)]
 pub(crate) struct Kept {
     pub(crate) obstacles: colltrans::Obstacles,
@@ -26,7 +26,7 @@ impl Scene {
         self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Changes the obstacles.
+    /// Applies a change to the obstacles.
     pub(crate) fn change<T>(&self, of: impl FnOnce(&mut colltrans::Obstacles) -> T) -> T {
         let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
         kept.changes += 1;
@@ -35,7 +35,7 @@ impl Scene {
 }
 
 impl Kept {
-    /// Asks about a body among all that are not ignored.
+    /// Runs a query of a body among all obstacles that are not ignored.
     pub(crate) fn ask<T, E: From<QueryError>>(
         &self,
         (body, at): (&Piece, colltrans::Pose),
@@ -47,7 +47,7 @@ impl Kept {
     }
 }
 
-/// A body of either kind where it is.
+/// Places a body of either kind at a pose.
 fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
     match body {
         Piece::Convex(body) => body.get().0.at(at).into(),
@@ -55,16 +55,16 @@ fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
     }
 }
 
-/// The same question of a body that is to keep a gap.
+/// Returns the scene query with a minimum gap.
 pub(crate) fn keeping<'a>(among: &Among<'a>, keep: f64) -> Result<Among<'a>, QueryError> {
     let keeping = among.with_options(Options::default().with_keep(keep))?;
     Ok(keeping.with_solid_options(SolidOptions::default().with_keep(keep)))
 }
 
-/// A body among obstacles, as it was asked about.
+/// The query of an answer: a body among obstacles.
 pub(crate) struct Asked {
     pub(crate) scene: Arc<Scene>,
-    /// How often the scene had changed by then.
+    /// Number of changes of the scene before the query.
     pub(crate) changes: u64,
     pub(crate) body: Piece,
     pub(crate) at: colltrans::Pose,
@@ -72,7 +72,7 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// A proof of an answer that the obstacles give once more, if they are as they were.
+    /// Builds the proof of an answer by running the query again. Fails if the obstacles have changed since.
     pub(crate) fn proof(
         &self,
         py: Python<'_>,
@@ -85,7 +85,7 @@ impl Asked {
             }
             kept.ask((&self.body, self.at), &self.ignore, ask)
         });
-        let changed = "the obstacles are not those of the answer: some have come, moved or gone";
+        let changed = "the obstacles have changed since the answer; run the query again";
         made.or_raise()?.ok_or_else(|| error("CaseError", changed))
     }
 }

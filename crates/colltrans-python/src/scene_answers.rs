@@ -1,4 +1,4 @@
-//! Answers about one body among many, with the question they are of: from which a proof is made on request.
+//! Answers about one body among many. Each holds its query, from which a proof is built on request.
 
 use std::path::PathBuf;
 
@@ -14,15 +14,17 @@ use crate::errors::OrRaise;
 use crate::frozen::getters;
 use crate::scene::{Asked, keeping};
 
-/// What all have in common: their proof.
+/// Defines the methods for the proof, which all answers share.
 macro_rules! proven {
     ($class:ident) => {
         #[pymethods]
         impl $class {
-            /// The proof, with all that it is about, as text: the file of ``--save-proof`` with ``--among``,
-            /// which ``colltrans verify`` and ``python -m colltrans.check`` check. The obstacles are asked once
-            /// more for it, all along the direction whatever was asked of ``before``. In it they have the numbers
-            /// of their places, from 0 on, without those that are ignored.
+            /// Returns the proof with everything that it refers to, as text.
+            ///
+            /// The text is a file of ``--save-proof`` with ``--among``, which ``colltrans verify`` and
+            /// ``python -m colltrans.check`` check. The query runs again to build it, without the limit
+            /// ``before``. In the file the obstacles are numbered from 0 by their position, without ignored
+            /// ones.
             ///
             /// Returns
             /// -------
@@ -31,13 +33,13 @@ macro_rules! proven {
             /// Raises
             /// ------
             /// CaseError
-            ///     Obstacles have come, moved or gone since, or one is a union of solids that was shrunk or
-            ///     grown as a whole.
+            ///     Obstacles were added, moved or removed since, or one is a union of solids that was shrunk
+            ///     or grown as a whole.
             fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
                 Ok(self.proof(py)?.to_json())
             }
 
-            /// Writes :meth:`proof_json` as a file.
+            /// Writes :meth:`proof_json` to a file.
             ///
             /// Parameters
             /// ----------
@@ -46,12 +48,12 @@ macro_rules! proven {
                 save(&path, self.proof_json(py)?)
             }
 
-            /// Checks the proof: every obstacle, by its box or by what is proven of it.
+            /// Checks the proof: every obstacle, by its bounding box or by its own proof.
             ///
             /// Raises
             /// ------
             /// CertificateError
-            ///     What is not proven.
+            ///     The proof does not hold; the message names the failed condition.
             fn verify(&self, py: Python<'_>) -> PyResult<()> {
                 let proof = self.proof(py)?;
                 py.detach(|| proof.check().map(drop)).or_raise()
@@ -76,18 +78,18 @@ impl NearestObstacle {
 }
 
 getters!(NearestObstacle, |it| {
-    /// int: Which one.
+    /// int: The number of the nearest obstacle.
     obstacle: u64 = it.found.obstacle.0;
-    /// float: No obstacle is nearer, rounded down.
+    /// float: A lower bound of the distance to all obstacles.
     lower: f64 = it.found.lower;
-    /// float: This one is not farther, rounded up.
+    /// float: An upper bound of the distance to this obstacle.
     upper: f64 = it.found.distance.upper();
-    /// ndarray of shape (3,): The point of the moving body that is nearest to it, in the world.
+    /// ndarray of shape (3,): The point of the moving body that is nearest to the obstacle, in the world.
     on_moving(py): Vector<'py> = row(py, it.found.distance.on_moving());
-    /// ndarray of shape (3,): Its point that is nearest to the moving body.
+    /// ndarray of shape (3,): The point of the obstacle that is nearest to the moving body.
     on_fixed(py): Vector<'py> = row(py, it.found.distance.on_fixed());
-    /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to it, where they are
-    /// apart.
+    /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to the obstacle; None if
+    /// they meet.
     normal(py): Option<Vector<'py>> = it.found.distance.normal().map(|normal| row(py, normal));
 });
 
@@ -99,7 +101,7 @@ impl NearestObstacle {
     }
 }
 
-/// Which of many obstacles are closer than a length. It unpacks into both lists.
+/// The obstacles that are closer than a length. It unpacks into both lists.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct NearbyObstacles {
     pub(crate) found: Nearby,
@@ -116,9 +118,9 @@ impl NearbyObstacles {
 }
 
 getters!(NearbyObstacles, |it| {
-    /// list of int: Those that are at most the length away, in the order in which they came.
+    /// list of int: The obstacles at most the length away, in the order in which they were added.
     closer: Vec<u64> = it.found.closer.iter().map(|(id, _)| id.0).collect();
-    /// list of int: Those of which rounding cannot tell.
+    /// list of int: The obstacles for which rounding cannot decide.
     undecided: Vec<u64> = it.found.undecided.iter().map(|(id, _)| id.0).collect();
 });
 
@@ -153,7 +155,7 @@ impl NearbyObstacles {
     }
 }
 
-/// How far a body can move among obstacles, and what stops it.
+/// How far a body can move among obstacles, and the obstacle that stops it.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct ObstacleClearance {
     pub(crate) found: ClearanceAmong,
@@ -173,7 +175,7 @@ impl ObstacleClearance {
     }
 }
 
-/// Its outcome in a word.
+/// Returns the name of the outcome.
 pub(crate) fn outcome_of(found: &ClearanceAmong) -> &'static str {
     match (found.stop, found.distance()) {
         (_, None) => "overlapping",
@@ -182,7 +184,7 @@ pub(crate) fn outcome_of(found: &ClearanceAmong) -> &'static str {
     }
 }
 
-/// By when the body is stopped for certain.
+/// Returns an upper bound of the translation at which the body is stopped.
 pub(crate) fn upper_of(found: &ClearanceAmong) -> f64 {
     match found.stop {
         None => f64::INFINITY,
@@ -195,15 +197,15 @@ pub(crate) fn upper_of(found: &ClearanceAmong) -> f64 {
 getters!(ObstacleClearance, |it| {
     /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
     outcome: &'static str = outcome_of(&it.found);
-    /// int or None: What stops the body, or overlaps it.
+    /// int or None: The obstacle that stops the body, or that overlaps it.
     obstacle: Option<u64> = it.found.stop.map(|(id, _)| id.0);
-    /// float or None: How far the body may safely move past all obstacles, in multiples of the direction; None
-    /// if it overlaps one now.
+    /// float or None: How far the body can move past all obstacles, rounded down, in multiples of the
+    /// direction; None if it overlaps one at the start.
     distance: Option<f64> = it.found.distance();
-    /// float: The body is stopped no later, for certain; infinite if nothing stops it, NaN if it overlaps an
-    /// obstacle.
+    /// float: An upper bound of the translation at which the body is stopped; infinite if nothing stops it,
+    /// NaN if it overlaps an obstacle.
     upper: f64 = upper_of(&it.found);
-    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to what stops it.
+    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to the obstacle.
     normal(py): Option<Vector<'py>> = match it.found.stop {
         Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
             Some(row(py, contact.normal))

@@ -1,7 +1,7 @@
 //! Solids.
 //!
-//! A solid keeps what it was made of, so that it can be pickled: made of the same again, it is the
-//! same.
+//! A solid stores its source (mesh, pieces or another solid), so that it can be pickled: building it from the
+//! same source again gives the same solid.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,22 +23,22 @@ use crate::errors::{OrRaise, input};
 use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::ShrinkReport;
 
-/// What a solid was made of.
+/// The source of a solid.
 enum Source {
     Mesh(Box<Mesh>, BodyOptions),
     Pieces(Vec<Piece>),
-    /// Another solid, its facets moved inwards by this much, or outwards if it is negative.
+    /// Another solid with facets moved inwards by this length, or outwards if it is negative.
     Moved(Py<Solid>, f64),
 }
 
-/// A body that stands for a solid.
+/// A body that can be treated as a solid.
 pub(crate) enum Piece {
     Convex(Py<ConvexPolyhedron>),
     Solid(Py<Solid>),
 }
 
 impl Piece {
-    /// The body of the argument called `name`.
+    /// Reads the body of the argument called `name`.
     pub(crate) fn of(thing: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
         if let Ok(body) = thing.cast::<ConvexPolyhedron>() {
             return Ok(Self::Convex(body.clone().unbind()));
@@ -54,7 +54,7 @@ impl Piece {
         Err(PyTypeError::new_err(message))
     }
 
-    /// Returns the depth of the body's dent; `None` if its mesh is convex, or it is a solid.
+    /// Returns the depth of the body's dent; `None` for a convex mesh or a solid.
     pub(crate) fn dent(&self) -> Option<f64> {
         match self {
             Self::Convex(body) => body.get().dent(),
@@ -69,14 +69,14 @@ impl Piece {
         }
     }
 
-    /// Returns the body as a solid; a point or a segment, which has no area, is an error.
+    /// Returns the body as a solid. Returns an error for a point or a segment, which has no area.
     pub(crate) fn solid_with_area(
         &self,
     ) -> Result<&colltrans::Solid, colltrans::solid::SolidError> {
         self.solid()?.as_solid()
     }
 
-    /// What it is the union of, or itself.
+    /// Returns the pieces of a union, or the body itself.
     pub(crate) fn pieces(&self) -> Result<Vec<&colltrans::Solid>, colltrans::solid::SolidError> {
         match self {
             Self::Solid(solid) => match &*solid.get().source {
@@ -90,7 +90,7 @@ impl Piece {
         }
     }
 
-    /// Convex bodies count as exact.
+    /// Returns the precision of the body's file, a length. Convex bodies count as exact.
     pub(crate) fn precision(&self) -> f64 {
         match self {
             Self::Convex(_) => 0.0,
@@ -98,7 +98,7 @@ impl Piece {
         }
     }
 
-    /// Of a convex body, about as many as it has as a solid.
+    /// Returns the number of triangles; for a convex body an estimate.
     pub(crate) fn triangle_count(&self) -> usize {
         match self {
             Self::Convex(body) => 2 * body.get().0.vertices().len(),
@@ -128,7 +128,8 @@ impl Piece {
     }
 }
 
-/// An argument that has to be a convex body. The error names the functions that take what was given.
+/// An argument that must be a convex body. The error message names the functions that accept the given
+/// object.
 pub(crate) struct ConvexArgument<'py>(pub(crate) Bound<'py, ConvexPolyhedron>);
 
 impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
@@ -149,22 +150,22 @@ impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
     }
 }
 
-/// A part that need not be convex: a closed surface of polygons, decided exactly.
+/// A part that need not be convex: a closed surface of polygons, with exact decisions.
 ///
 /// Parameters
 /// ----------
 /// vertices : array_like of shape (N, 3)
-///     In the body frame, in any unit. Vertices with equal coordinates are one.
+///     Coordinates in the body frame, in any unit. Vertices with equal coordinates are merged.
 /// faces : array_like of shape (M, k), or a sequence of sequences
 ///     Vertex indices, counter-clockwise as seen from outside.
 /// open : bool
-///     Whether the surface may be open, as a scan is: it blocks and is blocked, but nothing is ever
-///     inside it.
+///     Whether the surface may be open, like a scan. An open surface blocks and is blocked, but it has no
+///     interior.
 ///
 /// Raises
 /// ------
 /// BuildError
-///     A surface that is open, or crosses itself in a polygon, with the place.
+///     The surface is open, or crosses itself in a polygon. The message names the place.
 ///
 /// Examples
 /// --------
@@ -173,16 +174,16 @@ impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
 /// ...       [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 /// Solid(4 vertices, 4 triangles)
 #[pyclass(frozen, module = "colltrans")]
-#[expect(clippy::struct_field_names, reason = "a solid of the library, and how it came to be")]
+#[expect(clippy::struct_field_names, reason = "a solid of the library and its source")]
 pub(crate) struct Solid {
     pub(crate) solid: colltrans::Solid,
-    /// How far apart vertices may be written that were meant to be one.
+    /// Maximum distance of stored vertices that represent the same point.
     pub(crate) precision: f64,
     notes: Vec<String>,
     source: Arc<Source>,
 }
 
-/// Vertices, faces, whether shells may be open, the scale, the precision of the file, the notes.
+/// Vertices, faces, whether shells may be open, scale, precision of the file, notes.
 type OfMesh<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyAny>>, bool, f64, f64, Vec<String>);
 
 impl Solid {
@@ -193,7 +194,7 @@ impl Solid {
         Ok(Self { solid, precision, notes, source })
     }
 
-    /// With facets moved inwards by an amount, or outwards.
+    /// Moves all facets inwards or outwards by an amount.
     fn moved(slf: &Bound<'_, Self>, amount: f64, inwards: bool) -> PyResult<(Self, ShrinkReport)> {
         let of = &slf.get().solid;
         let moved = || if inwards { of.shrunk(amount) } else { of.grown(amount) };
@@ -216,19 +217,19 @@ getters!(Solid, |it| {
     input_indices(py): Indices<'py> = ids(py, it.solid.vertex_indices());
     /// ndarray of shape (M,): For each triangle the face of the input that it is a part of.
     face_indices(py): Indices<'py> = ids(py, it.solid.facet_indices());
-    /// bool: Whether all shells are closed; if not, the body is a surface, at least in part.
+    /// bool: Whether all shells are closed. Otherwise at least a part of the body is an open surface.
     is_closed: bool = it.solid.is_closed();
-    /// dict of str to int: How many shells are ``closed`` (with an inside), ``sided`` (open, but all but
-    /// closed) and ``sheet``. Open ones block from both sides, rims included; sheets are neither shrunk
-    /// nor grown.
+    /// dict of str to int: The number of shells that are ``closed`` (with an inside), ``sided`` (open, but
+    /// nearly closed) and ``sheet``. Open shells block from both sides, including their boundary; sheets are
+    /// neither shrunk nor grown.
     shells: BTreeMap<&'static str, usize> = {
         let report = it.solid.report();
         ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
     };
-    /// list of str: What was mended to make it of its mesh, or is not as it is in the file.
+    /// list of str: Repairs when the solid was built from its mesh, and differences from the file.
     notes: Vec<String> = it.notes.clone();
-    /// float: How far apart vertices of its file may be written that were meant to be one, a length: from
-    /// it comes the default tolerance of a query. 0 for what was not read from a file.
+    /// float: The maximum distance of vertices in the file that represent the same point, a length. The
+    /// default tolerance of a query follows from it. It is 0 for a solid that was not read from a file.
     precision: f64 = it.precision;
     /// float: The volume, in the cube of the unit of length.
     volume: f64 = it.solid.volume();
@@ -237,7 +238,7 @@ getters!(Solid, |it| {
         let bounds = it.solid.bounds();
         table(py, [bounds.low, bounds.high].map(|v| v.to_array()))
     };
-    /// int: Bytes of memory that the body occupies, without what it was made of.
+    /// int: Bytes of memory that the body occupies, without its source.
     nbytes: usize = it.solid.memory_bytes();
 });
 
@@ -261,12 +262,12 @@ impl Solid {
         py.detach(|| Self::of_mesh(Mesh::new(vertices, faces), options)).or_raise()
     }
 
-    /// The union of several bodies, which may overlap.
+    /// Builds the union of several bodies, which may overlap.
     ///
     /// Parameters
     /// ----------
     /// pieces : sequence of Solid or ConvexPolyhedron
-    ///     Vertices and faces are numbered through.
+    ///     The bodies. Vertices and faces are numbered consecutively over all of them.
     ///
     /// Returns
     /// -------
@@ -290,7 +291,7 @@ impl Solid {
         Ok(Self { solid, precision, notes, source: Arc::new(Source::Pieces(pieces)) })
     }
 
-    /// From a mesh of trimesh, or anything with ``vertices`` and ``faces``.
+    /// Builds a solid from an object with ``vertices`` and ``faces``, such as a trimesh mesh.
     ///
     /// Parameters
     /// ----------
@@ -313,10 +314,10 @@ impl Solid {
     /// open : bool
     ///     Whether the surface may be open.
     /// scale : float
-    ///     Lengths are multiplied by this, after the merging.
+    ///     Lengths are multiplied by this factor, after vertices are merged.
     /// merge_tolerance : float, optional
-    ///     Up to which distance vertices on open edges are merged. By default a few units in the
-    ///     last place of the largest coordinate.
+    ///     Vertices on open edges within this distance are merged. The default is a few units in the last
+    ///     place of the largest coordinate.
     ///
     /// Returns
     /// -------
@@ -325,9 +326,9 @@ impl Solid {
     /// Raises
     /// ------
     /// MeshError
-    ///     A file that cannot be read, with the place.
+    ///     The file cannot be read. The message names the place.
     /// BuildError
-    ///     A surface that is open or not one.
+    ///     The mesh is open, or does not form a surface.
     #[staticmethod]
     #[pyo3(signature = (path, *, open=false, scale=1.0, merge_tolerance=None))]
     fn read(
@@ -348,16 +349,15 @@ impl Solid {
             .or_raise()
     }
 
-    /// The solid with every facet plane moved inwards.
+    /// Shrinks the solid: moves every facet plane inwards.
     ///
-    /// Vertices and facets keep their numbers. What cannot be moved so is counted and named: walls
-    /// thinner than twice the amount, and corners between facets of which none can move inwards
-    /// without another moving outwards.
+    /// Vertices and facets keep their numbers. The report lists the places where this fails: walls thinner
+    /// than twice the amount, and corners between facets that cannot all move inwards.
     ///
     /// Parameters
     /// ----------
     /// amount : float
-    ///     By how much, in the unit of the body.
+    ///     The displacement, in the unit of the body.
     ///
     /// Returns
     /// -------
@@ -367,7 +367,7 @@ impl Solid {
     /// Raises
     /// ------
     /// BuildError
-    ///     An amount that is negative or not finite, or of which nothing is left.
+    ///     The amount is negative or not finite, or nothing remains of the body.
     ///
     /// Examples
     /// --------
@@ -381,12 +381,12 @@ impl Solid {
         Self::moved(slf, amount, true)
     }
 
-    /// The solid with every facet plane moved outwards: for a margin to be kept.
+    /// Grows the solid: moves every facet plane outwards, for a safety margin.
     ///
     /// Parameters
     /// ----------
     /// amount : float
-    ///     By how much, in the unit of the body.
+    ///     The displacement, in the unit of the body.
     ///
     /// Returns
     /// -------
@@ -396,7 +396,7 @@ impl Solid {
     /// Raises
     /// ------
     /// BuildError
-    ///     As of :meth:`shrunk`.
+    ///     See :meth:`shrunk`.
     fn grown(slf: &Bound<'_, Self>, amount: f64) -> PyResult<(Self, ShrinkReport)> {
         Self::moved(slf, amount, false)
     }
@@ -447,7 +447,7 @@ impl Solid {
         Ok(Self::moved(of, by.abs(), by.is_sign_positive())?.0)
     }
 
-    /// A picture of it: see :func:`colltrans.show`.
+    /// Draws a picture of the solid; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)

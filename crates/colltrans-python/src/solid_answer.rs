@@ -16,7 +16,7 @@ use crate::solid_cast::SolidCast;
 
 type SolidClearance = Clearance<colltrans::Solid>;
 
-/// Where a solid is stopped.
+/// The contact that stops a solid.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidContact {
     contact: colltrans::solid::SolidContact,
@@ -26,29 +26,28 @@ pub(crate) struct SolidContact {
 answer!(SolidContact("translation", "normal", "point") of colltrans::solid::SolidContact, SolidCast, |it| it.contact);
 
 getters!(SolidContact, |it| {
-    /// float: Where the faces that stop the body meet in their true place, not shrunk, in multiples of
-    /// the direction; the best estimate.
+    /// float: The translation at which the faces that stop the body meet in their nominal position, in
+    /// multiples of the direction; the best estimate.
     translation: f64 = it.contact.translation.value;
-    /// tuple of (float, float): Its proven bounds. Up to the first the shrunk bodies do not overlap and
-    /// those two faces have not met; beyond the second the bodies overlap: as they are, or, where
-    /// those faces pass each other as they are, shrunk.
+    /// tuple of (float, float): Proven bounds of the translation. Up to the first one the shrunk bodies do
+    /// not overlap and these two faces have not met. Beyond the second one the nominal bodies overlap, or the
+    /// shrunk bodies if the nominal faces pass each other.
     translation_bounds: (f64, f64) = it.contact.translation.bounds().into();
-    /// float: How far the bodies go that were shrunk by half the tolerance each, in multiples of the
-    /// direction.
+    /// float: The free travel of the bodies shrunk by half the tolerance each, in multiples of the direction.
     shrunk_distance: f64 = it.contact.shrunk_distance.value;
-    /// tuple of (float, float): Its proven bounds.
+    /// tuple of (float, float): Proven bounds of the free travel of the shrunk bodies.
     shrunk_distance_bounds: (f64, f64) = it.contact.shrunk_distance.bounds().into();
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
     normal(py): Vector<'py> = row(py, it.contact.normal);
     /// ndarray of shape (3,): The contact point on the fixed body, in the world.
     point(py): Vector<'py> = row(py, it.contact.point_on_fixed);
-    /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
+    /// ndarray of shape (3,): The contact point on the moving body at its start pose, in the world.
     point_at_start(py): Vector<'py> = row(py, it.contact.point_on_moving);
-    /// Feature: What of the moving body touches: a corner, an edge from corner to corner, or the whole
-    /// polygon of a face.
+    /// Feature: The feature of the moving body in contact: a vertex, a whole edge, or the whole polygon of a
+    /// face.
     moving_feature: PyResult<Feature> =
         feature(it.contact.moving_feature, &it.query.get().bodies[0]);
-    /// Feature: What of the fixed body touches.
+    /// Feature: The feature of the fixed body in contact.
     fixed_feature: PyResult<Feature> = feature(it.contact.fixed_feature, &it.query.get().bodies[1]);
 });
 
@@ -77,13 +76,13 @@ answer!(SolidBlocked("distance", "contact") of SolidClearance, SolidCast, |it| {
 });
 
 getters!(SolidBlocked, |it| {
-    /// float: How far it may safely move, in multiples of the direction: the lower bound of where it is
-    /// stopped, and never negative.
+    /// float: The free travel in multiples of the direction: the lower bound of the stopping translation,
+    /// never negative.
     distance: f64 = it.distance;
-    /// SolidContact: What stops it.
+    /// SolidContact: The contact that stops the body.
     contact(py): SolidContact = SolidContact { contact: it.contact, query: it.query(py) };
-    /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
-    /// of them is not known.
+    /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
+    /// interior is not known.
     surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
 });
 
@@ -94,7 +93,7 @@ impl SolidBlocked {
     }
 }
 
-/// A solid can move as far as it likes.
+/// A solid can move without a limit.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidFree {
     free: colltrans::solid::SolidFree,
@@ -106,13 +105,13 @@ answer!(SolidFree() of SolidClearance, SolidCast, |it| SolidClearance::Free(it.f
 getters!(SolidFree, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
-    /// float or None: The margin of a plane between the bodies, parallel to the direction, a length;
-    /// None if there is no such plane: it slides along, or moves away.
+    /// float or None: The margin of a plane between the bodies, parallel to the direction, a length; None if
+    /// there is no such plane, because the body slides along the other one or moves away.
     margin: Option<f64> = it.free.separation.map(|s| s.margin);
     /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
     normal(py): Option<Vector<'py>> = it.free.separation.map(|s| row(py, s.normal));
-    /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
-    /// of them is not known.
+    /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
+    /// interior is not known.
     surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
 });
 
@@ -123,7 +122,7 @@ impl SolidFree {
     }
 }
 
-/// Two solids overlap where they are, by more than is tolerated.
+/// Two solids overlap at the start by more than the tolerance.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidOverlapping {
     pub(crate) overlap: SolidOverlap,
@@ -133,15 +132,14 @@ pub(crate) struct SolidOverlapping {
 answer!(SolidOverlapping("least_tolerance") of SolidClearance, SolidCast, |it| SolidClearance::Overlapping(it.overlap));
 
 getters!(SolidOverlapping, |it| {
-    /// None: There is none.
+    /// None: An overlap has no clearance.
     distance: Option<f64> = None;
-    /// float or None: The least tolerance with which they would not overlap, a length; None if there is
-    /// none, as for open surfaces.
+    /// float or None: The smallest tolerance at which the solids would not overlap, a length; None if there
+    /// is no such tolerance, as for open surfaces.
     least_tolerance: Option<f64> = it.overlap.least_tolerance;
-    /// tuple of (int or None, int or None): One of the places where the bodies, shrunk by half the
-    /// tolerance each, overlap: a face of the moving and one of the fixed body that cross, as they
-    /// were numbered in the input; where one of them is None, the shell with the other lies inside
-    /// that body.
+    /// tuple of (int or None, int or None): A place where the bodies, shrunk by half the tolerance each,
+    /// overlap: two faces of the input that cross, one of each body. If one entry is None, the shell with the
+    /// other face is inside that body.
     place: PyResult<(Option<u32>, Option<u32>)> = {
         let [moving, fixed] = &it.query.get().bodies;
         let face = |body: &Piece, at: u32| -> PyResult<_> {
@@ -153,8 +151,8 @@ getters!(SolidOverlapping, |it| {
             Overlap::FixedInside(t) => (None, face(fixed, t)?),
         })
     };
-    /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
-    /// of them is not known.
+    /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
+    /// interior is not known.
     surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
 });
 
@@ -178,7 +176,7 @@ fn surfaces(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
     Ok(found)
 }
 
-/// The proof of a clearance depends on the query alone.
+/// Builds the proof of a clearance, which depends on the query alone.
 fn proof(query: &Bound<'_, SolidCast>) -> PyResult<String> {
     let asked = query.clone().unbind();
     SolidCast::ask(query, move |cast| -> Result<String, PyErr> {

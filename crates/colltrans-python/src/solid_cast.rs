@@ -1,6 +1,6 @@
 //! Queries about solids.
 //!
-//! They run without the interpreter's lock: one may take milliseconds, or, of large bodies, minutes.
+//! They run without the interpreter's lock, because a query takes milliseconds, or minutes for large bodies.
 
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
@@ -20,26 +20,26 @@ use crate::frozen::{Options, Shown, getters, html, show};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 
-/// A query about solids as a value: two placed bodies and a direction.
+/// A query about solids, as a value: two placed bodies and a direction.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : Solid or ConvexPolyhedron
-///     The body that moves, and the one that does not.
+///     The moving and the fixed body.
 /// direction : array_like of shape (3,)
-///     Of the world, of any length; translations count in multiples of it.
+///     A vector of the world, of any length. Translations are multiples of it.
 /// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
+///     Poses of the bodies in the world; see :class:`Pose`.
 /// tolerance : float, optional
-///     Both bodies are shrunk by half of this length, so that parts that fit do not jam. By default
-///     as on the command line: twice what rounding may have made of the coordinates of both files
-///     (:attr:`Solid.precision`), and no less than what turned poses need; 0 for bodies that are not of
-///     files where both poses turn by quarter turns.
+///     Both bodies are shrunk by half of this length, so that fitting parts do not jam. The default is that
+///     of the command line: twice the possible rounding of the coordinates in both files
+///     (:attr:`Solid.precision`), and at least what rotated poses need. It is 0 for bodies without files if
+///     both poses rotate by quarter turns.
 /// keep : float
-///     A gap to be kept, a length: asked is where the bodies, shrunk by half the tolerance each, are as near
-///     as that, not where they touch.
+///     A minimum gap, a length. The bodies, shrunk by half the tolerance each, stop when their distance falls
+///     to it.
 /// ignore_start_overlaps : bool
-///     Whether facets that cross now do not block, but contacts that begin later do.
+///     Whether facets that cross at the start are ignored. Contacts that begin later still block.
 ///
 /// Examples
 /// --------
@@ -66,18 +66,18 @@ pub(crate) struct SolidCast {
 /// The bodies and the direction.
 type Positional = (Py<PyAny>, Py<PyAny>, [f64; 3]);
 
-/// Between two looks at signals.
+/// Time between two polls for signals.
 const PATIENCE: Duration = Duration::from_millis(100);
-/// Bodies of fewer triangles are asked in the thread that asks: no answer takes long.
+/// Number of triangles below which queries run on the calling thread, because no answer takes long.
 const LARGE: usize = 4096;
 
 impl SolidCast {
-    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
         Dents::of(self.bodies.each_ref().map(Piece::dent))
     }
 
-    /// Asks the library.
+    /// Runs a query of the library.
     fn run<T>(
         &self,
         question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T,
@@ -101,7 +101,7 @@ impl SolidCast {
     }
 }
 
-/// Where two bodies of any kind are, of a query that has `bodies` and `poses`.
+/// Defines the attributes of the placed bodies, for a query that has `bodies` and `poses`.
 macro_rules! placed_bodies {
     ($query:ident) => {
         $crate::frozen::getters!($query, |it| {
@@ -109,9 +109,9 @@ macro_rules! placed_bodies {
             moving(py): Py<PyAny> = it.bodies[0].object(py);
             /// ConvexPolyhedron or Solid: The fixed body.
             fixed(py): Py<PyAny> = it.bodies[1].object(py);
-            /// Pose: Where the moving body is.
+            /// Pose: The pose of the moving body.
             moving_pose: Pose = Pose(it.poses[0]);
-            /// Pose: Where the fixed body is.
+            /// Pose: The pose of the fixed body.
             fixed_pose: Pose = Pose(it.poses[1]);
         });
     };
@@ -120,8 +120,8 @@ pub(crate) use placed_bodies;
 
 placed_bodies!(SolidCast);
 
-/// Does work about bodies without the interpreter's lock. Where it may take long, on a thread of its own,
-/// which is left alone when a signal ends the waiting.
+/// Runs work without the interpreter's lock. For large bodies it runs on a thread of its own; if a signal
+/// handler raises, the call returns and the thread is abandoned.
 pub(crate) fn patiently<T: Send + 'static>(
     py: Python<'_>,
     bodies: &[Piece; 2],
@@ -132,7 +132,7 @@ pub(crate) fn patiently<T: Send + 'static>(
     }
     let (sender, receiver) = mpsc::sync_channel(1);
     std::thread::Builder::new().spawn(move || {
-        // Nobody waits any more after a signal.
+        // The receiver is gone if a signal handler raised.
         let _ = sender.send(work());
     })?;
     py.detach(move || {
@@ -152,7 +152,7 @@ pub(crate) fn patiently<T: Send + 'static>(
 getters!(SolidCast, |it| {
     /// float: The tolerance that is used, a length.
     tolerance(py): PyResult<f64> = py.detach(|| it.run(|cast| cast.tolerance()));
-    /// float: The gap to be kept; 0 if there is none.
+    /// float: The minimum gap; 0 if there is none.
     keep: f64 = it.options.keep;
     /// ndarray of shape (3,): The direction, as given.
     direction(py): Vector<'py> = row(py, it.direction);
@@ -190,13 +190,13 @@ impl SolidCast {
         Ok(cast)
     }
 
-    /// The same bodies where they are, and the direction turned round.
+    /// Returns the query of the same placed bodies along the opposite direction.
     fn reversed(&self, py: Python<'_>) -> Self {
         let bodies = [self.bodies[0].copy(py), self.bodies[1].copy(py)];
         Self { bodies, direction: -self.direction, ..*self }
     }
 
-    /// A picture of the bodies and of the answer: see :func:`colltrans.show`.
+    /// Draws the bodies and the answer; see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
@@ -206,7 +206,7 @@ impl SolidCast {
         html(slf)
     }
 
-    /// The arguments that make it once more, for `pickle` and `copy`.
+    /// Returns the arguments that build the query again, for `pickle` and `copy`.
     fn __getnewargs_ex__<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! How a search is narrowed: a solver by its name, or the paper's algorithm with its choices.
+//! Search algorithms: a solver by name, or the paper's algorithm with its options.
 
 use colltrans::{Options, Solver, cta};
 use pyo3::prelude::*;
@@ -7,20 +7,21 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::errors::error;
 use crate::frozen::getters;
 
-/// The paper's algorithm with its choices, to be given as ``solver``.
+/// The paper's algorithm with its options, as a value of ``solver``.
 ///
 /// Parameters
 /// ----------
 /// start : {"center", "ellipsoids"}
-///     Where the minimisation starts: at the centre of all sections, or where ellipsoids would meet.
+///     The start of the minimisation: the centre of all sections, or the contact of two ellipsoids.
 /// until : "exit" or float
-///     Where it ends: where the features that touch are seen to solve the problem, or before, where its bounds
-///     are as near as this share of the extent of both bodies along the direction.
+///     The end of the minimisation: when the features in contact are found to solve the problem, or earlier,
+///     when the difference of the bounds falls to this fraction of the extent of both bodies along the
+///     direction.
 ///
 /// Raises
 /// ------
 /// QueryError
-///     A start or an end that is none.
+///     The start or the end is unknown.
 ///
 /// Examples
 /// --------
@@ -36,9 +37,9 @@ use crate::frozen::getters;
 pub(crate) struct Cta(cta::Options);
 
 getters!(Cta, |it| {
-    /// str: Where the minimisation starts.
+    /// str: The start of the minimisation.
     start: &'static str = it.0.start.name();
-    /// str or float: Where it ends.
+    /// str or float: The end of the minimisation.
     until(py): PyResult<Bound<'py, PyAny>> = Ok(match it.0.until {
         cta::Until::Exit => "exit".into_pyobject(py)?.into_any(),
         cta::Until::Gap(gap) => gap.into_pyobject(py)?.into_any(),
@@ -79,7 +80,7 @@ fn refused(what: impl std::fmt::Display) -> PyErr {
     error("QueryError", what)
 }
 
-/// Options with a solver; `auto` without.
+/// Returns options with the given solver; the default is `auto`.
 pub(crate) fn options_of(solver: Option<&Bound<'_, PyAny>>) -> PyResult<Options> {
     let options = Options::default();
     let Some(solver) = solver else { return Ok(options) };
@@ -87,6 +88,8 @@ pub(crate) fn options_of(solver: Option<&Bound<'_, PyAny>>) -> PyResult<Options>
         return Ok(options.with_solver(Solver::Cta).with_narrowing(cta.get().0));
     }
     let name: &str = solver.extract()?;
-    let unknown = |_| error("QueryError", format_args!("no solver {name:?}: auto, cta or portal"));
+    let unknown = |_| {
+        error("QueryError", format_args!("unknown solver {name:?}; known solvers: auto, cta, portal"))
+    };
     Ok(options.with_solver(name.parse().map_err(unknown)?))
 }

@@ -1,7 +1,7 @@
-//! Trackers: queries that follow each other closely.
+//! Trackers for sequences of similar queries.
 //!
-//! The library's tracker borrows its bodies, so both live together in one cell, and other bodies get
-//! a new cell: a tracker makes nothing of its memory of others anyway.
+//! The library's tracker borrows its bodies, so both are stored in one cell. Other bodies get a new cell,
+//! because a tracker does not use its memory of other bodies anyway.
 
 use colltrans::{Focus, QueryError, cta};
 use pyo3::prelude::*;
@@ -25,18 +25,20 @@ self_cell!(
     }
 );
 
-/// Queries that follow each other closely, each starting from the answer of the one before.
+/// A tracker for sequences of similar queries. Each query starts from the previous answer.
 ///
-/// Outcomes and certificates are those of the functions of the same names; poses, directions and
-/// bodies may jump: a poor beginning costs time, never the answer.
+/// Outcomes and certificates equal those of the functions with the same names. Poses, directions and bodies
+/// may change arbitrarily: a poor start costs time but does not change the answer.
 ///
 /// Parameters
 /// ----------
 /// features : bool, optional
-///     Whether a query starts from the features that touched in the last answer. By default it does, unless its
-///     solver is "cta", which starts as in the paper, in the region around the last solution, or a region is given.
+///     Whether a query starts from the features in contact of the last answer. The default is yes, unless the
+///     solver is "cta", which starts as in the paper in the region around the last solution, or unless a
+///     region is given.
 /// region : "automatic", "everywhere" or float, optional
-///     That region, of "cta": the half-side of a square of section levels as a length, or by what has changed.
+///     The region for "cta": the half-side of a square of section levels as a length, or a choice from the
+///     change of the query.
 ///
 /// Examples
 /// --------
@@ -57,7 +59,7 @@ pub(crate) struct Tracker {
 }
 
 impl Tracker {
-    /// Asks the library's tracker of these bodies.
+    /// Runs a query with the library's tracker for these bodies.
     fn ask<T>(
         &mut self,
         py: Python<'_>,
@@ -94,7 +96,7 @@ impl Tracker {
     }
 }
 
-/// What a tracker is told to make of its last answer; what it is not told is as by default.
+/// Reads the options of a tracker. Missing options have their defaults.
 fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Focus>> {
     if features.is_none() && region.is_none() {
         return Ok(None);
@@ -107,7 +109,9 @@ fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<
             "automatic" => cta::Region::Automatic,
             "everywhere" => cta::Region::Everywhere,
             other => {
-                let known = format_args!("no region {other:?}: automatic, everywhere or a length");
+                let known = format_args!(
+                    "unknown region {other:?}; accepted: automatic, everywhere, or a length"
+                );
                 return Err(error("QueryError", known));
             }
         },
@@ -117,7 +121,7 @@ fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<
     Ok(Some(focus))
 }
 
-/// A method that asks one question.
+/// Defines the query methods of a tracker.
 macro_rules! questions {
     ($($(#[$doc:meta])* $name:ident => $ask:ident;)*) => {
         #[pymethods]
@@ -129,12 +133,12 @@ macro_rules! questions {
                 Ok(Self { tracked: None, focus, steps: colltrans::Steps::default() })
             }
 
-            /// Forgets the last answer: the next query starts from scratch.
+            /// Discards the last answer: the next query starts from scratch.
             fn reset(&mut self) {
                 self.tracked = None;
             }
 
-            /// Steps: The work of the last query, of all its casts together.
+            /// Steps: Number of steps of the last query, in all its casts together.
             #[getter]
             fn steps(&self) -> Steps {
                 Steps(self.steps)
@@ -182,14 +186,14 @@ macro_rules! questions {
 }
 
 questions! {
-    /// :func:`cast`, starting from the last answer.
+    /// Runs :func:`cast` from the last answer.
     cast => first_contact;
-    /// :func:`contact_range`, starting from the last answer.
+    /// Runs :func:`contact_range` from the last answer.
     contact_range => contact_range;
-    /// :func:`clearance`, starting from the last answer.
+    /// Runs :func:`clearance` from the last answer.
     clearance => clearance;
-    /// :func:`directional_depth`, starting from the last answer.
+    /// Runs :func:`directional_depth` from the last answer.
     directional_depth => directional_depth;
-    /// :func:`intersects`, starting from the last answer to the same question.
+    /// Runs :func:`intersects` from the last answer to this question.
     intersects => intersects;
 }

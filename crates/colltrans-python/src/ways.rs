@@ -1,4 +1,4 @@
-//! Ways out in several moves, of two bodies.
+//! Removal paths: sequences of straight moves by which one body leaves another.
 
 use colltrans::Placed;
 use colltrans::free::FreeError;
@@ -13,7 +13,7 @@ use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 use crate::solid_cast::{patiently, placed_bodies};
 
-/// How a body can leave another one in several moves: see :func:`ways_out`.
+/// A sequence of moves by which one body leaves another; see :func:`ways_out`.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct WaysOut {
     bodies: [Piece; 2],
@@ -40,29 +40,30 @@ fn raised(what: FreeError) -> PyErr {
 placed_bodies!(WaysOut);
 
 getters!(WaysOut, |it| {
-    /// str: ``"found"``; ``"none"`` if there is none by translations, which is proven; ``"not_found"``,
-    /// which proves nothing.
+    /// str: ``"found"``; ``"none"`` if it is proven that no sequence of translations exists; ``"not_found"``
+    /// if the search found none, without a proof.
     outcome: &'static str = it.record.outcome;
-    /// list of tuple of (tuple of float, float): What to do, in order: a direction of length 1 and how far
-    /// to go; infinitely with the last one. Empty if no way was found.
+    /// list of tuple of (tuple of float, float): The moves in order: a unit direction and a travel, which is
+    /// infinite for the last move. Empty if no path was found.
     legs: Vec<([f64; 3], f64)> =
         it.record.legs.iter().map(|leg| (leg.direction, leg.travel)).collect();
-    /// float or None: The tolerance, a length: both bodies are shrunk by half of it. None if nothing is
+    /// float or None: The tolerance, a length. Both bodies are shrunk by half of it. None if nothing is
     /// proven.
     tolerance: Option<f64> = it.record.tolerance;
-    /// int or None: How many cells of displacements prove that there is no way.
+    /// int or None: The number of cells of displacements in the proof that no path exists.
     cells: Option<usize> = it.record.cells;
 });
 
 #[pymethods]
 impl WaysOut {
-    /// Checks the proof of every move, or that there is none, without a search. If nothing was found there
-    /// is nothing to check.
+    /// Checks the proof of every move, or the proof that no path exists, without a search.
+    ///
+    /// If the search found nothing, there is nothing to check.
     ///
     /// Raises
     /// ------
     /// CertificateError
-    ///     What is not proven.
+    ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
             let [moving, fixed] = placed(&self.bodies, &self.poses)?;
@@ -75,8 +76,8 @@ impl WaysOut {
         })
     }
 
-    /// What it says, as plain Python: ``outcome``, ``legs``, ``tolerance``, ``cells``, and what was
-    /// ``searched``; what does not apply is left out.
+    /// Returns the answer as plain Python: ``outcome``, ``legs``, ``tolerance``, ``cells`` and ``searched``.
+    /// Fields that do not apply are left out.
     ///
     /// Returns
     /// -------
@@ -91,27 +92,28 @@ impl WaysOut {
     }
 }
 
-/// How can a body leave another one by straight moves, one after another?
+/// Finds straight moves, one after another, by which one body leaves another.
 ///
-/// The body keeps how it is turned. Each move has its proof, and so has the answer that there is no way;
-/// that none was found is no proof.
+/// The body keeps its rotation. Each move has a proof, and so has the answer that no path exists. An
+/// unsuccessful search proves nothing.
 ///
 /// Parameters
 /// ----------
 /// moving, fixed : Solid or ConvexPolyhedron
-///     The body that moves, and the one that does not; closed, and apart where they are.
+///     The moving and the fixed body, both closed and without an overlap at the start.
 /// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
+///     Poses of the bodies in the world; see :class:`Pose`.
 /// tolerance : float, optional
-///     As of :class:`SolidCast`: both bodies are shrunk by half of it.
+///     See :class:`SolidCast`. Both bodies are shrunk by half of it.
 /// legs : int
-///     At most so many moves.
+///     The maximum number of moves.
 /// directions : array_like of shape (D, 3)
-///     Those to try, with their opposites; without any those of large faces, and across two of these.
+///     Directions to try, with their opposites. The default is the normals of large faces, and directions
+///     perpendicular to two of them.
 /// looks : int
-///     How many pairs of boxes are looked at, at most.
+///     The maximum number of pairs of boxes that are visited.
 /// cells : int
-///     At most so many cells for a proof that there is no way; 0 for no such proof.
+///     The maximum number of cells of a proof that no path exists; 0 for no such proof.
 ///
 /// Returns
 /// -------
@@ -120,7 +122,7 @@ impl WaysOut {
 /// Raises
 /// ------
 /// QueryError
-///     Bodies that are open, or overlap where they are.
+///     A body is open, or the bodies overlap at their poses.
 ///
 /// Examples
 /// --------
@@ -147,7 +149,7 @@ pub(crate) fn ways_out(
     cells: usize,
 ) -> PyResult<WaysOut> {
     if legs == 0 {
-        return Err(error("InputError", "legs: at least one move"));
+        return Err(error("InputError", "legs: 0 is out of range; accepted: at least 1"));
     }
     let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];

@@ -230,7 +230,7 @@ def _instead(listed: list[Any]) -> str:
         vector = vectors.tolist()
         slide = f"Motion.slide({vector}) moves the body by it"
         still = f"Motion.still({vector}) lets it rest there"
-        return f"; three numbers could be a displacement or a place: {slide}, {still}"
+        return f"; three numbers could be a displacement or a position: {slide}, {still}"
     return '; {"slide": {"by": array}} moves the body by each row of an array'
 
 

@@ -232,9 +232,9 @@ fn times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
     let value = serde_json::to_value(given).map_err(|e| refused(e.to_string()))?;
     let times: Times = serde_json::from_value(value).map_err(|e| refused(e.to_string()))?;
     match times.wrong() {
-                Some((name, seconds)) => {
-                    Err(refused(format!("{name}: invalid time {seconds}; expected a number of seconds")))
-                }
+        Some((name, seconds)) => {
+            Err(refused(format!("{name}: invalid time {seconds}; expected a number of seconds")))
+        }
         None => Ok(times),
     }
 }
@@ -494,7 +494,7 @@ impl Assembly {
         Ok((steps, stages, plan.last, plan.left, stuck, goes, rounds, reverse, seconds, planned))
     }
 
-        #[expect(clippy::type_complexity, reason = "the tuple has the four parts of a map")]
+    #[expect(clippy::type_complexity, reason = "the tuple has the four parts of a map")]
     fn removal_map(
         &self,
         py: Python<'_>,

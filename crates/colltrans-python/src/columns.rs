@@ -16,8 +16,8 @@ use crate::repeats::By;
 
 /// The values of an answer; NaN for a missing number.
 #[derive(Clone, Copy)]
-An index into the outcomes of the question.
-    /// An index into the question's outcomes.
+pub(crate) struct Row {
+    /// An index into the outcomes of the question.
     pub(crate) outcome: u8,
     pub(crate) numbers: [f64; NUMBERS.len()],
     pub(crate) vectors: [[f64; 3]; VECTORS.len()],

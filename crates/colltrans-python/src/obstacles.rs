@@ -112,7 +112,9 @@ fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 fn unknown(obstacle: u64) -> PyErr {
-    PyKeyError::new_err(format!("there is no obstacle {obstacle}: it was never added, or was removed"))
+    PyKeyError::new_err(format!(
+        "there is no obstacle {obstacle}: it was never added, or was removed"
+    ))
 }
 
 /// Reads the poses of an array or a sequence.

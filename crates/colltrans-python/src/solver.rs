@@ -89,7 +89,10 @@ pub(crate) fn options_of(solver: Option<&Bound<'_, PyAny>>) -> PyResult<Options>
     }
     let name: &str = solver.extract()?;
     let unknown = |_| {
-        error("QueryError", format_args!("unknown solver {name:?}; known solvers: auto, cta, portal"))
+        error(
+            "QueryError",
+            format_args!("unknown solver {name:?}; known solvers: auto, cta, portal"),
+        )
     };
     Ok(options.with_solver(name.parse().map_err(unknown)?))
 }

@@ -60,7 +60,7 @@ def test_choices_of_the_other_kind_are_refused() -> None:
         clearance(CUBE, "cube", DOWN)  # type: ignore[call-overload]
     with pytest.raises(TypeError):
         cast(CUBE, PLATE, DOWN)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="solids are asked for their clearance"):
+    with pytest.raises(TypeError, match="solids have no casts; call clearance_many"):
         cast_many(CUBE, [PLATE], DOWN)  # type: ignore[list-item]
     with pytest.raises(InputError, match="graze_tolerance, solver: are for convex bodies"):
         clearance_many(CUBE, PLATE, DOWN, graze_tolerance=1e-3)  # type: ignore[call-overload]

@@ -61,10 +61,10 @@ def test_polygons_of_different_lengths() -> None:
         ([[0, 1, 7]], BuildError, "face 0 names vertex 7"),
         ([[0, 1, -1]], InputError, "face 0: the index -1"),
         (np.array([[0, 1, 1 << 40]]), InputError, "the index 1099511627776"),
-        ([[0, 1, 2.5]], InputError, "face 0: no array of whole numbers"),
+        ([[0, 1, 2.5]], InputError, "face 0: not an array of whole numbers"),
         ([], BuildError, "no faces"),
         (np.zeros((2, 2, 2), int), InputError, r"\(2, 2, 2\)"),
-        (3, InputError, "no list of faces"),
+        (3, InputError, "not a list of faces"),
         ([[[0, 1, 2]]], InputError, "face 0"),
     ],
 )

@@ -263,7 +263,7 @@ def test_files_of_queries(tmp_path: Path) -> None:
         table, bulk.Bodies(folder=str(tmp_path), hull=True), bulk.Options("depth")
     )
     assert answers["upper"][0].as_py() == told["depth"]["upper"][0]
-    with pytest.raises(InputError, match="no column 'length'"):
+    with pytest.raises(InputError, match="unknown column 'length'"):
         bulk.answer_table(table, bulk.Bodies(folder=str(tmp_path)), bulk.Options("within"))
 
 
@@ -276,7 +276,7 @@ def test_pictures_join_the_nearest_points() -> None:
     pair = Pair(CUBE, CUBE, moving_pose=[-3, 0.5, 0])
     assert names(pair) == ["moving", "fixed", "distance 2"]
     assert names(pair.within(9))[2].startswith("at most ")
-    assert "parted at 0.25" in names(colltrans.depth(CUBE, CUBE, moving_pose=[0.75, 0, 0]))
+    assert "separated at 0.25" in names(colltrans.depth(CUBE, CUBE, moving_pose=[0.75, 0, 0]))
     assert names(colltrans.depth(BOLT, PLATE)) == ["moving", "fixed"]
 
 

@@ -63,7 +63,9 @@ def test_three_numbers_in_place_of_a_motion_are_refused_with_both_calls(vector: 
     for question in (first_contact, motion_clearance, MotionCast):
         for motions in ((vector, None), (above, vector)):
             named = dict(zip(("moving_motion", "fixed_motion"), motions, strict=True))
-            with pytest.raises(InputError, match="could be a displacement or a position") as refused:
+            with pytest.raises(
+                InputError, match="could be a displacement or a position"
+            ) as refused:
                 question(CUBE, CUBE, **named)
             assert "Motion.slide([0.0, 0.0, 1.0])" in str(refused.value)
             assert "Motion.still([0.0, 0.0, 1.0])" in str(refused.value)

@@ -64,7 +64,7 @@ def test_outcomes_compare_as_text() -> None:
 
 @pytest.mark.parametrize("wrong", ["contcat", ["contact", "x", "error", "error"]])
 def test_names_that_are_no_outcomes_are_errors(wrong: Any) -> None:
-    with pytest.raises(InputError, match="no outcome '"):
+    with pytest.raises(InputError, match="unknown outcome '"):
         columns().outcome == wrong  # noqa: B015
 
 

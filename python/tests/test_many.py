@@ -101,11 +101,11 @@ def test_bad_rows_are_errors_and_lose_nothing() -> None:
         ({"direction": np.zeros((4, 2))}, r"direction: an array of shape \(4, 2\)"),
         (
             {"graze_tolerance": np.zeros((2, 2)), "moving_pose": np.zeros((4, 3))},
-            r"axes do not go together: moving_pose \(4,\), graze_tolerance \(2, 2\)",
+            r"axes that cannot be broadcast: moving_pose \(4,\), graze_tolerance \(2, 2\)",
         ),
-        ({"moving_pose": np.zeros((5, 3, 3))}, "may be either: rotations are given as"),
-        ({"moving_index": [0.5]}, "moving_index: no row of whole numbers"),
-        ({"moving_index": 0}, "moving_index: no row of whole numbers"),
+        ({"moving_pose": np.zeros((5, 3, 3))}, "is ambiguous: give rotations as"),
+        ({"moving_index": [0.5]}, "moving_index: not an array of whole numbers"),
+        ({"moving_index": 0}, "moving_index: not an array of whole numbers"),
         ({"moving_index": np.array([2**64 - 1], np.uint64)}, "too large"),
         ({"moving_index": [0, 0], "fixed_index": [0, 0, 0]}, "2 rows.*3 rows"),
         ({"threads": 0}, "threads: 0"),
@@ -125,7 +125,9 @@ def test_arrays_that_change_are_noticed() -> None:
     columns = cast_many(CUBE, CUBE, AHEAD, moving_pose=starts)
     starts[1, 0] = -7
     assert isinstance(columns[0], Contact)
-    with pytest.raises(ColltransError, match="row 1: the arrays that were given have changed"):
+    with pytest.raises(
+        ColltransError, match="row 1: the arguments of the query have been modified"
+    ):
         columns[1]
     with pytest.raises(IndexError):
         columns[2]
@@ -141,7 +143,7 @@ def test_columns_are_names_masks_and_counts() -> None:
     assert columns.counts() == {"contact": 1, "grazing": 1, "separated": 1}
     assert columns.where("contact", "grazing").tolist() == [True, False, True]
     assert columns.exit.tolist()[0] == 4
-    with pytest.raises(InputError, match="no outcome 'hit'"):
+    with pytest.raises(InputError, match="unknown outcome 'hit'"):
         columns.where("hit")
     again = pickle.loads(pickle.dumps(columns))
     assert repr(again[0]) == repr(columns[0])

@@ -86,7 +86,7 @@ def test_show_hands_the_figure_to_plotly(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_what_is_no_answer_is_refused() -> None:
-    with pytest.raises(TypeError, match="no answer and no query, but Pose"):
+    with pytest.raises(TypeError, match="Pose is not a body, a query or an answer"):
         picture(Pose())
     with pytest.raises(TypeError):
         Cast(CUBE, CUBE, [1, 0, 0]).show(colour="red")

@@ -154,7 +154,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
 
     refused(InputError, "path: rows have 2 values, expected 3, one for each joint", ROWS[:, :2])
     refused(InputError, r"path: an array of shape \(3,\), not \(N, joints\)", [0, 0, 0])
-    refused(InputError, "path: no array of numbers", [["a", "b", "c"]])
+    refused(InputError, "path: not an array of numbers", [["a", "b", "c"]])
     refused(InputError, "path: .*none.csv: cannot be read", tmp_path / "none.csv")
     refused(InputError, "columns: 2 names for rows of 3 values", ROWS, columns=["a", "b"])
     refused(InputError, "path: column a does not name an independent joint", ROWS, columns=["a", "elbow", "reach"])
@@ -205,7 +205,7 @@ def test_many_paths_are_one_by_one_with_the_same_bits() -> None:
     block = path_many(ARM, np.stack([ROWS, ROWS]), scene, times=[[0, 1, 2], [0, 2, 4]])
     assert block.lower[1] == pytest.approx(2 * block.lower[0])
     assert len(path_many(ARM, [])) == 0
-    with pytest.raises(InputError, match="times: 1 of them for 2 paths"):
+    with pytest.raises(InputError, match="times: 1 arrays for 2 paths"):
         path_many(ARM, [ROWS, ROWS], times=[[0, 1, 2]])
 
 

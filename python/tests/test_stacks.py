@@ -41,7 +41,9 @@ def test_axes_go_together_as_those_of_numpy() -> None:
         assert repr(columns[3 * i + j]) == repr(alone)
     outcomes = columns.stacked("outcome")
     assert outcomes.shape == (4, 3) and (outcomes == "contact")[:, [0, 2]].all()
-    with pytest.raises(InputError, match="no column 'exit': outcome, translation"):
+    with pytest.raises(
+        InputError, match="unknown column 'exit'; known columns: outcome, translation"
+    ):
         columns.stacked("exit")
     # What is selected or joined is rows.
     ahead = columns.translation > 0

@@ -1,13 +1,13 @@
 """Collision translations: how far can one body move before it touches another?
 
-A body is a :class:`ConvexPolyhedron`; a question is a function (:func:`cast`, :func:`clearance`,
-:func:`distance`, ...), one about many rows ends in ``_many``; an answer is a frozen object with its
-proof. Parts that are not convex are :class:`Solid`, asked by a :class:`SolidCast`; many parts are
-an :class:`Assembly`; links that joints move are a :class:`Robot`.
+A body is a :class:`ConvexPolyhedron`, a query is a function (:func:`cast`, :func:`clearance`,
+:func:`distance`, ...), and an answer is a frozen object with its proof. Functions for many rows end
+in ``_many``. Parts that are not convex are :class:`Solid` objects, which a :class:`SolidCast`
+queries. Many parts form an :class:`Assembly`, links with joints form a :class:`Robot`.
 
 Vertices are in the body frame; poses place bodies in the world. Directions, normals and points are
-in the world. Translations count in multiples of the direction, so they are lengths if it has length
-1. The unit of length is the caller's.
+in the world. Translations are multiples of the direction, so they are lengths if it has length 1.
+The unit of length is the caller's.
 """
 
 from importlib.metadata import version as _version

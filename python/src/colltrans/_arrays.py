@@ -1,6 +1,8 @@
-"""Whatever a person calls an array, as what the extension reads: C order, native double precision.
+"""Conversion of array arguments to C order and native double precision, as the extension reads
+them.
 
-The extension reads tuples, lists and arrays that are already so by itself; the rest comes here.
+The extension itself reads tuples, lists and arrays in that format; all other arguments are
+converted here.
 """
 
 from collections.abc import Sequence
@@ -15,16 +17,17 @@ from colltrans.errors import InputError
 
 
 class Runs(NamedTuple):
-    """Faces as they are handed on: all corners, where each face begins and the last one ends."""
+    """Faces as the extension reads them: all corners, the start of each face, and the last end."""
 
     corners: Any
     ends: Any
 
 
 def floats(values: Any, name: str) -> NDArray[np.float64]:
-    """``values`` as an aligned array of doubles in C order, itself if it is one.
+    """Converts ``values`` to an aligned array of doubles in C order; returns such an array as it
+    is.
 
-    What a masked array masks is NaN, which every question refuses, in bulk row by row.
+    Masked entries become NaN, which every query rejects, bulk queries row by row.
     """
     if isinstance(values, str | PathLike):
         wanted = "give an array, for example the three numbers [0, 0, 1]"
@@ -32,29 +35,31 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
     try:
         array = np.asarray(_unmasked(values, float, np.nan))
     except Exception as error:
-        raise InputError(f"{name}: no array of numbers: {error}") from None
+        raise InputError(f"{name}: not an array of numbers: {error}") from None
     if array.dtype.kind not in "fiu":
         several = array.dtype == object and any(isinstance(x, Motion) for x in array.flat)
         instead = "; give one Motion, or motion_many takes a list of them" if several else ""
-        raise InputError(f"{name}: no array of numbers, but of {array.dtype}{instead}")
+        raise InputError(f"{name}: not an array of numbers, but of {array.dtype}{instead}")
     return np.require(array, np.float64, ["C", "A"])
 
 
 def indices(values: Any, name: str) -> NDArray[np.uint32]:
-    """``values`` as an aligned array of 32-bit indices in C order, itself if it is one.
+    """Converts ``values`` to an aligned array of 32-bit indices in C order; returns such an array
+    as it is.
 
-    What a masked array masks is -1, which is refused.
+    Masked entries become -1, which is rejected.
     """
     try:
         array = np.asarray(_unmasked(values, np.int64, -1))
     except Exception as error:
-        raise InputError(f"{name}: no array of whole numbers: {error}") from None
+        raise InputError(f"{name}: not an array of whole numbers: {error}") from None
     if array.size == 0:
         return np.zeros(array.shape, np.uint32)
     if array.dtype.kind not in "iu":
-        raise InputError(f"{name}: no array of whole numbers, but of {array.dtype}")
+        raise InputError(f"{name}: not an array of whole numbers, but of {array.dtype}")
     if array.dtype != np.uint32 and (array.min() < 0 or array.max() >= 1 << 32):
-        raise InputError(f"{name}: the index {_outside(array)} is negative or too large")
+        wanted = "accepted: 0 to 2^32 - 1"
+        raise InputError(f"{name}: index {_outside(array)} is out of range; {wanted}")
     return np.require(array, np.uint32, ["C", "A"])
 
 
@@ -69,7 +74,7 @@ def _outside(array: NDArray[Any]) -> int:
 
 
 def faces(values: Any) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
-    """Polygons as one run of corners, and where each begins and the last one ends."""
+    """Converts polygons to one array of corners, the start of each polygon, and the last end."""
     if isinstance(values, Runs):
         return indices(values.corners, "faces"), indices(values.ends, "faces")
     if isinstance(values, np.ndarray) and values.dtype != object:
@@ -79,7 +84,7 @@ def faces(values: Any) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
         ends = np.arange(len(values) + 1) * values.shape[1]
         return corners.reshape(-1), ends.astype(np.uint32)
     if not isinstance(values, (Sequence, np.ndarray)):
-        raise InputError(f"faces: no list of faces, but {type(values).__name__}")
+        raise InputError(f"faces: not a list of faces, but {type(values).__name__}")
     each = [indices(face, f"face {number}") for number, face in enumerate(values)]
     for number, face in enumerate(each):
         if face.ndim != 1:

@@ -1,4 +1,4 @@
-"""Answers in bulk: columns, and whole answers of single rows."""
+"""Columns of bulk answers, and the complete answers of single rows."""
 
 import operator
 from collections.abc import Iterator, Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray
 
 Answer_co = TypeVar("Answer_co", covariant=True)
-#: The columns of vertices, which are there if they are asked for.
+#: #: The columns of features, which exist if features are requested.
 FEATURES = ("moving_feature", "fixed_feature")
 
 
@@ -40,7 +40,7 @@ class Failed:
     Attributes
     ----------
     message : str
-        What is wrong with it.
+            The reason for the failure.
     """
 
     message: str
@@ -48,7 +48,7 @@ class Failed:
 
 @dataclass(frozen=True)
 class _Taken:
-    """Some rows of what was asked."""
+    """Selected rows of a query."""
 
     of: Any
     rows: NDArray[np.intp]
@@ -63,7 +63,7 @@ class _Taken:
 
 @dataclass(frozen=True)
 class _Joined:
-    """What was asked in several calls, one after the other."""
+    """The queries of several calls, joined in order."""
 
     parts: tuple[Any, ...]
     ends: NDArray[np.intp]
@@ -79,21 +79,21 @@ class _Joined:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Table(Generic[Answer_co]):
-    """Answers as columns, one row a query. Numbers that a row has not are NaN.
+    """Answers as columns, one row for each query. Missing numbers are NaN.
 
-    ``len(columns)`` is the number of rows, ``columns[i]`` the whole answer of one of them, with its
-    features and its proof: it is asked again, from the arrays that were given. A slice, a mask or
-    an array of positions selects rows, as of an array; :func:`concatenate` joins them.
+    ``len(columns)`` is the number of rows. ``columns[i]`` is the complete answer of a row, with its
+    features and its proof; it is computed again from the arguments of the call. A slice, a mask or
+    an array of positions selects rows, as for an array; :func:`concatenate` joins tables.
 
     Attributes
     ----------
     outcome : Outcomes
-        What became of each row, by name: ``columns.outcome == "contact"`` is a mask.
+        The outcome of each row, by name: ``columns.outcome == "contact"`` is a mask.
     errors : dict of int to str
         The messages of the rows without an answer.
     moving_feature, fixed_feature : ndarray of int64, shape (N, 3), or None
-        With ``features=True``, what touches: a vertex as its number in the input, an edge as two, a
-        face as its first three; -1 stands for none.
+        With ``features=True``, the features in contact: one vertex number of the input for a
+        vertex, two for an edge, the first three for a face; the rest is -1.
     """
 
     outcome: Outcomes
@@ -103,13 +103,13 @@ class Table(Generic[Answer_co]):
     moving_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
     fixed_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
 
-    #: What is asked of one row, and the name of the question in bulk.
+    #: #: The function that answers one row, and the name of the bulk query.
     _question: ClassVar[Any]
     _name: ClassVar[str]
 
     @classmethod
     def _columns(cls) -> list[str]:
-        """The columns that only answers to this question have."""
+        """Returns the names of the columns that only this kind of answer has."""
         common = {each.name for each in fields(Table)}
         return [each.name for each in fields(cls) if each.name not in common]
 
@@ -128,17 +128,17 @@ class Table(Generic[Answer_co]):
 
     @property
     def shape(self) -> Shape:
-        """tuple of int: The axes that the arguments had together; rows are in C order."""
+        """tuple of int: The common axes of the arguments; rows are in C order."""
         shape: Shape = self._queries.shape
         return shape
 
     def stacked(self, name: str) -> NDArray[Any]:
-        """A column with the axes that the arguments had, those of vectors last.
+        """Returns a column with the axes of the arguments, followed by the axis of vectors.
 
         Parameters
         ----------
         name : str
-            Of a column, ``"outcome"`` among them.
+                The name of a column, for example ``"outcome"``.
 
         Examples
         --------
@@ -155,7 +155,7 @@ class Table(Generic[Answer_co]):
         """
         known = {"outcome": np.asarray(self.outcome), **dict(self._numbers())}
         if name not in known:
-            raise InputError(f"no column {name!r}: {', '.join(known)}")
+            raise InputError(f"unknown column {name!r}; known columns: {', '.join(known)}")
         column = known[name]
         return column.reshape(*self.shape, *column.shape[1:])
 
@@ -174,7 +174,7 @@ class Table(Generic[Answer_co]):
         except ColltransError:
             answer = None
         if answer is None or not self._is_row(answer, i):
-            raise ColltransError(f"row {i}: the arrays that were given have changed since")
+            raise ColltransError(f"row {i}: the arguments of the query have been modified since")
         return answer
 
     def __iter__(self) -> "Iterator[Answer_co | Failed]":
@@ -190,7 +190,7 @@ class Table(Generic[Answer_co]):
         return replace(self, _queries=_Taken(self._queries, rows), **changed)
 
     def where(self, *outcomes: str) -> NDArray[np.bool_]:
-        """Which rows have one of these outcomes, by name: a mask for the columns.
+        """Returns a mask of the rows that have one of these outcomes.
 
         Examples
         --------
@@ -206,16 +206,17 @@ class Table(Generic[Answer_co]):
         return self.outcome.isin(outcomes)
 
     def counts(self) -> dict[str, int]:
-        """How many rows have each outcome, without those that none has."""
+        """Counts the rows of each outcome that occurs."""
         return self.outcome.counts()
 
     def to_arrow(self) -> "pyarrow.Table":
-        """A table of pyarrow; vectors are lists of fixed size, columns are not copied.
+        """Converts the columns to a table of pyarrow, without copies; vectors are lists of fixed
+        size.
 
         Raises
         ------
         ModuleNotFoundError
-            Without pyarrow, ``pip install colltrans[arrow]``.
+                pyarrow is missing; run ``pip install colltrans[arrow]``.
         """
         import pyarrow as pa
 
@@ -235,16 +236,17 @@ class Table(Generic[Answer_co]):
         return pa.table(columns)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """The table of :meth:`to_arrow` for whoever reads Arrow: polars, DuckDB, pandas."""
+        """Exports the table of :meth:`to_arrow` to libraries that read Arrow: polars, DuckDB,
+        pandas."""
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def to_xarray(self) -> "xarray.Dataset":
-        """A data set of xarray: each column by ``query``, vectors by ``axis`` too.
+        """Converts the columns to a data set of xarray with the dimensions ``query`` and ``axis``.
 
         Raises
         ------
         ModuleNotFoundError
-            Without xarray, ``pip install colltrans[xarray]``.
+                xarray is missing; run ``pip install colltrans[xarray]``.
         """
         import xarray as xr
 
@@ -257,12 +259,12 @@ class Table(Generic[Answer_co]):
         return xr.Dataset(columns, coords={"axis": list("xyz")})
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """A data frame of pandas; vectors are three columns each.
+        """Converts the columns to a data frame of pandas; a vector becomes three columns.
 
         Raises
         ------
         ModuleNotFoundError
-            Without pandas, ``pip install colltrans[pandas]``.
+                pandas is missing; run ``pip install colltrans[pandas]``.
         """
         import pandas as pd
 
@@ -288,7 +290,7 @@ class Table(Generic[Answer_co]):
                 yield name, column
 
     def _is_row(self, answer: Any, i: int) -> bool:
-        """Checks whether a row has the outcome of an answer, and its bounds."""
+        """Checks whether a row has the outcome and the bounds of an answer."""
         record = answer.to_dict()
         bounds = record.get("time", record)
         found = [bounds.get(name, np.nan) for name in ("lower", "upper")]
@@ -314,13 +316,13 @@ class Table(Generic[Answer_co]):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TimeColumns(Table[Answer_co]):
-    """Answers about times as columns; see :class:`Table`.
+    """Answers about times, as columns; see :class:`Table`.
 
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-        Of contacts, proven bounds of their times: nothing meets before the first, and what stops
-        the motion does at the second.
+            Proven bounds of the times of contacts: no contact before the first one, and the contact
+            that stops the motion at the second one.
     """
 
     lower: Floats
@@ -329,7 +331,7 @@ class TimeColumns(Table[Answer_co]):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Columns(Table[Answer_co]):
-    """Answers about convex bodies as columns; see :class:`Table`.
+    """Answers about convex bodies, as columns; see :class:`Table`.
 
     Attributes
     ----------
@@ -338,16 +340,17 @@ class Columns(Table[Answer_co]):
     point : ndarray of shape (N, 3)
         Contact points, in the world.
     translation_lower, translation_upper : ndarray of shape (N,)
-        Proven bounds of the translation, in multiples of the direction; infinite where nothing is
-        known.
+            Proven bounds of the translation, in multiples of the direction; infinite without a
+            bound.
     translation : ndarray of shape (N,)
-        Of the first contact, in multiples of the direction.
+            Translation of the first contact, in multiples of the direction.
     rounding : ndarray of shape (N,)
-        What rounding alone can make of the difference of these bounds.
+            The part of the difference of these bounds that rounding alone can cause.
     margin : ndarray of shape (N,)
-        How far the shadows of separated bodies are apart at least, a length.
+            A lower bound of the distance of the shadows of separated bodies, a length.
     overlap : ndarray of shape (N,)
-        By how much the shadows of bodies overlap that graze, a length; negative where they may not.
+            The overlap of the shadows of grazing bodies, a length; negative if they may be
+            disjoint.
     """
 
     translation: Floats
@@ -362,8 +365,8 @@ class Columns(Table[Answer_co]):
     def _is_row(self, answer: Any, i: int) -> bool:
         record = answer.to_dict()
         told, found = self.translation[i], record.get("translation", np.nan)
-        # Rows of one pair are asked together, a row alone by a cast: both are right, each within
-        # its rounding.
+        # # Rows with the same pair of bodies share data in bulk; a single row runs its own cast.
+        # Both answers are valid, each within its rounding.
         same = np.array_equal(told, found, equal_nan=True)
         same = same or abs(told - found) <= 2 * self.rounding[i]
         return bool(same) and self.outcome[i] == record["outcome"]
@@ -373,12 +376,12 @@ Columns_ = TypeVar("Columns_", bound=Table[Any])
 
 
 def concatenate(columns: "Sequence[Columns_]") -> Columns_:
-    """Columns of one kind, one after the other.
+    """Joins columns of the same class in order.
 
     Parameters
     ----------
     columns : sequence of columns
-        At least one, all of answers to the same question.
+            At least one, all of answers to the same query.
 
     Returns
     -------
@@ -387,7 +390,7 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
     Raises
     ------
     InputError
-        None at all, or answers to different questions.
+            There are no columns, or they answer different queries.
 
     Examples
     --------
@@ -400,13 +403,13 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
     """
     if len({type(each) for each in columns}) != 1:
         kinds = ", ".join(sorted({type(each).__name__ for each in columns})) or "nothing"
-        raise InputError(f"columns of one kind are joined, not {kinds}")
+        raise InputError(f"cannot join columns of different classes: {kinds}")
     first, ends = columns[0], np.cumsum([len(each) for each in columns])
     if len({tuple(name for name, _ in each._numbers()) for each in columns}) != 1:
-        raise InputError("columns with features and columns without are not joined")
+        raise InputError("cannot join columns with features and columns without")
     for name in ("outcomes", "bodies"):
         if any(getattr(each, name, ()) != getattr(first, name, ()) for each in columns):
-            raise InputError(f"columns of the same {name} are joined")
+            raise InputError(f"cannot join columns with different {name}")
     begins = np.concatenate([[0], ends[:-1]])
     shifted = (
         {int(begin) + i: text for i, text in each.errors.items()}
@@ -444,7 +447,7 @@ class RangeColumns(Columns[ContactRange | Separated]):
     exit : ndarray of shape (N,)
         The translation of the last contact, in multiples of the direction.
     exit_lower, exit_upper : ndarray of shape (N,)
-        Its proven bounds: beyond the upper one the bodies never meet.
+            Proven bounds of the last contact. The bodies never meet beyond the upper one.
     """
 
     exit: Floats
@@ -461,14 +464,14 @@ class ClearanceColumns(Columns[Blocked | Slides | Behind | Separated | Overlappi
     Attributes
     ----------
     distance : ndarray of shape (N,)
-        How far the moving body may safely move, in multiples of the direction: infinite where
-        nothing blocks, NaN where the bodies overlap.
+            The free travel, rounded down, in multiples of the direction; infinite if nothing
+            blocks, NaN if the bodies overlap.
     exit : ndarray of shape (N,)
-        The translation of the last contact, where it is behind or the bodies overlap.
+            The translation of the last contact, if it is behind the body or the bodies overlap.
     exit_lower, exit_upper : ndarray of shape (N,)
-        Its proven bounds: beyond the upper one the bodies never meet.
+            Proven bounds of the last contact. The bodies never meet beyond the upper one.
     back, on : ndarray of shape (N,)
-        How far a body that overlaps has to go, back or on, until it does not.
+            The travel backwards and forwards after which an overlap ends.
     """
 
     distance: Floats

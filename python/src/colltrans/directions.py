@@ -1,4 +1,4 @@
-"""All directions along which bodies leave each other, in bulk; columns out."""
+"""Free directions of many pairs of bodies, as columns."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,13 +17,15 @@ class FreeColumns(RowColumns[FreeDirections]):
     Attributes
     ----------
     free_lower, free_upper : ndarray of shape (N,)
-        Proven bounds of the share of all directions that is free, without what is undecided.
+            Proven bounds of the share of all directions that is free, without the undecided ones.
     undecided : ndarray of shape (N,)
-        At most this share of all directions is not known.
+            An upper bound of the share of directions that are undecided.
     regions, arcs, points : ndarray of shape (N,)
-        How many there are: connected regions, and arcs and single directions with no region beside.
+            The numbers of connected regions, and of arcs and single directions that border no
+            region.
     direction : ndarray of shape (N, 3)
-        A direction in the largest region, nearly the farthest from its border, where there is one.
+            A direction in the largest region, nearly the farthest from its border; NaN without a
+            region.
     """
 
     free_lower: Floats
@@ -67,16 +69,16 @@ def free_directions_many(
     looks: int = 20_000_000,
     threads: int | None = None,
 ) -> FreeColumns:
-    """:func:`free_directions` for every row.
+    """Runs :func:`free_directions` for every row.
 
     Parameters
     ----------
     moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
-        As for :func:`distance_many`.
+            See :func:`distance_many`.
     tolerance : float or array_like of shape (N,), optional
-        As for :func:`free_directions`.
+            See :func:`free_directions`.
     ignore_start_overlaps, depth, looks
-        As for :func:`free_directions`, the same for all rows.
+            See :func:`free_directions`; one value for all rows.
 
     Returns
     -------

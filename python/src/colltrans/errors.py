@@ -1,33 +1,33 @@
-"""What goes wrong, by type. Messages are those of the library: what, where, and by how much."""
+"""The exceptions of the package. Messages are those of the library."""
 
 import errno
 
 
 class ColltransError(Exception):
-    """The base of all errors of this package."""
+    """The base class of all errors of this package."""
 
 
 class InputError(ColltransError, ValueError):
-    """An argument that is not an array of numbers, or has another shape than is asked for."""
+    """An argument is not an array of numbers, or has a wrong shape or value."""
 
 
 class BuildError(ColltransError, ValueError):
-    """Points or a mesh that make no body."""
+    """Points or a mesh do not form a body."""
 
 
 class PoseError(ColltransError, ValueError):
-    """A rotation that is none, or a translation out of range."""
+    """A matrix or quaternion is not a rotation, or a translation is out of range."""
 
 
 class QueryError(ColltransError, ValueError):
-    """A direction, a tolerance or another choice of a query that is refused."""
+    """A direction, a tolerance or another argument of a query is rejected."""
 
 
 class NotConvergedError(QueryError):
-    """A search that ended without an answer.
+    """A search ended without an answer.
 
-    Known only where one body is thinner than the rounding error at the size of the configuration
-    (ratios beyond 1e11): please report another case.
+    The only known cases have a body that is thinner than the rounding error at the size of the
+    configuration (ratios beyond 1e11). Please report any other case.
 
     Attributes
     ----------
@@ -39,27 +39,27 @@ class NotConvergedError(QueryError):
 
 
 class CertificateError(ColltransError, ValueError):
-    """A proof that does not prove what it says."""
+    """A proof does not prove its claim."""
 
 
 class CaseError(ColltransError, ValueError):
-    """A saved query or body that cannot be read back."""
+    """A saved query or body cannot be read."""
 
 
 class MeshError(ColltransError, ValueError):
-    """A mesh file that cannot be read, or holds something else than its name says."""
+    """A mesh file cannot be read, or its content does not match its extension."""
 
 
 class RoundedPoseWarning(UserWarning):
-    """A rotation that was written with few digits and replaced by the nearest rotation."""
+    """A rotation with few digits was replaced by the nearest rotation."""
 
 
 class AssemblyError(ColltransError, ValueError):
-    """An assembly that cannot be read, a part that is none, or a name that no part has."""
+    """An assembly cannot be read, a part is invalid, or a part name is unknown."""
 
 
 class MissingFileError(MeshError, AssemblyError, FileNotFoundError):
-    """A file of a mesh, an assembly or a robot that does not exist. Its ``errno`` is ``ENOENT``."""
+    """A file of a mesh, an assembly or a robot does not exist. Its ``errno`` is ``ENOENT``."""
 
     def __init__(self, message: str) -> None:
         super().__init__(message)
@@ -67,7 +67,7 @@ class MissingFileError(MeshError, AssemblyError, FileNotFoundError):
 
 
 def as_error(error: BaseException, place: str) -> ColltransError:
-    """Returns what went wrong at a place as an error of this package, unless it ends the process.
+    """Converts an exception at a place to an error of this package, unless it ends the process.
 
     A panic of the extension is a ``BaseException``. Ctrl-C and the exit of the interpreter are
     raised again.

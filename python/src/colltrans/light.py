@@ -1,7 +1,8 @@
-"""What a notebook shows as a cell's last value: a line of words, and a drawing while that is light.
+"""Output of notebook cells: a line of text, and a drawing if the bodies are small.
 
-A drawing is SVG, a few kilobytes: bodies seen from above and aside, facets from the farthest to
-the nearest, in the colours of :mod:`colltrans.pictures`. A figure that turns is ``show()``.
+A drawing is an SVG image of a few kilobytes: bodies in an oblique view from above, facets sorted
+from back to front, in the colours of :mod:`colltrans.pictures`. For an interactive figure call
+``show()``.
 """
 
 from collections.abc import Iterator
@@ -21,11 +22,11 @@ from colltrans._colltrans import (
 )
 from colltrans.pictures import EDGE, FIXED, MOVING, TOUCH, Floats, Placed, _Link, placed, said
 
-#: So many triangles are drawn; of more only the words are shown.
+#: #: Maximum number of triangles in a drawing. Larger bodies are shown as text only.
 MOST = 1500
-#: Pixels.
+#: #: Size of a drawing and its margin, in pixels.
 WIDTH, HEIGHT, MARGIN = 320, 240, 8
-#: From the scene to the eye, and the light.
+#: #: Directions from the scene to the eye and to the light.
 EYE = np.array([0.48, -0.72, 0.5])
 LIGHT = np.array([0.35, -0.5, 0.79])
 WORDS = 'font-family="sans-serif" font-size="11"'
@@ -33,7 +34,7 @@ WORDS = 'font-family="sans-serif" font-size="11"'
 
 @dataclass(frozen=True)
 class _Shape:
-    """A body where it is, and how it looks."""
+    """A placed body with its colour and opacity."""
 
     placed: Placed
     colour: str
@@ -41,7 +42,7 @@ class _Shape:
 
 
 def html(thing: Any) -> str:
-    """What a notebook shows of a body, a query or an answer."""
+    """Returns the HTML that a notebook shows for a body, a query or an answer."""
     text = f"<p>{escape(repr(thing))}</p>"
     shapes, points = _scene(thing)
     if not shapes or sum(len(shape.placed[1]) for shape in shapes) > MOST:
@@ -50,12 +51,12 @@ def html(thing: Any) -> str:
 
 
 def _scene(thing: Any) -> tuple[list[_Shape], list[Floats]]:
-    """What is drawn: shapes, and the points that an answer has."""
+    """Returns the shapes to draw, and the points of an answer."""
     if isinstance(thing, (ConvexPolyhedron, Solid)):
         return [_Shape(placed(thing, Pose()), MOVING, 1.0)], []
     if isinstance(thing, (MotionCast, MotionClearance, FirstContact)):
         return _moved(thing)
-    if hasattr(thing, "moving"):  # A query: it is not asked for the sake of a drawing.
+    if hasattr(thing, "moving"):  # A query, which is not run just for a drawing.
         return _bodies(thing), []
     try:
         query, marks = said(thing)
@@ -81,7 +82,8 @@ def _bodies(query: Any) -> list[_Shape]:
 
 
 def _moved(thing: MotionCast | MotionClearance | FirstContact) -> tuple[list[_Shape], list[Floats]]:
-    """At the start; of an answer as a ghost where it ends or touches, too."""
+    """Returns the bodies at the start and, as a ghost, the moving body at the contact or the
+    end."""
     query = thing if isinstance(thing, MotionCast) else thing.query
     at = 1.0
     if isinstance(thing, FirstContact) and thing.lower is not None:
@@ -97,7 +99,7 @@ def _moved(thing: MotionCast | MotionClearance | FirstContact) -> tuple[list[_Sh
 
 
 def svg(shapes: list[_Shape], points: list[Floats]) -> str:
-    """The drawing."""
+    """Draws shapes and points as SVG."""
     right = np.cross([0.0, 0, 1], EYE)
     right /= np.linalg.norm(right)
     onto = np.stack([right, -np.cross(EYE, right), EYE], axis=1)
@@ -122,7 +124,7 @@ def svg(shapes: list[_Shape], points: list[Floats]) -> str:
 
 
 def _facets(shapes: list[_Shape], pixels: Any) -> Iterator[str]:
-    """Facets that face the eye, the farthest first, with their edges."""
+    """Draws the facets that face the eye, from back to front, with their edges."""
     all_of: list[tuple[float, str]] = []
     for shape in shapes:
         vertices, triangles, edges = shape.placed
@@ -156,7 +158,7 @@ def _facets(shapes: list[_Shape], pixels: Any) -> Iterator[str]:
 
 
 def _sides(corners: Any, x: Floats, seen: set[tuple[int, ...]]) -> Iterator[tuple[Floats, Floats]]:
-    """The sides of a triangle that are edges to be seen."""
+    """Returns the sides of a triangle that are visible edges."""
     for j, k in ((0, 1), (1, 2), (2, 0)):
         if tuple(sorted((int(corners[j]), int(corners[k])))) in seen:
             yield x[j], x[k]

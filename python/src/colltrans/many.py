@@ -1,11 +1,11 @@
-"""Queries in bulk: arrays in, columns out.
+"""Bulk queries: arrays in, columns out.
 
-Arguments have one row for all queries or one for each, or are stacks with more axes, which go
-together as arrays of numpy do (``columns.stacked`` has them again); bodies are one for all, or a
-list with an index for each. Rows are answered on all cores, without the interpreter's lock. A row
+An argument has one row for all queries, or one row for each. Arguments with more axes are broadcast
+like arrays of numpy, and ``columns.stacked`` restores the axes. Bodies are one for all, or a list
+with an index for each row. Rows are answered on all cores, without the interpreter's lock. A row
 without an answer has the outcome ``"error"`` and a message.
 
-See the notes of :func:`cast_many` for what a row's answer may depend on.
+The notes of :func:`cast_many` explain on what the answer of a row may depend.
 """
 
 from typing import overload
@@ -46,30 +46,35 @@ def cast_many(
     features: bool = False,
     threads: int | None = None,
 ) -> ContactColumns:
-    """:func:`cast` for every row.
+    """Runs :func:`cast` for every row.
 
     Parameters
     ----------
     moving, fixed : ConvexPolyhedron or sequence of them
-        One for all rows; or a list, with an index for each row, or with a body for each row. An
-        exception in the list stands for a body that could not be built: its rows are errors.
+            One body for all rows, a list with an index for each row, or a list with a body for each
+            row. An exception in the list stands for a body that could not be built; its rows are
+            errors.
     direction : array_like of shape (3,) or (N, 3)
-        Of the world, of any length; translations count in multiples of it.
+            Vectors of the world, of any length. Translations are multiples of them.
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
-        One for all, of shape (3,), (7,), (3, 4) or (4, 4), or one for each row, of shape (N, 3),
-        (N, 7), (N, 3, 4) or (N, 4, 4); see :class:`Pose`.
+            One pose for all rows, of shape (3,), (7,), (3, 4) or (4, 4), or one for each row, of
+            shape (N, 3), (N, 7), (N, 3, 4) or (N, 4, 4); see :class:`Pose`.
     moving_index, fixed_index : array_like of int, shape (N,), optional
-        Which of the bodies.
+            The index of the body of each row.
     graze_tolerance : float or array_like of shape (N,)
-        Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
+            Lateral overlaps up to this length count as grazing. With 0 the limit follows from
+            rounding errors.
     keep : float or array_like of shape (N,)
-        A gap to be kept, a length: asked is where the bodies are first as near as that.
+            A minimum gap, a length. The result is then the translation at which the distance of the
+            bodies first falls to it.
     solver : {"auto", "cta", "portal"} or Cta
-        How the search is narrowed. Answers are the same.
+            The search algorithm. Answers are the same.
     features : bool
-        Whether the features that touch are columns, too: ``moving_feature`` and ``fixed_feature``.
+            Whether to add the columns ``moving_feature`` and ``fixed_feature`` of the features in
+            contact.
     threads : int, optional
-        By default all cores that this process may use. The bits do not depend on it.
+            Number of threads; by default all cores that this process may use. The bits do not
+            depend on it.
 
     Returns
     -------
@@ -78,22 +83,27 @@ def cast_many(
     Raises
     ------
     InputError
-        Arrays whose shapes do not go together. Wrong numbers in a row are errors of that row.
+            The shapes of arrays do not fit together. Invalid numbers in a row are errors of that
+            row.
 
     Notes
     -----
-    A row has the bits of :func:`cast` of the same arguments, unless many rows share both bodies and
-    both rotations: 564 rows of two boxes, 500 and the product of the numbers of vertices in
-    general. Such rows are answered from the faces of their Minkowski difference, which are built
+    A row has the bits of :func:`cast` with the same arguments, unless many rows share both bodies
+    and both rotations: 564 rows of two boxes; in general 500 plus the product of the numbers of
+    vertices. Such rows are answered with the faces of their Minkowski difference. These are built
     once, for at most 256 such groups of rows. If all rows of a group also share the direction, a
-    map of the faces along it is used. Then a row's outcome and the kind of its proof stay the same,
-    but a translation, a bound or a contact point may differ in its last digits. Between separated
-    bodies the normal is another separating one, so that ``margin`` may differ by any factor: it is
-    a proven distance along that normal, not the largest one. The answers depend on the set of rows,
-    not on their order or on ``threads``. Rows of flat bodies, of bodies with more than 16,384 pairs
-    of vertices, with ``solver="cta"`` or with a gap to ``keep`` always have the bits of
-    :func:`cast`. So has ``columns[i]``, which asks row ``i`` again by itself: its margin, bounds
-    and point may be others than those of the columns.
+    map of the faces along it is used.
+
+    In such groups the outcome of a row and the kind of its proof stay the same, but a translation,
+    a bound or a contact point may differ in its last digits. Between separated bodies the normal is
+    another separating one, so that ``margin`` may differ by any factor: it is a proven distance
+    along that normal, not the largest one. The answers depend on the set of rows, not on their
+    order or on ``threads``.
+
+    Rows of flat bodies, of bodies with more than 16,384 pairs of vertices, with ``solver="cta"`` or
+    with a gap ``keep`` always have the bits of :func:`cast`. ``columns[i]`` has them too, because
+    it answers row ``i`` again by itself. Its margin, bounds and point may differ from those of the
+    columns.
 
     Examples
     --------
@@ -130,14 +140,14 @@ def contact_range_many(
     features: bool = False,
     threads: int | None = None,
 ) -> RangeColumns:
-    """:func:`contact_range` for every row: first and last contact.
+    """Runs :func:`contact_range` for every row: first and last contact.
 
     Parameters
     ----------
     moving, fixed, direction, moving_pose, fixed_pose, moving_index, fixed_index
-        As for :func:`cast_many`.
+            See :func:`cast_many`.
     graze_tolerance, keep, solver, features, threads
-        As for :func:`cast_many`.
+            See :func:`cast_many`.
 
     Returns
     -------
@@ -241,20 +251,20 @@ def clearance_many(
     tolerance: ArrayLike | None = None,
     ignore_start_overlaps: bool = False,
 ) -> ClearanceColumns | SolidColumns:
-    """:func:`clearance` for every row: how far from here, and what stops it.
+    """Runs :func:`clearance` for every row: how far the body can move, and what stops it.
 
     Parameters
     ----------
     moving, fixed : ConvexPolyhedron, Solid or sequence of them
-        As for :func:`cast_many`. If one of them is a solid, all rows are asked as solids.
+            See :func:`cast_many`. If one of them is a solid, all bodies are treated as solids.
     direction, moving_pose, fixed_pose, moving_index, fixed_index
-        As for :func:`cast_many`.
+            See :func:`cast_many`.
     graze_tolerance, keep, solver, features, threads
-        As for :func:`cast_many`.
+            See :func:`cast_many`.
     tolerance : float or array_like of shape (N,), optional
-        Of solids, as for :class:`SolidCast`.
+            For solids, see :class:`SolidCast`.
     ignore_start_overlaps : bool
-        Of solids, as for :class:`SolidCast`.
+            For solids, see :class:`SolidCast`.
 
     Returns
     -------

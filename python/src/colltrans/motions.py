@@ -1,4 +1,4 @@
-"""Bodies that move, in bulk: when they first meet; columns out."""
+"""First contacts and clearances of many motions, as columns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ from colltrans.queries import (
     together,
 )
 
-#: A motion for all rows, one for each, or one kind of them with its numbers as arrays.
+#: #: One motion for all rows, one for each row, or a kind of motion with arrays of its numbers.
 Motions: TypeAlias = Motion | Sequence[Motion] | Mapping[str, Mapping[str, ArrayLike]] | None
 
-#: The kinds that have arrays, and how many numbers each of theirs has.
+#: #: The kinds of motions given as arrays, and the width of each array.
 KINDS: dict[str, dict[str, int]] = {
     "slide": {"by": 3},
     "turn": {"point": 3, "axis": 3, "radians": 1},
@@ -41,8 +41,8 @@ class MotionColumns(TimeColumns[FirstContact]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-        Of contacts, proven bounds of their times, from 0 at the start of the motion to 1 at its
-        end: the bodies do not meet before the first, and do at the second.
+            Proven bounds of the times of contacts, from 0 (start of the motion) to 1 (end): the
+            bodies do not meet before the first one, and meet at the second one.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
@@ -62,10 +62,11 @@ class MotionClearanceColumns(TimeColumns[MotionClearance]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-        Up to the first the body may go for certain; at the second what stops it meets, in its true
-        place.
+            The body can move until the first time. At the second time the stopping features meet in
+            their nominal position.
     least_tolerance : ndarray of shape (N,)
-        Of bodies that overlap when the motion begins: with which they would not.
+            The smallest tolerance without an overlap, for bodies that overlap at the start of the
+            motion.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
@@ -94,24 +95,25 @@ def motion_many(
     features: bool = False,
     threads: int | None = None,
 ) -> MotionColumns:
-    """:func:`first_contact` for every row.
+    """Runs :func:`first_contact` for every row.
 
     Parameters
     ----------
     moving, fixed, moving_index, fixed_index, features, threads
-        As for :func:`distance_many`.
+            See :func:`distance_many`.
     moving_motion, fixed_motion : Motion, sequence of them, or dict
-        What the bodies do: one motion for all rows, one for each, or ``{"screw": {"point", "axis",
-        "radians", "rise"}}``, ``{"turn": {"point", "axis", "radians"}}``, ``{"slide": {"by"}}`` or
-        ``{"thrown": {"center", "velocity", "angular_velocity"}}`` with arrays of one row for all,
-        or one for each. ``"degrees"`` may replace ``"radians"``. None stands for rest.
+            The motions of the bodies: one motion for all rows, one for each row, or ``{"screw":
+            {"point", "axis", "radians", "rise"}}``, ``{"turn": {"point", "axis", "radians"}}``,
+            ``{"slide": {"by"}}`` or ``{"thrown": {"center", "velocity", "angular_velocity"}}`` with
+            arrays of one row for all, or of one row for each. ``"degrees"`` may replace
+            ``"radians"``. None stands for rest.
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
-        Where such a motion begins, or where a body rests, as for :func:`cast_many`. Motions that
-        are objects have their own.
+            The start of motions that are given as arrays, or the pose of a body at rest; see
+            :func:`cast_many`. Motion objects have their own pose.
     keep : float or array_like of shape (N,)
-        A gap to be kept, a length.
+            A minimum gap, a length.
     tolerance : float or array_like of shape (N,), optional
-        As for :class:`MotionCast`.
+            See :class:`MotionCast`.
 
     Returns
     -------
@@ -120,7 +122,8 @@ def motion_many(
     Raises
     ------
     InputError
-        Arrays whose shapes do not go together. Wrong numbers in a row are errors of that row.
+            The shapes of arrays do not fit together. Invalid numbers in a row are errors of that
+            row.
 
     Examples
     --------
@@ -157,12 +160,12 @@ def motion_clearance_many(
     features: bool = False,
     threads: int | None = None,
 ) -> MotionClearanceColumns:
-    """:func:`motion_clearance` for every row.
+    """Runs :func:`motion_clearance` for every row.
 
     Parameters
     ----------
     moving, fixed, moving_motion, fixed_motion, moving_pose, fixed_pose
-        As for :func:`motion_many`; so are all others, and errors.
+            See :func:`motion_many`, also for all other arguments and errors.
 
     Returns
     -------
@@ -184,7 +187,7 @@ def motion_clearance_many(
     return MotionClearanceColumns._ask(_motions(sides, keep, tolerance), features, threads)
 
 
-#: The bodies of a side, their numbers for each row, what they do and where.
+#: #: The bodies of a side, the body index of each row, the motions and the poses.
 Side: TypeAlias = tuple[AnyBodies, ArrayLike | None, Motions, Poses]
 
 
@@ -201,7 +204,7 @@ def _motions(sides: tuple[Side, Side], keep: ArrayLike, tolerance: ArrayLike | N
 
 
 def motion_table(motions: Motions, pose: Poses, name: str) -> Stack:
-    """Motions, one or several, or the numbers of one kind."""
+    """Returns a table of motions, or of the numbers of motions of one kind."""
     if motions is None:
         return Stack(np.zeros((1, 3)), ())
     if isinstance(motions, Mapping):
@@ -212,14 +215,14 @@ def motion_table(motions: Motions, pose: Poses, name: str) -> Stack:
             f"{name}: neither a Motion, nor a list of them, nor a dict of arrays{_instead(listed)}"
         )
     if pose is not None:
-        raise InputError(f"{name}: a motion has its own pose; give no other one")
+        raise InputError(f"{name}: a Motion has its own pose; drop the pose argument")
     table = np.empty((len(listed), 1), object)
     table[:, 0] = listed
     return Stack(table, () if isinstance(motions, Motion) else (len(listed),))
 
 
 def _instead(listed: list[Any]) -> str:
-    """What to pass in place of bare vectors."""
+    """Suggests an argument in place of bare vectors."""
     try:
         vectors = np.asarray(listed, float)
     except (TypeError, ValueError):
@@ -235,7 +238,7 @@ def _instead(listed: list[Any]) -> str:
 
 
 def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Stack:
-    """The arrays of a kind side by side."""
+    """Returns the arrays of one kind of motion side by side."""
     if len(motions) != 1 or next(iter(motions)) not in KINDS:
         raise InputError(f"{name}: one of {', '.join(KINDS)}, not {', '.join(map(str, motions))}")
     ((kind, given),) = motions.items()

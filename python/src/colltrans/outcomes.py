@@ -1,4 +1,4 @@
-"""Outcomes of many rows, as categories: they read as names and are kept as codes."""
+"""Outcomes of many rows as categories: stored as codes, read as names."""
 
 import operator
 from collections.abc import Iterable, Iterator
@@ -11,17 +11,17 @@ from colltrans.errors import InputError
 
 
 class Outcomes:
-    """Outcomes of many rows: an array of names that takes a byte a row.
+    """Outcomes of many rows: an array of names that takes one byte for each row.
 
-    It compares, selects and becomes an array as one of text would; a name that is no outcome is an
-    error, not a mask of False.
+    It compares, selects and converts like an array of text. An unknown name is an error, not a mask
+    of False.
 
     Attributes
     ----------
     codes : ndarray of uint8, shape (N,)
-        Positions in ``names``.
+            Indices into ``names``.
     names : tuple of str
-        All outcomes that there are; the last one is ``"error"``.
+            All possible outcomes; the last one is ``"error"``.
 
     Examples
     --------
@@ -35,7 +35,7 @@ class Outcomes:
     """
 
     __slots__ = ("codes", "names")
-    #: numpy leaves comparisons to this class.
+    #: #: Comparisons with arrays are left to this class instead of numpy.
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
 
@@ -61,7 +61,7 @@ class Outcomes:
         return names if dtype is None else names.astype(dtype)
 
     def tolist(self) -> list[Any]:
-        """The names, as a list."""
+        """Returns the names as a list."""
         named: list[Any] = np.asarray(self).tolist()
         return named
 
@@ -72,11 +72,11 @@ class Outcomes:
         return self._compared(operator.ne, other)
 
     def isin(self, names: Iterable[str]) -> NDArray[np.bool_]:
-        """Which rows have one of these outcomes."""
+        """Returns a mask of the rows that have one of these outcomes."""
         return np.isin(self.codes, [self._code(name) for name in names])
 
     def counts(self) -> dict[str, int]:
-        """How many rows have each outcome, without those that none has."""
+        """Counts the rows of each outcome that occurs."""
         counts = np.bincount(self.codes.ravel(), minlength=len(self.names))
         return {name: int(n) for name, n in zip(self.names, counts, strict=True) if n}
 
@@ -94,7 +94,9 @@ class Outcomes:
 
     def _code(self, name: Any) -> int:
         if name not in self.names:
-            raise InputError(f"no outcome {str(name)!r}: {', '.join(self.names)}")
+            raise InputError(
+                f"unknown outcome {str(name)!r}; known outcomes: {', '.join(self.names)}"
+            )
         return self.names.index(name)
 
     def __reduce__(self) -> Any:

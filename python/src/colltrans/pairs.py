@@ -1,4 +1,4 @@
-"""Bodies where they are, in bulk: distances, depths, comparisons with a length; columns out."""
+"""Distances, depths and comparisons with a length for many pairs of bodies, as columns."""
 
 from dataclasses import dataclass
 
@@ -12,12 +12,12 @@ from colltrans.queries import AnyBodies, Floats, Poses, column, queries_of
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PairColumns(Table[Answer_co]):
-    """Answers about bodies where they are, as columns; see :class:`Table`.
+    """Answers about bodies at fixed poses, as columns; see :class:`Table`.
 
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-        Proven bounds, lengths: at least and at most the distance, or the depth.
+            Proven lower and upper bounds of the distance or the depth, lengths.
     """
 
     lower: Floats
@@ -50,9 +50,10 @@ class DepthColumns(PairColumns[Depth | OverlapDepth]):
     Attributes
     ----------
     least_tolerance : ndarray of shape (N,)
-        Of solids that overlap: the least tolerance with which they would not, a length.
+            For solids that overlap: the smallest tolerance without an overlap, a length.
     direction : ndarray of shape (N, 3)
-        Of convex bodies that overlap: unit vectors, in the world, by which the moving one leaves.
+            For convex bodies that overlap: unit vectors, in the world, along which the moving body
+            leaves.
     """
 
     least_tolerance: Floats
@@ -68,9 +69,10 @@ class WithinColumns(PairColumns[Within]):
     Attributes
     ----------
     normal : ndarray of shape (N, 3)
-        Of convex bodies that are farther: unit normals, in the world.
+            For convex bodies that are farther apart: unit normals, in the world.
     on_moving, on_fixed : ndarray of shape (N, 3)
-        Of those that are closer: points of both bodies that are ``upper`` apart, in the world.
+            For bodies that are closer: points of both bodies at the distance ``upper``, in the
+            world.
     """
 
     normal: Floats
@@ -91,14 +93,14 @@ def distance_many(
     features: bool = False,
     threads: int | None = None,
 ) -> DistanceColumns:
-    """:func:`distance` for every row.
+    """Runs :func:`distance` for every row.
 
     Parameters
     ----------
     moving, fixed : ConvexPolyhedron, Solid or sequence of them
-        As for :func:`cast_many`; a row of which one body is a solid is asked as solids.
+            See :func:`cast_many`. If a body of a row is a solid, both are treated as solids.
     moving_pose, fixed_pose, moving_index, fixed_index, features, threads
-        As for :func:`cast_many`.
+            See :func:`cast_many`.
 
     Returns
     -------
@@ -133,12 +135,12 @@ def depth_many(
     fixed_index: ArrayLike | None = None,
     threads: int | None = None,
 ) -> DepthColumns:
-    """:func:`depth` for every row.
+    """Runs :func:`depth` for every row.
 
     Parameters
     ----------
     moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
-        As for :func:`distance_many`.
+            See :func:`distance_many`.
 
     Returns
     -------
@@ -168,14 +170,15 @@ def within_many(
     fixed_index: ArrayLike | None = None,
     threads: int | None = None,
 ) -> WithinColumns:
-    """:func:`within` for every row.
+    """Runs :func:`within` for every row.
 
     Parameters
     ----------
     moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
-        As for :func:`distance_many`.
+            See :func:`distance_many`.
     length : float or array_like of shape (N,)
-        Not negative, in the unit of the bodies. A row with another one is an error.
+            A length, not negative, in the unit of the bodies. A row with a negative length is an
+            error.
 
     Returns
     -------

@@ -1,7 +1,9 @@
-"""Pictures of answers: the bodies, a ghost of the moving one where they meet, point and normal.
+"""Pictures of bodies, queries and answers as figures of plotly (``pip install
+colltrans[pictures]``).
 
-They are figures of plotly (``pip install colltrans[pictures]``): a notebook shows one, a script
-opens a browser, and a file holds all that it needs. None of it needs a screen or a graphics card.
+The bodies are drawn solid at the start, and the moving body as a ghost at the contact, with the
+contact point and the normal. A notebook shows a figure, a script opens a browser, and a saved file
+needs nothing else. No screen or graphics card is needed.
 """
 
 from collections.abc import Iterator
@@ -47,13 +49,14 @@ from colltrans.assembly import Assembly, Plan
 from colltrans.errors import InputError
 
 Floats: TypeAlias = NDArray[np.float64]
-# As in the page (`web/src/colours.ts`): blue and sand, and what touches in the colour of normals.
+# # The colours of the page (`web/src/colours.ts`): blue and sand, and red for contact points and
+# normals.
 MOVING, FIXED, TOUCH, EDGE = "#6f97d6", "#d9cbb0", "#b01657", "#1d2733"
 
 
 @dataclass(frozen=True)
 class _Mark:
-    """What an answer says: how far to the ghost, where it touches, a normal there."""
+    """What to draw for a contact: translation of the ghost, contact point, and normal."""
 
     name: str
     translation: float | None
@@ -64,23 +67,23 @@ class _Mark:
 
 @dataclass(frozen=True)
 class _Link:
-    """Points of both bodies, and what is between them."""
+    """A labelled segment between points of both bodies."""
 
     name: str
     ends: tuple[Floats, Floats]
 
 
 def picture(answer: Any) -> Any:
-    """A body, an assembly, a plan, a query or an answer as a figure of plotly.
+    """Draws a body, an assembly, a plan, a query or an answer as a figure of plotly.
 
     Parameters
     ----------
     answer : ConvexPolyhedron, Solid, Assembly, Plan, Cast or any other query, or an answer
-        A body and an assembly are drawn where they are; of a plan all that is taken out where its
-        moves bring it. What an answer says of a contact is drawn: the moving body as it is and, as
-        a ghost, where it touches; the point, and the normal from the moving body to the fixed one.
-        Of a path the links where they touch, and, as ghosts, where they start. Of a distance the
-        nearest points, joined; of a depth, as a ghost, where the moving body has left.
+            Bodies and assemblies are drawn at their poses. The moving body is drawn solid at the
+            start, and as a ghost at the contact, with the contact point and the normal from the
+            moving body to the fixed one. Robot paths are drawn likewise, with all links. A distance
+            has a segment between the nearest points. A depth has a ghost after the translation that
+            separates the bodies. Removed parts of a plan are drawn after their moves.
 
     Returns
     -------
@@ -90,9 +93,9 @@ def picture(answer: Any) -> Any:
     Raises
     ------
     ModuleNotFoundError
-        Without plotly, ``pip install colltrans[pictures]``.
+            plotly is missing; run ``pip install colltrans[pictures]``.
     TypeError
-        Something that is no answer.
+            The argument is not a body, a query or an answer.
 
     Examples
     --------
@@ -138,14 +141,14 @@ def _traces(go: Any, thing: Any) -> Iterator[Any]:
             yield from _parts(go, thing, {})
         case Plan():
             if thing._assembly is None:
-                raise InputError("a plan that comes from a pickle has no bodies")
+                raise InputError("a plan restored from a pickle has no bodies; compute it again")
             yield from _parts(go, thing._assembly, thing.displacements())
         case _:
             yield from _asked(go, thing)
 
 
 def _parts(go: Any, assembly: Assembly, moved: dict[str, Floats]) -> Iterator[Any]:
-    """All parts, where they stand or by how much they were moved; what does not move is sand."""
+    """Draws all parts at their place, or displaced; fixed parts are sand-coloured."""
     for name, (vertices, triangles) in assembly.meshes().items():
         way = moved.get(name, np.zeros(3))
         colour = MOVING if not moved or name in moved else FIXED
@@ -154,7 +157,7 @@ def _parts(go: Any, assembly: Assembly, moved: dict[str, Floats]) -> Iterator[An
 
 
 def _asked(go: Any, answer: Any) -> Iterator[Any]:
-    """Both bodies where they are, and what the answer says."""
+    """Draws both bodies at their poses, and the marks of the answer."""
     query, marks = said(answer)
     moving = placed(query.moving, query.moving_pose)
     fixed = placed(query.fixed, query.fixed_pose)
@@ -169,7 +172,7 @@ def _asked(go: Any, answer: Any) -> Iterator[Any]:
 
 
 def _cleared(answer: MotionClearance) -> MotionCast:
-    """The question whose first contact it is, with the tolerance that was used."""
+    """Returns the query whose first contact is drawn, with the tolerance that was used."""
     query = answer.query
     if query.keep > 0 or answer.tolerance is None:
         return query
@@ -183,7 +186,10 @@ def _cleared(answer: MotionClearance) -> MotionCast:
 
 
 def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:
-    """The moving body at the start, where it touches, and at the end; the other one then."""
+    """Draws the moving body solid at the start, and as ghosts at the contact and at the end.
+
+    The fixed body is drawn at the time of the contact.
+    """
     query, at = answer.query, 1.0 if answer.poses is None else answer.lower
     fixed = placed(query.fixed, query.fixed_motion.at(at))
     yield from _body(go, placed(query.moving, query.moving_motion.start), "moving", MOVING, 1.0)
@@ -195,22 +201,23 @@ def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:
 
 
 def _carried(go: Any, answer: PathContact) -> Iterator[Any]:
-    """All bodies where two touch, or where the path ends; as ghosts those that came there."""
+    """Draws all bodies solid at the start, and moved ones as ghosts at the contact or the end."""
     starts, ends = answer.meshes((0, 0.0)), answer.meshes()
     size = float(np.ptp(np.vstack([vertices for _, vertices, _ in ends]), axis=0).max()) or 1.0
+    when = "at the end" if answer.place is None else f"at {answer.lower:.6g}"
     for (name, start, triangles), (_, end, _) in zip(starts, ends, strict=True):
         colour = FIXED if np.array_equal(start, end) else MOVING
         if name in (answer.pair or ()):
             colour = TOUCH
-        yield from _body(go, (end, triangles, _creases(end, triangles)), name, colour, 1.0)
+        yield from _body(go, (start, triangles, _creases(start, triangles)), name, colour, 1.0)
         if not np.array_equal(start, end):
-            ghost = (start, triangles, _creases(start, triangles))
-            yield from _body(go, ghost, f"{name} at the start", MOVING, 0.15)
+            ghost = (end, triangles, _creases(end, triangles))
+            yield from _body(go, ghost, f"{name} {when}", colour, 0.3)
     yield from _touch(go, answer, size)
 
 
 def _touch(go: Any, answer: FirstContact | PathContact, size: float) -> Iterator[Any]:
-    """The point of a contact, and the normal there."""
+    """Draws the point of a contact and its normal."""
     if answer.point is not None:
         x, y, z = answer.point.reshape(3, 1)
         marker = {"color": TOUCH, "size": 6}
@@ -221,20 +228,20 @@ def _touch(go: Any, answer: FirstContact | PathContact, size: float) -> Iterator
 
 
 def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
-    """Shows a thing as a picture: in the notebook, in a browser, or in a file.
+    """Shows a body, a query or an answer as a picture: in the notebook, in a browser, or in a file.
 
-    Each of them has it as a method, ``answer.show()``.
+    The method ``answer.show()`` does this too.
 
     Parameters
     ----------
     answer : ConvexPolyhedron, Solid, Assembly, Plan, Cast or any other query, or an answer
     file : str or os.PathLike, optional
-        A page (HTML) that is written instead; it holds all that it needs.
+            A self-contained page (HTML) that is written instead.
 
     Raises
     ------
     ModuleNotFoundError
-        Without plotly, ``pip install colltrans[pictures]``.
+            plotly is missing; run ``pip install colltrans[pictures]``.
 
     Examples
     --------
@@ -254,7 +261,7 @@ def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
 
 
 def said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
-    """The query of an answer, and what is to be drawn of it."""
+    """Returns the query of an answer, and what to draw for the answer."""
     match answer:
         case Distance():
             points = (answer.on_moving, answer.on_fixed)
@@ -263,7 +270,7 @@ def said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
             links = [] if between is None else [_Link(f"at most {answer.upper:.6g}", between)]
             return answer.query, [*links]
         case Depth():
-            return answer.query, [_Mark("parted", answer.upper, None, None, answer.direction)]
+            return answer.query, [_Mark("separated", answer.upper, None, None, answer.direction)]
         case OverlapDepth():
             return answer.query, []
         case Contact():
@@ -287,7 +294,7 @@ def said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
             normal = None if isinstance(answer, SolidOverlapping) else answer.normal
             query = answer.query
             return query, [_Mark("apart", None, None, normal, query.direction)]
-    raise TypeError(f"no answer and no query, but {type(answer).__name__}")
+    raise TypeError(f"{type(answer).__name__} is not a body, a query or an answer")
 
 
 def _mark(name: str, contact: Contact | LastContact) -> _Mark:
@@ -304,7 +311,7 @@ Placed: TypeAlias = tuple[Floats, NDArray[np.uint32], NDArray[Any]]
 
 
 def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
-    """Vertices in the world, triangles, and the edges that are to be seen."""
+    """Returns the vertices in the world, the triangles, and the visible edges of a placed body."""
     vertices = body.vertices @ pose.rotation.T + pose.translation
     if isinstance(body, Solid):
         return vertices, body.triangles, _creases(vertices, body.triangles)
@@ -316,7 +323,7 @@ def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
 
 
 def _creases(vertices: Floats, triangles: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """The edges but for those that two triangles of one plane share."""
+    """Returns the edges, without those that two coplanar triangles share."""
     a, b, c = vertices[triangles].swapaxes(0, 1)
     normals = np.cross(b - a, c - a)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)

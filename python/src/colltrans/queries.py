@@ -1,7 +1,7 @@
-"""Arguments of queries in bulk, whatever was given: tables of one row, or of one for each query.
+"""Arguments of bulk queries, converted to tables of one row, or of one row for each query.
 
-Arguments may be stacks with any number of axes, which go together as arrays of numpy do. Their rows
-are the queries, those along the last axis one after the other.
+Arguments may have any number of axes and are broadcast like arrays of numpy. The rows of the result
+are the queries, in C order.
 """
 
 import os
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Floats: TypeAlias = NDArray[np.float64]
 Shape: TypeAlias = tuple[int, ...]
-#: Which body, for each row; none where there is but one.
+#: #: The body index of each row; None if there is only one body.
 Index: TypeAlias = NDArray[np.int64] | None
 Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransError]"
 AnyBodies: TypeAlias = (
@@ -30,7 +30,7 @@ AnyBodies: TypeAlias = (
 )
 Poses: TypeAlias = "ArrayLike | Pose | Sequence[Pose] | HasMatrix | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
-#: Arguments that stand before the poses.
+#: #: Arguments that precede the poses.
 POSITIONAL = ("direction", "moving_motion", "fixed_motion")
 #: The two bodies of a query.
 SIDES = ("moving", "fixed")
@@ -38,7 +38,7 @@ POSES = ("moving_pose", "fixed_pose")
 
 
 class Stack(NamedTuple):
-    """What was given for each query: rows, and the axes that they had."""
+    """The rows of an argument, and the axes that they had."""
 
     rows: NDArray[Any]
     shape: Shape
@@ -46,13 +46,14 @@ class Stack(NamedTuple):
 
 @dataclass(frozen=True)
 class Queries:
-    """What was asked: bodies, and the other arguments of the question by name."""
+    """A bulk query: bodies, and the other arguments by name."""
 
     bodies: tuple[list[Any], list[Any]]
     indices: tuple[Index, Index]
-    #: Of each argument one row for all queries or one for each. The tolerance NaN is the default.
+    #: #: For each argument one row for all queries or one for each. NaN as a tolerance is the
+    #: default.
     tables: dict[str, Floats | list[Motion]]
-    #: The same for all queries.
+    #: #: Arguments with one value for all queries.
     choices: dict[str, Any]
     shape: Shape
 
@@ -63,7 +64,7 @@ class Queries:
     def ask_all(
         self, question: str, columns: list[str], features: bool, threads: int | None
     ) -> dict[str, Any]:
-        """Answers all queries, with these columns."""
+        """Answers all queries and returns the requested columns."""
         moving, fixed = zip(self.bodies, self.indices, strict=True)
         solver = self.choices.get("solver", "auto")
         found, outcomes, errors = _colltrans.ask_many(
@@ -72,7 +73,7 @@ class Queries:
         return {**found, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
 
     def ask(self, question: Any, i: int) -> Any:
-        """Answers one query alone."""
+        """Answers a single query."""
         bodies = (self._body(side, i) for side in (0, 1))
         arguments = {name: _argument(name, table, i) for name, table in self.tables.items()}
         for side in SIDES:
@@ -94,7 +95,7 @@ class Queries:
 
 
 def _argument(name: str, table: Floats | list[Motion], i: int) -> Any:
-    """Returns what a table has for a query; None stands for the default."""
+    """Returns the argument of one query; None stands for the default."""
     row: Any = table[i if len(table) > 1 else 0]
     if isinstance(row, Motion):
         return row
@@ -104,7 +105,7 @@ def _argument(name: str, table: Floats | list[Motion], i: int) -> Any:
 
 
 def _motion_of(row: Floats, pose: Floats) -> Motion:
-    """Returns the motion of 3 (a slide), 8 (a screw) or 9 numbers (what is thrown)."""
+    """Returns the motion of 3 (slide), 8 (screw) or 9 numbers (throw)."""
     if len(row) == 3:
         return Motion.slide(row, pose=pose)
     if len(row) == 8:
@@ -115,7 +116,7 @@ def _motion_of(row: Floats, pose: Floats) -> Motion:
 
 def refuse_solids(*sides: Any) -> None:
     if any(isinstance(body, Solid) for side in sides for body in listed(side)):
-        raise TypeError("solids are asked for their clearance: clearance_many")
+        raise TypeError("solids have no casts; call clearance_many")
 
 
 def listed(bodies: Any) -> Any:
@@ -129,7 +130,7 @@ def queries_of(
     tables: Mapping[str, Stack],
     **choices: Any,
 ) -> Queries:
-    """Returns all arguments as tables, with the axes that they have together."""
+    """Converts all arguments to tables, with the axes of their broadcast."""
     sides = zip(SIDES, bodies, poses, indices, strict=True)
     listed, stacks, indexed = [], dict[str, Stack | None](), dict[str, Stack | None]()
     for side, of_side, pose, index in sides:
@@ -152,7 +153,8 @@ def queries_of(
 
 
 def together(stacks: Mapping[str, Stack | None]) -> tuple[Shape, dict[str, NDArray[Any]]]:
-    """The axes that all have together, and the rows of each: one for all, or one for each."""
+    """Broadcasts arguments: returns the common axes, and one row for all queries or one for
+    each."""
     given = {name: stack for name, stack in stacks.items() if stack is not None}
     try:
         shape = np.broadcast_shapes(*(stack.shape for stack in given.values())) or (1,)
@@ -169,17 +171,17 @@ def together(stacks: Mapping[str, Stack | None]) -> tuple[Shape, dict[str, NDArr
 
 
 def _apart(given: Mapping[str, Stack]) -> str:
-    """Why arguments do not go together."""
+    """Explains why arguments cannot be broadcast."""
     told = {name: stack for name, stack in given.items() if np.prod(stack.shape) != 1}
     if all(len(stack.shape) == 1 for stack in told.values()):
         found = ", ".join(f"{name} has {len(stack.rows)} rows" for name, stack in told.items())
         return f"arguments of different lengths: {found}"
     found = ", ".join(f"{name} {stack.shape}" for name, stack in told.items())
-    return f"arguments whose axes do not go together: {found}"
+    return f"arguments with axes that cannot be broadcast: {found}"
 
 
 def indices_of(tables: Mapping[str, NDArray[Any]], shape: Shape) -> tuple[Index, Index]:
-    """Which bodies, for each row: one that stands for all is there for each of them."""
+    """Returns the body index of each row of both sides; None if there is only one body."""
     count = int(np.prod(shape))
 
     def index(name: str) -> Index:
@@ -203,11 +205,11 @@ def body_list(
         if alone:
             return all_bodies, None
         return all_bodies, Stack(np.arange(len(all_bodies)).reshape(-1, 1), (len(all_bodies),))
-    # A row that a masked array masks has no body.
+    # # A row that is masked in a masked array has no body.
     masked = isinstance(index, np.ma.MaskedArray)
     found = np.ma.filled(index, -1) if masked else np.asarray(index)
     if found.ndim == 0 or (found.size > 0 and found.dtype.kind not in "iu"):
-        raise InputError(f"{name}_index: no row of whole numbers")
+        raise InputError(f"{name}_index: not an array of whole numbers")
     if found.dtype == np.uint64 and found.size > 0 and found.max() > np.iinfo(np.int64).max:
         raise InputError(f"{name}_index: {found.max()} is too large")
     return all_bodies, Stack(np.require(found, np.int64, ["C", "A"]).reshape(-1, 1), found.shape)
@@ -222,7 +224,7 @@ def table(values: ArrayLike, name: str, width: int) -> Stack:
 
 
 def column(values: ArrayLike | None, name: str) -> Stack:
-    """Returns a number for each query; NaN stands for None."""
+    """Returns a column with one number for each query; NaN stands for None."""
     array = _arrays.floats(np.nan if values is None else values, name)
     return Stack(array.reshape(-1, 1), array.shape)
 
@@ -242,8 +244,8 @@ def pose_table(values: Poses, name: str) -> Stack:
         table = array.reshape(-1, 4 * shape[-2])
         return Stack(nearest_rotations(table, name), shape[:-2])
     if shape[-2:] == (3, 3) and len(shape) > 2:
-        told = "rotations are given as (N, 3, 4), and stacks of three translations with quaternions"
-        raise InputError(f"{name}: an array of shape {shape}, which may be either: {told}")
+        told = "give rotations as (N, 3, 4), or three poses with quaternions as a stack (1, 3, 7)"
+        raise InputError(f"{name}: an array of shape {shape} is ambiguous: {told}")
     if shape and shape[-1] in (3, 7):
         return Stack(nearest_rotations(array.reshape(-1, shape[-1]), name), shape[:-1])
     raise InputError(
@@ -252,14 +254,15 @@ def pose_table(values: Poses, name: str) -> Stack:
     )
 
 
-#: Largest defect of a rotation that is taken as one of few digits, and the least.
+#: #: Range of defects of a rotation that is treated as one with few digits.
 FEW_DIGITS, UNIT_LENGTH = 0.02, 1e-6
 
 
 def nearest_rotations(table: Floats, name: str) -> Floats:
-    """Replaces rotations of few digits by the nearest ones, with one warning for all rows.
+    """Replaces rotations with few digits by the nearest ones, with one warning for all rows.
 
-    ``table`` has rows of 7, 12 or 16 numbers. Rows that are off by more are left to be refused.
+    ``table`` has rows of 7, 12 or 16 numbers. Rows with a larger defect stay and are rejected
+    later.
     """
     if table.shape[1] == 7:
         rotations = table[:, 3:]
@@ -293,7 +296,7 @@ def nearest_rotations(table: Floats, name: str) -> Floats:
 
 
 def cores() -> int:
-    """How many processors this process may use."""
+    """Returns the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -1,4 +1,4 @@
-"""Paths of robots in bulk: which two links of each first meet; columns out."""
+"""First contacts on many joint paths of a robot, as columns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,16 +14,16 @@ from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
 from colltrans.queries import Floats, Shape, checked_threads
 
-#: Rows of joint values, or a file of them.
+#: #: Rows of joint values, or the name of a file with such rows.
 Path: TypeAlias = ArrayLike | str | PathLike[str]
 
-#: The columns of whole numbers.
+#: #: The integer columns.
 POSITIONS = ("row", "first", "second")
 
 
 @dataclass(frozen=True)
 class PathQueries:
-    """What was asked."""
+    """The arguments of a call of :func:`path_many`."""
 
     robot: Robot
     paths: list[Any]
@@ -56,7 +56,7 @@ class PathQueries:
         return {**found, **whole, **names, "errors": errors, "_queries": self}
 
     def ask(self, question: Any, i: int) -> Any:
-        """One of them, alone."""
+        """Answers a single query."""
         return question(
             self.robot,
             self.paths[i],
@@ -76,20 +76,20 @@ class PathColumns(TimeColumns[PathContact]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-        Proven bounds of the times of first contacts: no two bodies meet before the first, and two
-        do at the second.
+            Proven bounds of the times of first contacts: no two bodies meet before the first one,
+            and two meet at the second one.
     row : ndarray of int64, shape (N,)
-        The row before the contact, -1 where there is none.
+            The row before the contact; -1 without a contact.
     share : ndarray of shape (N,)
-        Which part of the way to the next row is gone then.
+            The fraction of the step to the next row at the contact.
     first, second : ndarray of int64, shape (N,)
-        The two that meet: positions in ``bodies``, -1 where none do.
+            The two bodies that meet, as indices into ``bodies``; -1 if none meet.
     normal : ndarray of shape (N, 3)
-        Unit normals, in the world, from the first to the second.
+            Unit normals, in the world, from the first body to the second.
     point : ndarray of shape (N, 3)
-        Where the first is nearest to the second, in the world.
+            The point of the first body that is nearest to the second, in the world.
     bodies : tuple of str
-        The names of all bodies: of their links, then of what stands around.
+            The names of all bodies: of the links, then of the scene.
     """
 
     row: NDArray[np.int64]
@@ -115,19 +115,19 @@ def path_many(
     times: Sequence[ArrayLike] | None = None,
     threads: int | None = None,
 ) -> PathColumns:
-    """:meth:`Robot.first_contact` for many paths of one robot.
+    """Runs :meth:`Robot.first_contact` for many paths of one robot.
 
     Parameters
     ----------
     robot : Robot
     paths : array_like of shape (N, K, J), or sequence of paths
-        Each as for :meth:`Robot.first_contact`; they may have different numbers of rows.
+            See :meth:`Robot.first_contact`. Paths may have different numbers of rows.
     scene, ignore, keep, joints, columns
-        As there, the same for all paths.
+            See :meth:`Robot.first_contact`; one value for all paths.
     times : sequence of array_like, optional
         The times of the rows of each path.
     threads : int, optional
-        By default as many as there are processors.
+            Number of threads; by default the number of processors.
 
     Returns
     -------
@@ -136,8 +136,8 @@ def path_many(
     Raises
     ------
     InputError
-        Arrays that are none, names that nothing has. A path that does not fit the robot is an
-        error of its row.
+            An argument is not an array, or a name is unknown. A path that does not fit the robot is
+            an error of its row.
 
     Examples
     --------
@@ -152,7 +152,7 @@ def path_many(
     """
     paths = list(paths)
     if times is not None and len(times) != len(paths):
-        raise InputError(f"times: {len(times)} of them for {len(paths)} paths")
+        raise InputError(f"times: {len(times)} arrays for {len(paths)} paths")
     queries = PathQueries(
         robot=robot,
         paths=paths,

@@ -1,7 +1,7 @@
-"""Columns that threads of Python fill, each of which asks one row after the other.
+"""Columns that Python threads fill, row by row.
 
-A row takes so long that Python between two of them does not count. The interpreter's lock is free
-while a row is answered. Every row has its own place, so the threads need no other.
+A row takes long, so the overhead of Python between rows is negligible. The interpreter's lock is
+released while a row is answered. Each row has its own entries, so the threads need no lock.
 """
 
 from collections.abc import Callable
@@ -14,21 +14,21 @@ from colltrans.columns import FEATURES, Answer_co, Table
 from colltrans.outcomes import Outcomes
 from colltrans.queries import Queries, checked_threads, cores
 
-#: The columns of three numbers a row.
+#: #: The columns with three numbers in a row.
 VECTORS = ("normal", "point", "direction")
-#: Between two looks at signals, in seconds.
+#: #: Time between two polls for signals, in seconds.
 PATIENCE = 0.1
 
 
 class RowColumns(Table[Answer_co]):
-    """Answers that take long, as columns; see :class:`Table`."""
+    """Answers of slow queries, as columns; see :class:`Table`."""
 
-    #: All outcomes, the last of which is ``"error"``.
+    #: #: All outcomes; the last one is ``"error"``.
     _outcomes: ClassVar[tuple[str, ...]]
 
     @staticmethod
     def _values(answer: Any) -> dict[str, Any]:
-        """Returns the outcome of an answer, and what it has for the columns."""
+        """Returns the outcome of an answer and its values of the columns."""
         raise NotImplementedError
 
     @classmethod
@@ -65,14 +65,15 @@ class RowColumns(Table[Answer_co]):
 def _answer_rows(
     n: int, answer: Callable[[int], None], threads: int | None
 ) -> list[tuple[int, str]]:
-    """Calls ``answer`` for every row; the rows that raised, and what they said.
+    """Calls ``answer`` for every row; returns the rows that raised, with their messages.
 
-    Ctrl-C ends it: rows that are being answered go on in the background.
+    Ctrl-C ends the call; rows that are being answered continue in the background.
     """
     rows, failed, stopped = iter(range(n)), {}, False
 
     def work() -> None:
-        # One iterator for all threads: a step of it is one step of the interpreter.
+        # # One iterator serves all threads, because the interpreter executes each step of it
+        # atomically.
         for i in rows:
             if stopped:
                 return

@@ -1,4 +1,4 @@
-"""Clearances of solids in bulk; columns out."""
+"""Clearances of many pairs of solids, as columns."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -21,18 +21,19 @@ class SolidColumns(RowColumns[SolidBlocked | SolidFree | SolidOverlapping]):
     Attributes
     ----------
     distance : ndarray of shape (N,)
-        How far the moving body may safely move, in multiples of the direction: infinite where
-        nothing blocks, NaN where the bodies overlap.
+            The free travel, rounded down, in multiples of the direction; infinite if nothing
+            blocks, NaN if the bodies overlap.
     translation : ndarray of shape (N,)
-        Where the faces that stop it meet in their true place, in multiples of the direction.
+            The translation at which the stopping faces meet in their nominal position, in multiples
+            of the direction.
     translation_lower, translation_upper : ndarray of shape (N,)
-        The proven bounds of the translation.
+            Proven bounds of the translation.
     shrunk_distance : ndarray of shape (N,)
-        How far the bodies go that were shrunk by half the tolerance each.
+            The free travel of the bodies shrunk by half the tolerance each.
     shrunk_distance_lower, shrunk_distance_upper : ndarray of shape (N,)
-        The proven bounds of that.
+            Proven bounds of ``shrunk_distance``.
     least_tolerance : ndarray of shape (N,)
-        The least tolerance with which bodies that overlap would not, a length.
+            The smallest tolerance at which overlapping bodies would not overlap, a length.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
@@ -87,7 +88,7 @@ def solid_casts(
     tolerance: ArrayLike | None,
     ignore_start_overlaps: bool,
 ) -> Queries:
-    """Returns what is asked of :class:`SolidCast` in each row."""
+    """Returns the arguments of :class:`SolidCast` for all rows."""
     tables = {
         "direction": table(direction, "direction", 3),
         "keep": column(keep, "keep"),

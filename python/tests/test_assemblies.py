@@ -92,7 +92,7 @@ def test_refusals(tmp_path: Path, gearbox: Assembly) -> None:
         Assembly.read(tmp_path / "nothing")
     with pytest.raises(AssemblyError, match="nobody"):
         gearbox.with_fixed("nobody")
-    with pytest.raises(InputError, match="no part was named"):
+    with pytest.raises(InputError, match="no part is named"):
         gearbox.removal_map()
     with pytest.raises(AssemblyError, match="direction"):
         gearbox.rooms([[0, 0, 0]])

@@ -129,22 +129,22 @@ QUERY = {"moving": MESH, "fixed": MESH, "direction": [0, 0, -1], "moving_pose": 
 
 def test_lines_that_ask_something_else_are_refused_and_lose_nothing(tmp_path: Path) -> None:
     wrong: list[tuple[dict[str, Any], str]] = [
-        ({"moving": {"mesh": MESH, "scale": 2}}, "moving: a body is a key, or an object with"),
-        ({"moving": {"mesh": MESH, "hull": True}}, "moving: a body is a key, or an object with"),
-        ({"fixed": {"points": [[0, 0, 0]]}}, "fixed: a body is a key, or an object with"),
-        ({"fixed": None}, "fixed: a body is a key, or an object with"),
-        ({"query": "clearance"}, "the question 'range' does not read 'query', and would be"),
-        ({"solver": "cta"}, "the question 'range' does not read 'solver', and would be"),
+        ({"moving": {"mesh": MESH, "scale": 2}}, "moving: expected a key, or an object with"),
+        ({"moving": {"mesh": MESH, "hull": True}}, "moving: expected a key, or an object with"),
+        ({"fixed": {"points": [[0, 0, 0]]}}, "fixed: expected a key, or an object with"),
+        ({"fixed": None}, "fixed: expected a key, or an object with"),
+        ({"query": "clearance"}, "the question 'range' does not read 'query', which would"),
+        ({"solver": "cta"}, "the question 'range' does not read 'solver', which would"),
         ({"length": 1}, "the question 'range' does not read 'length'; --keep length"),
         ({"keeps": 1}, "the question 'range' does not read 'keeps' (is it 'keep'?); --keep keeps"),
-        ({"moving_pose": {"matrix": np.eye(4).tolist()}}, "moving_pose: no list of numbers, and"),
-        ({"moving_pose": {"translation": 5}}, "moving_pose.translation: no list of numbers"),
+        ({"moving_pose": {"matrix": np.eye(4).tolist()}}, "moving_pose: neither a list of numbers"),
+        ({"moving_pose": {"translation": 5}}, "moving_pose.translation: not a list of numbers"),
         ({"moving_pose": {"rotation": [0, 1]}}, "moving_pose: 3 and 2 numbers, not 3 and 4"),
         ({"moving_pose": [0, 0]}, "moving_pose: 2 numbers"),
-        ({"direction": {"translation": [0, 0, 1]}}, "direction: no list of numbers"),
-        ({"direction": [True, 0, 0]}, "direction: no list of numbers"),
+        ({"direction": {"translation": [0, 0, 1]}}, "direction: neither a list of numbers"),
+        ({"direction": [True, 0, 0]}, "direction: not a list of numbers"),
         ({"direction": [10**400, 0, 0]}, "int too large"),
-        ({"graze_tolerance": "no"}, "graze_tolerance: no list of numbers"),
+        ({"graze_tolerance": "no"}, "graze_tolerance: not a list of numbers"),
         ({"moving": "\ud800"}, "'utf-8' codec"),
     ]
     lines = [json.dumps(QUERY | {"id": k} | part).encode() for k, (part, _) in enumerate(wrong)]
@@ -212,7 +212,7 @@ def test_tables_of_bodies_that_are_none(tmp_path: Path, bodies: Path, capsys: An
     pq.write_table(pa.table({"key": KEYS[:2], "vertices": [[[1.0, 2.0], [3.0]], corners]}), table)
     assert main(words) == 5
     message = pq.read_table(tmp_path / "out" / "queries.parquet")["message"][0].as_py()
-    assert message.startswith("moving: points: no array of numbers")
+    assert message.startswith("moving: points: not an array of numbers")
 
 
 def test_copies_of_bodies_read_their_table_no_more(bodies: Path) -> None:

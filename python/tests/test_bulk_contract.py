@@ -101,7 +101,7 @@ def test_a_bad_shard_is_named_and_the_others_finish(
     assert main(words) == 2
     told = capsys.readouterr()
     assert "100 rows in 2 shards" in told.out and "2 shards FAILED" in told.out
-    assert f"error: {asked / 'shard-1.parquet'}: cannot be read: " in told.err
+    assert f"error: {asked / 'shard-1.parquet'}: cannot read the queries: " in told.err
     assert f"error: {asked / 'shard-3.parquet'}: the queries have no column 'direction'" in told.err
     assert ids(tmp_path / "out") == sorted(f"{k}-{i}" for k in (0, 2) for i in range(50))
 
@@ -122,7 +122,7 @@ def test_flipped_bytes_in_answers_are_found(tmp_path: Path, bodies: Path, capsys
     asked, out = shards(tmp_path / "in", 3, 40), tmp_path / "out"
     words = [str(asked), str(out), "--bodies", str(bodies)]
     assert main([*words, "--check"]) == 2
-    assert f"{out / 'shard-0.parquet'} is not there" in capsys.readouterr().err
+    assert f"{out / 'shard-0.parquet'} does not exist" in capsys.readouterr().err
     assert main(words) == 0 and main([*words, "--check"]) == 0
     assert "120 rows in 3 shards (3 were done before)" in capsys.readouterr().out
     answers = out / "shard-1.parquet"
@@ -157,10 +157,10 @@ def test_flipped_bytes_in_queries_are_found(tmp_path: Path, bodies: Path, capsys
     assert main(words) == 0
     flip(file, end_of_column(file, 3))
     assert main([*words, "--check"]) == 2
-    assert "shard-1.parquet is of other queries" in capsys.readouterr().err
+    assert "shard-1.parquet belongs to other queries" in capsys.readouterr().err
     assert main(words) == 2
     told = capsys.readouterr()
-    assert f"{file}: cannot be read: " in told.err and "CRC" in told.err
+    assert f"{file}: cannot read the queries: " in told.err and "CRC" in told.err
     assert "1 shards FAILED" in told.out
 
 
@@ -215,7 +215,7 @@ def test_folders_in_folders(tmp_path: Path, bodies: Path, capsys: Any) -> None:
     assert (out / "a" / "one.parquet").exists() and (out / "b" / "deep" / "one.parquet").exists()
     assert ids(out) == all_ids(2, 5)
     assert main([str(asked), str(asked / "out"), "--bodies", str(bodies)]) == 2
-    assert "is in the folder of the queries" in capsys.readouterr().err
+    assert "must not be in the folder of the queries" in capsys.readouterr().err
 
 
 def test_row_groups_are_tasks(tmp_path: Path, bodies: Path, capsys: Any) -> None:
@@ -280,7 +280,7 @@ def test_bodies_of_every_kind_of_list(tmp_path: Path) -> None:
         pq.write_table(table, tmp_path / "bodies.parquet", row_group_size=2)
         known = Bodies(str(tmp_path / "bodies.parquet"))
         none, mesh, hull = known.get(["none", "mesh", "hull"])
-        assert str(none) == "points: none"
+        assert str(none) == "points: missing"
         assert repr(mesh) == "ConvexPolyhedron(8 vertices, 12 edges, 6 faces)"
         assert repr(hull).startswith("ConvexPolyhedron(4 vertices")
 
@@ -288,12 +288,16 @@ def test_bodies_of_every_kind_of_list(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("vertices", "faces", "told"),
     [
-        ([[0.0, 0.0], [1.0, 0.0, 0.0]], None, "points: no array of numbers: point 0 has 2, not 3"),
-        ([[0.0, 0.0, 0.0], None], None, "points: number 1 of them is null"),
+        (
+            [[0.0, 0.0], [1.0, 0.0, 0.0]],
+            None,
+            "points: not an array of numbers: point 0 has 2, not 3",
+        ),
+        ([[0.0, 0.0, 0.0], None], None, "points: entry 1 is null"),
         ([[0.0, None, 0.0]], None, "point 0 is not finite"),
         (CORNERS.tolist(), [[0, 1, 9]], "face 0"),
         (CORNERS.tolist(), [[0, 1, -1]], "faces: the index -1 is negative"),
-        (CORNERS.tolist(), [[0, 1, None]], "faces: no array of whole numbers"),
+        (CORNERS.tolist(), [[0, 1, None]], "faces: not an array of whole numbers"),
     ],
 )
 def test_bodies_that_are_none(tmp_path: Path, vertices: Any, faces: Any, told: str) -> None:
@@ -333,7 +337,7 @@ def test_solids_in_bulk(tmp_path: Path, capsys: Any) -> None:
     assert told["outcome"].to_pylist() == ["blocked", "blocked", "error"]
     assert {"shrunk_distance_lower", "translation_upper"} <= set(told.column_names)
     assert main(words) == 2
-    assert "no question 'range' of solids" in capsys.readouterr().err
+    assert "unknown question 'range' of solids" in capsys.readouterr().err
 
 
 def test_how_far_along_motions(tmp_path: Path, bodies: Path) -> None:
@@ -384,7 +388,7 @@ def test_urls_of_queries_bodies_and_answers(
         assert memory.cat_file(f"/out/deep/shard-{k}.parquet") == here
     memory.pipe_file("/out/deep/shard-1.parquet", here[:-1])
     assert main([*words, "--check"]) == 2
-    assert "memory://out/deep/shard-1.parquet is no whole file" in capsys.readouterr().err
+    assert "memory://out/deep/shard-1.parquet is not a complete file" in capsys.readouterr().err
     for wrong in ("memory://none", "nothing://here"):
         assert main([wrong, "memory://out"]) == 2
         assert f"error: {wrong}: " in capsys.readouterr().err

@@ -97,7 +97,7 @@ def test_a_bad_row_of_bodies_is_the_error_of_its_queries(tmp_path: Path, kind: s
     write(file, queries(1, 2) | {"moving": ["cube", "box"], "fixed": ["cube", "cube"]})
     assert run(file, tmp_path / "out", table) == 5
     told = answers_of(tmp_path / "out", "queries.parquet")["message"].to_pylist()
-    words = {"twice": "'box' twice", "texts": "no lists of numbers", "no text": "no body 'box'"}
+    words = {"twice": "'box' twice", "texts": "not lists of numbers", "no text": "no body 'box'"}
     assert words[kind] in told[1]
     assert (told[0] is None) == (kind != "texts")
 

@@ -1,5 +1,4 @@
-"""Conversion of array arguments to C order and native double precision, as the extension reads
-them.
+"""Conversion of array arguments to C order and native double precision.
 
 The extension itself reads tuples, lists and arrays in that format; all other arguments are
 converted here.
@@ -24,10 +23,10 @@ class Runs(NamedTuple):
 
 
 def floats(values: Any, name: str) -> NDArray[np.float64]:
-    """Converts ``values`` to an aligned array of doubles in C order; returns such an array as it
-    is.
+    """Converts ``values`` to an aligned array of doubles in C order.
 
-    Masked entries become NaN, which every query rejects, bulk queries row by row.
+    An array in this format is returned as it is. Masked entries become NaN, which every query
+    rejects, bulk queries row by row.
     """
     if isinstance(values, str | PathLike):
         wanted = "give an array, for example the three numbers [0, 0, 1]"
@@ -44,10 +43,9 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
 
 
 def indices(values: Any, name: str) -> NDArray[np.uint32]:
-    """Converts ``values`` to an aligned array of 32-bit indices in C order; returns such an array
-    as it is.
+    """Converts ``values`` to an aligned array of 32-bit indices in C order.
 
-    Masked entries become -1, which is rejected.
+    An array in this format is returned as it is. Masked entries become -1, which is rejected.
     """
     try:
         array = np.asarray(_unmasked(values, np.int64, -1))

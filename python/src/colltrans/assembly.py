@@ -1,6 +1,6 @@
-"""Assemblies: which parts come out, along which directions, in which order, and what holds them.
+"""Assemblies: which parts come out, along which directions, in which order, and what blocks them.
 
-Lengths are in the unit of the files. Directions are made of length 1, so distances are lengths.
+Lengths are in the unit of the files. Directions are normalised, so distances are lengths.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,17 +21,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Rooms:
-    """How far each part can move in each direction, and what stops it.
+    """The free travel of each part in each direction, and the part that blocks it.
 
     Attributes
     ----------
     parts : tuple of str
     directions : ndarray of shape (D, 3)
     distance : ndarray of shape (P, D)
-        Lengths that are safe to move by, which is proven: infinite where nothing is in the way, 0
-        where parts overlap.
+        Proven lower bounds of the free travel, lengths: infinite if nothing blocks, 0 if parts
+        overlap.
     by : ndarray of int, shape (P, D)
-        The position of the part that is in the way, -1 for none.
+        The index of the blocking part; -1 if none blocks.
     """
 
     parts: tuple[str, ...]
@@ -40,14 +40,14 @@ class Rooms:
     by: NDArray[np.int64]
 
     def free(self) -> dict[str, list[int]]:
-        """For each part the positions of the directions in which nothing is in the way."""
+        """Returns for each part the indices of the directions in which nothing blocks it."""
         free = np.isinf(self.distance)
         return {part: np.flatnonzero(free[k]).tolist() for k, part in enumerate(self.parts)}
 
 
 @dataclass(frozen=True)
 class Blocking:
-    """Who blocks whom along one direction.
+    """The blocking graph of one direction.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Blocking:
     blockers : dict of str to list of str
         The parts that each part would meet.
     removable : list of list of str
-        The groups that can be taken out as they are.
+        The groups that can be removed in this direction while all other parts stay.
     """
 
     direction: tuple[float, ...]
@@ -65,22 +65,22 @@ class Blocking:
 
 @dataclass(frozen=True)
 class Turn:
-    """How parts turn while they go along a move, about an axis along its direction.
+    """The rotation of parts during a move, about an axis along its direction.
 
     Attributes
     ----------
     point : tuple of float
         A point on the axis.
     turns : float
-        Counter-clockwise as seen against the direction if positive.
+        Number of turns; positive values are counter-clockwise as seen against the direction.
     phase : float
-        Threads overlap least where the parts are first turned by so many turns, ...
+        Initial rotation of the parts, in turns, with which threads overlap least.
     aside : tuple of float
-        ... and put aside by this vector.
+        Initial lateral displacement of the parts, with which threads overlap least.
     tolerance : float or None
-        Of the thread, with which it is proven that they may turn so; ``None`` if it is not proven.
+        The thread tolerance for which the rotation is proven; ``None`` if it is not proven.
     words : str
-        All of it, and why it is not proven.
+        A description, with the reason if the rotation is not proven.
     """
 
     point: tuple[float, ...]
@@ -93,17 +93,17 @@ class Turn:
 
 @dataclass(frozen=True)
 class Move:
-    """A move of some parts, as one: straight, or as a screw.
+    """A move of some parts as one: straight, or as a screw.
 
     Attributes
     ----------
     parts : list of str
     direction : tuple of float
-        Of length 1.
+        A unit vector.
     travel : float
-        How far.
+        The length of the move.
     turn : Turn or None
-        How they turn meanwhile, if they do.
+        The rotation of the parts during the move; ``None`` for a straight move.
     """
 
     parts: list[str]
@@ -114,18 +114,18 @@ class Move:
 
 @dataclass(frozen=True)
 class PairFit:
-    """What two parts are to each other, said, suggested or let pass by a step.
+    """The fit of two parts: given by the caller, suggested, or tolerated by a step.
 
     Attributes
     ----------
     parts : tuple of (str, str)
     role : str or None
-        ``"press"``, ``"thread"``, ``"soft"``, ``"snap"``, ``"glued"``; ``None`` where only a
-        tolerance is.
+        ``"press"``, ``"thread"``, ``"soft"``, ``"snap"``, ``"glued"``; ``None`` if the fit has only
+        a tolerance.
     tolerance : float or None
-        Of this pair alone.
+        The tolerance of this pair.
     words : str
-        What is let pass, or what speaks for it.
+        A description of what is tolerated, or the reason for the suggestion.
     """
 
     parts: tuple[str, str]
@@ -136,38 +136,40 @@ class PairFit:
 
 @dataclass(frozen=True)
 class Step:
-    """A group that is taken out.
+    """A step of a plan: a group that is removed.
 
     Attributes
     ----------
     parts : list of str
     direction : tuple of float
-        Of length 1.
+        A unit vector.
     travel : float
-        How far, a length, until it lies wholly beyond what is left; 0 if nothing is ahead.
+        The length after which the group is completely beyond the remaining parts; 0 if nothing is
+        ahead.
     travel_bounds : tuple of float
-        At least and at most the travel, proven.
+        Proven lower and upper bounds of the travel.
     path : list of Move
-        The moves, in order, of the parts or of others that make room: with the last one the parts
-        leave, along `direction` for `travel`. Mostly there is no other.
+        The moves in order, of the group or of other parts that make room. In the last one the group
+        leaves, along `direction` for `travel`. Usually this is the only move.
     back : list of Move
-        How what made room goes back to its place once they have left.
+        The moves by which parts that made room return to their places.
     within : int or None
-        For a step that takes a group apart, the position of the step that took the group out.
+        For a step that takes a group apart: the index of the step that removed the group.
     after : list of int
-        The positions of the steps before it without which it would not go; all others may as well
-        come later. Of several moves all before it.
+        The indices of the earlier steps that this step needs; all others may also come later. For
+        several moves these are all earlier steps.
     ignored : list of tuple of (str, str)
-        What the step does not speak of: the first part moves, the second stays, and their overlap
-        at the start, or all that they do, is ignored on request.
+        Pairs that the step ignores on request: the first part moves, the second stays, and their
+        overlap at the start, or every contact, is ignored.
     passed : list of PairFit
-        What it lets pass of pairs with a role or a tolerance of their own.
+        Contacts that the step tolerates, of pairs with a role or a tolerance of their own.
     falls : list of str
-        What then rests on nothing that is left.
+        Parts that then have no support.
     off_balance : list of str
-        What stood before, and whose centre of mass then lies beyond what carries it.
+        Parts that stood before, and whose centre of mass is then outside their support.
     surfaces : list of str
-        The open surfaces that the step rests on: parts of the group or in its way, not closed.
+        The open surfaces on which the result depends: parts of the group or in its way that are not
+        closed.
     """
 
     parts: list[str]
@@ -187,24 +189,24 @@ class Step:
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts of which no group, moved as one in a straight line, leaves the others.
+    """Parts of which no group, moved as one in a straight line, can leave the others.
 
-    No group along any direction, if that is ``proven``; else none along the directions asked, and
-    along others one may. Several moves, one after another, were searched as ``because`` says.
-    Parts that move at once, each its own way, may come apart in all cases: that is not tried.
+    If ``proven`` is set, this holds for all groups and directions; otherwise for the tested
+    directions, and a group may leave along others. ``because`` describes the search for sequences
+    of moves. Simultaneous moves of parts in different directions are never tried.
 
     Attributes
     ----------
     parts : list of str
     directions : int
-        How many different directions were asked.
+        Number of different directions that were tested.
     proven : int or None
-        The number of cells of the sphere in which it is proven that no translation of a group as
-        one, in any direction, takes it from the others; ``None`` where that is not proven.
+        Number of cells of the sphere in the proof that no translation of a group as one, in any
+        direction, separates it from the others; ``None`` without a proof.
     because : str
-        Why, in words: also what was searched for several moves.
+        The reason, and the search for sequences of moves.
     holds : dict of str to list of list of str
-        For each part the least sets of others that hold it.
+        For each part the minimal sets of other parts that hold it.
     """
 
     parts: list[str]
@@ -216,18 +218,19 @@ class Stuck:
 
 @dataclass(frozen=True)
 class Stage:
-    """Steps that are one for whoever does them.
+    """Consecutive steps that form one operation.
 
-    Parts of one shape that leave along one direction, or equally far each along its own.
+    The parts have the same shape and leave along one direction, or equally far along directions of
+    their own.
 
     Attributes
     ----------
     takes : str
-        What is taken away: ``"8 x bolt"``.
+        A label of the removed parts, for example ``"8 x bolt"``.
     steps : range
-        Positions of the steps; none of them waits for another one.
+        Indices of the steps; none of them depends on another one of the stage.
     travel : float
-        How far they go, at most.
+        The largest travel of the steps.
     """
 
     takes: str
@@ -237,18 +240,18 @@ class Stage:
 
 @dataclass(frozen=True)
 class Wanted:
-    """What goes for some parts to come out.
+    """The removal of wanted parts.
 
     Attributes
     ----------
     parts : list of str
     others : list of str
-        What else is taken away.
+        Other parts that are removed.
     least : bool
-        Whether it is certain that no fewer others are enough, in single moves along the directions
-        asked. Nothing is said of other directions.
+        Whether it is proven that fewer other parts do not suffice, for single moves along the
+        tested directions.
     out : bool
-        Whether the parts come out.
+        Whether the wanted parts come out.
     """
 
     parts: list[str]
@@ -259,30 +262,32 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Plan:
-    """How an assembly comes apart.
+    """A disassembly plan.
 
     Attributes
     ----------
     steps : list of Step
-        In order.
+        The steps in order.
     stages : list of Stage
-        The same, in runs that are one for whoever does them.
+        The steps grouped into operations.
     last : list of str
-        What all else was taken away from and stays where it is; nothing if parts are left.
+        The parts that remain at their place when everything else is removed; empty if parts are
+        left.
     left : list of str
-        Parts that stay: fixed, or not moved by any direction asked.
+        Parts that stay: fixed, or not moved by any tested direction.
     stuck : list of Stuck
     wanted : Wanted or None
-        Of a plan for some parts.
+        The answer for wanted parts, if the plan is for some parts.
     rounds : list of list of int
-        Positions of the steps that may go at once: each waits for some of the round before it.
+        Indices of steps that may be done at the same time; each depends on a step of the round
+        before.
     assembly : list of tuple of (int, list of int)
-        How it is put together: the steps that are walked backwards, in order, each with the
-        positions in this list of those that have to come before it.
+        The assembly sequence: steps to be reversed, in order, each with the indices in this list of
+        its predecessors.
     seconds : list of float
-        Of each step, by a table of handling times.
+        Duration of each step, from a table of handling times.
     taken : list of PairFit
-        With ``auto``, what was suggested and taken for granted.
+        With ``auto``, the suggestions that were assumed.
     """
 
     steps: list[Step]
@@ -299,10 +304,7 @@ class Plan:
     _planned: "_colltrans.Planned | None" = field(default=None, repr=False, compare=False)
 
     def displacements(self) -> dict[str, Floats]:
-        """By how much each part that moves is away from its place when all steps are done.
-
-        How it is turned then is not told.
-        """
+        """Returns the displacement of each moved part after all steps, without rotations."""
         found: dict[str, Floats] = {}
         for step in self.steps:
             for move in (*step.path, *step.back):
@@ -312,12 +314,12 @@ class Plan:
         return found
 
     def show(self, **options: Any) -> None:
-        """A picture of all parts, taken out: see :func:`colltrans.show`.
+        """Draws all parts after their removal; see :func:`colltrans.show`.
 
         Raises
         ------
         InputError
-            A plan that comes from a pickle: it has no bodies.
+            The plan was restored from a pickle, so it has no bodies.
         """
         from colltrans.pictures import show
 
@@ -331,21 +333,21 @@ class Plan:
         return "each its own" if rest else ", ".join(f"{c:.3g}" for c in first)
 
     def report(self, path: str | PathLike[str], *, title: str = "assembly") -> None:
-        """Writes what is printed for the workshop: one HTML file, as ``assembly -o`` has it.
+        """Writes a printable HTML report, as the command ``assembly -o`` does.
 
-        Overlaps, contacts and who meets whom, which it tells beside the plan, are found once more.
+        The overlaps, contacts and blockers in the report are computed again.
 
         Parameters
         ----------
         path : str or os.PathLike
-            It is written anew if it is there.
+            An existing file is replaced.
         title : str
-            Of its first page.
+            The title of the first page.
 
         Raises
         ------
         InputError
-            A plan that comes from a pickle: it has no bodies.
+            The plan was restored from a pickle, so it has no bodies.
 
         Examples
         --------
@@ -360,7 +362,7 @@ class Plan:
         True
         """
         if self._planned is None:
-            raise InputError("a plan that comes from a pickle has no bodies")
+            raise InputError("a plan restored from a pickle has no bodies; compute it again")
         Path(path).write_text(self._planned.report(title), encoding="utf-8")
 
     def _repr_html_(self) -> str:
@@ -379,22 +381,22 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class RemovalMap:
-    """The rooms of a group of parts over the sphere of directions.
+    """The free travel of a group of parts over the sphere of directions.
 
     Attributes
     ----------
     parts : list of str
     directions : ndarray of shape (N, 3)
     distance : ndarray of shape (N,)
-        Lengths that are safe to move by, which is proven; infinite where nothing is in the way.
+        Proven lower bounds of the free travel, lengths; infinite if nothing blocks.
     by : ndarray of int, shape (N,)
-        The position of the part that is in the way, -1 for none.
+        The index of the blocking part; -1 if none blocks.
     regions : list of tuple of (float, tuple of float)
         Connected sets of free directions, largest first: solid angle in steradians, and the
-        direction that is farthest from the border; exact where parts are closed and meet by rule,
-        else sampled.
+        direction farthest from the border. They are exact if parts are closed and no contact is
+        tolerated, otherwise sampled.
     isolated : ndarray of shape (K, 3)
-        Free directions that lie in no region, or in one that is smaller than a disc of ``border``.
+        Free directions outside all regions, or in a region smaller than a disc of ``border``.
     """
 
     parts: list[str]
@@ -406,7 +408,7 @@ class RemovalMap:
 
     @property
     def free_share(self) -> float:
-        """The share of the sphere that is free."""
+        """Returns the share of the sphere that is free."""
         return sum(angle for angle, _ in self.regions) / (4 * np.pi)
 
 
@@ -415,19 +417,19 @@ def _list(names: str | Sequence[str]) -> list[str]:
 
 
 class Assembly:
-    """Parts in one world, in one unit.
+    """Parts in one world frame and one unit.
 
     Parameters
     ----------
     parts : mapping of str to tuple of (array_like, faces)
-        For each name the vertices, of shape (N, 3), and the faces of a surface.
+        For each part name the vertices, of shape (N, 3), and the faces of its surface.
 
     Raises
     ------
     AssemblyError
-        A part whose surface is none, two of one name.
+        A part has no valid surface, or two parts have the same name.
     InputError
-        No mapping, or a part that is not a pair of vertices and faces.
+        The argument is not a mapping, or a part is not a pair of vertices and faces.
 
     Examples
     --------
@@ -476,27 +478,27 @@ class Assembly:
         ----------
         path : str or os.PathLike
         packages : sequence of paths
-            Folders in which ``package://`` is looked for.
+            Folders in which ``package://`` references are searched.
         skip_missing : bool
-            Leave out parts whose meshes are missing, with a note.
+            Whether to leave out parts whose meshes are missing, with a note.
         visual : bool
-            Of URDF the visual geometry, not that for collisions.
+            Whether to read the visual geometry of URDF instead of the collision geometry.
         joints : mapping of str to float
             Positions of joints, in radians or metres.
         allow_outside : bool
-            Read files that the source names and that lie neither in its folder nor in one of
-            ``packages``. Only for a source that you trust.
+            Whether to read files that the source references outside its folder and outside
+            ``packages``. Set this only for a source that you trust.
         as_is : bool
-            Refuse parts whose surface has to be mended.
+            Whether to reject parts whose surface needs repair.
         split : str
-            Which parts are made of a file with several bodies. ``names``: each object or group of
-            OBJ, each solid of STL; ``bodies``: each closed shell with the cavities in it, and each
-            open shell; ``never``: each file, node of glTF or item of a 3MF build is one part;
-            ``auto``: a source that would be a single part is taken apart, by names or else into
+            How files with several bodies become parts. ``names``: each object or group of OBJ, each
+            solid of STL. ``bodies``: each closed shell with its cavities, and each open shell.
+            ``never``: each file, node of glTF or item of a 3MF build is one part. ``auto``: a
+            source that would be a single part is split, by names if possible, otherwise into
             bodies.
         chord : float
-            Of a STEP file: how far facets may be from its surfaces, about, in millimetres. It
-            needs ``pip install 'colltrans[step]'``.
+            For a STEP file: the approximate distance of facets from its surfaces, in millimetres.
+            It needs ``pip install 'colltrans[step]'``.
 
         Returns
         -------
@@ -528,55 +530,55 @@ class Assembly:
 
     @property
     def chord_errors(self) -> list[float | None]:
-        """list of float or None: How far the facets of each part are from its surface, if known."""
+        """list of float or None: Distance of the facets of each part from its surface, if known."""
         return self._assembly.chord_errors
 
     @property
     def unit(self) -> str | None:
-        """str or None: The unit of length, where the files say one."""
+        """str or None: The unit of length, if the files specify one."""
         return self._assembly.unit
 
     @property
     def notes(self) -> list[str]:
-        """list of str: What was mended, guessed or left out."""
+        """list of str: Repairs, guesses and omissions."""
         return self._assembly.notes
 
     def with_fixed(self, *names: str) -> "Assembly":
-        """The same with these parts never moved; ``PART*`` is all whose names begin so."""
+        """Returns a copy in which these parts never move; ``PART*`` stands for a name prefix."""
         return self._of(self._assembly.with_fixed(list(names)))
 
     def with_ignored(self, *pairs: tuple[str, str], always: bool = False) -> "Assembly":
-        """The same with these pairs of parts let pass, though they overlap at the start.
+        """Returns a copy in which overlaps of these pairs at the start are ignored.
 
-        Contacts that begin later block, and so does what would make the overlap deeper. With
-        ``always`` nothing between them does, whatever they run through.
+        Later contacts still block, and so does a motion that would deepen the overlap. With
+        ``always`` every contact of the pairs is ignored.
         """
         return self._of(self._assembly.with_ignored(list(pairs), always))
 
     def with_before(self, first: str | Sequence[str], second: str | Sequence[str]) -> "Assembly":
-        """The same where none of the second parts leaves while one of the first stays.
+        """Returns a copy in which the second parts leave only after all of the first parts.
 
-        Names may end with ``*``: all parts whose names begin so.
+        Names may end with ``*``, which stands for a name prefix.
         """
         return self._of(self._assembly.with_before(_list(first), _list(second)))
 
     def with_together(self, *names: str) -> "Assembly":
-        """The same where these parts leave as one, and are not taken apart."""
+        """Returns a copy in which these parts leave as one and are not taken apart."""
         return self._of(self._assembly.with_together(list(names)))
 
     def with_subassembly(self, name: str, *parts: str) -> "Assembly":
-        """The same where these parts leave as one, and are taken apart by themselves."""
+        """Returns a copy in which these parts leave as one and are then taken apart separately."""
         return self._of(self._assembly.with_subassembly(name, list(parts)))
 
     def with_never(self, *names: str, along: ArrayLike, within: float = 45.0) -> "Assembly":
-        """The same where these parts never go along a direction, nor within an angle of it.
+        """Returns a copy in which these parts never move within an angle of a direction.
 
         Parameters
         ----------
         *names : str
         along : array_like of shape (3,)
         within : float
-            In degrees.
+            The angle in degrees.
         """
         return self._of(self._assembly.with_never(list(names), along, within))
 
@@ -588,19 +590,19 @@ class Assembly:
         role: str | None = None,
         tolerance: float | None = None,
     ) -> "Assembly":
-        """The same with what parts are to others where their contact is not like all others.
+        """Returns a copy with a role or a tolerance for pairs of parts.
 
         Parameters
         ----------
         first, second : str or sequence of str
-            Each of the first and each of the second are a pair; names may end with ``*``.
+            Each of the first parts forms a pair with each of the second; names may end with ``*``.
         role : str, optional
-            ``"press"`` or ``"soft"``: both are shrunk, against each other only, by half of the
-            tolerance each, or from how deep they overlap; ``"thread"``: of the screw its core is
-            asked; ``"snap"``: contacts that begin within the tolerance of the start are let pass;
-            ``"glued"``: they leave as one.
+            ``"press"`` or ``"soft"``: both parts are shrunk, only against each other, by half of
+            the tolerance or of their overlap. ``"thread"``: the screw is replaced by its core.
+            ``"snap"``: contacts that begin within the tolerance of the start are ignored.
+            ``"glued"``: the parts leave as one.
         tolerance : float, optional
-            Of these pairs alone.
+            The tolerance of these pairs.
         """
         lists = _list(first), _list(second)
         return self._of(self._assembly.with_pair(*lists, role, tolerance))
@@ -608,24 +610,24 @@ class Assembly:
     def suggestions(
         self, *, tolerance: float | None = None, stuck: Sequence[Stuck] = ()
     ) -> list[PairFit]:
-        """What pairs that overlap with a tolerance may be to each other; nothing is proven by it.
+        """Suggests roles and tolerances for pairs that overlap with a tolerance, without a proof.
 
         Parameters
         ----------
         tolerance : float, optional
-            As for :meth:`rooms`.
+            See :meth:`rooms`.
         stuck : sequence of Stuck
-            Of a plan, what does not come apart: threads with play are looked for among its parts.
+            Stuck groups of a plan, whose parts are searched for threads with play.
 
         Examples
         --------
-        ``parts.with_suggestions(parts.suggestions()).plan()`` takes them for granted.
+        ``parts.with_suggestions(parts.suggestions()).plan()`` assumes the suggestions.
         """
         held = [list(group.parts) for group in stuck]
         return [self._fit(*pair) for pair in self._assembly.suggestions(tolerance, held)]
 
     def with_suggestions(self, fits: Sequence[PairFit]) -> "Assembly":
-        """The same with these said of their pairs."""
+        """Returns a copy with these fits of pairs."""
         made = self
         for fit in fits:
             made = made.with_pair(*fit.parts, role=fit.role, tolerance=fit.tolerance)
@@ -638,16 +640,16 @@ class Assembly:
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
     ) -> Rooms:
-        """How far each part can move in each direction, against all others.
+        """Computes how far each part can move in each direction while all others stay.
 
         Parameters
         ----------
         directions : array_like of shape (D, 3)
         tolerance : float, optional
-            Parts are shrunk by half of this length, so that those that fit do not jam. By default
-            what the chord errors of the parts and the last digits of their files ask for.
+            Parts are shrunk by half of this length, so that fitting parts do not jam. The default
+            follows from the chord errors of the parts and the precision of their files.
         ignore_overlaps : bool
-            Whether parts that overlap now may part, and what they do later counts.
+            Whether overlaps at the start are ignored. Later contacts count.
 
         Returns
         -------
@@ -675,13 +677,13 @@ class Assembly:
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
     ) -> Blocking:
-        """Who blocks whom along a direction, however far one moves.
+        """Computes which parts block which along a direction, for moves of any length.
 
         Parameters
         ----------
         direction : array_like of shape (3,)
         tolerance, ignore_overlaps
-            As for :meth:`rooms`.
+            See :meth:`rooms`.
 
         Returns
         -------
@@ -708,37 +710,38 @@ class Assembly:
         times: Mapping[str, float] | None = None,
         auto: bool = False,
     ) -> Plan:
-        """Takes apart what straight moves take apart, and unscrews what is screwed.
+        """Computes a disassembly plan of straight moves and screws.
 
-        The smallest groups come first, in a natural order: what carries nothing, by the shortest
-        way, parts of one shape one after another, rather up, and away from the largest part.
+        The smallest groups come first, in a natural order: parts that carry nothing, by the
+        shortest travel, parts of one shape in sequence, preferably upwards and away from the
+        largest part.
 
         Parameters
         ----------
         directions : array_like of shape (D, 3)
-            Those to try; without any they are found from the parts' contacts and axes.
+            Directions to try. The default is the directions from contacts and axes of the parts.
         samples : int
-            How many directions to sample for what no other moves; 0 for none.
+            Number of sampled directions for parts that no other direction moves; 0 for none.
         legs : int
-            How many moves, one after another, may take out what no single one does; parts may make
-            room and go back. 1 for none.
+            The maximum number of moves that may take out what a single move does not. Other parts
+            may make room and return. 1 for single moves only.
         proofs : bool
-            Whether to prove of what is stuck that no translation of a group as one, in any
-            direction, takes it from the others.
+            Whether to prove for stuck parts that no translation of a group as one, in any
+            direction, separates it from the others.
         tolerance, ignore_overlaps
-            As for :meth:`rooms`.
+            See :meth:`rooms`.
         gravity : array_like of shape (3,), optional
-            Its direction; ``-y`` of glTF, else ``-z``.
+            The direction of gravity; the default is ``-y`` for glTF, otherwise ``-z``.
         remove : str or sequence of str, optional
-            Parts that are to come out, and only what has to go for that: the fewest others, if that
-            can be said. Names may end with ``*``.
+            Wanted parts. The plan then removes only these and the fewest other parts, as far as
+            this is proven. Names may end with ``*``.
         times : mapping of str to float, optional
-            Handling times in seconds, what to replace of the table: ``grasp``, ``move``,
+            Handling times in seconds that replace entries of the table: ``grasp``, ``move``,
             ``direction``, ``shape``, ``group``, ``hold``, ``press``, ``soft``, ``snap``,
             ``thread``.
         auto : bool
-            If parts do not come apart: once more, with what their overlaps and threads
-            :meth:`suggest <suggestions>`; ``taken`` of the plan says what.
+            Whether to plan again if parts do not come apart, with the roles that
+            :meth:`suggestions` returns. ``Plan.taken`` lists them.
 
         Returns
         -------
@@ -847,25 +850,25 @@ class Assembly:
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
     ) -> RemovalMap:
-        """Where a part, or several as one, can go: all directions.
+        """Computes in which directions a part, or several parts as one, can leave.
 
         Parameters
         ----------
         *parts : str
-            Names.
+            Part names.
         samples : int
-            At least so many directions before anything is refined.
+            The minimum number of directions before refinement.
         border : float
-            The border of free regions is known to this angle, in radians.
+            The resolution of the borders of free regions, in radians.
         tolerance, ignore_overlaps
-            As for :meth:`rooms`.
+            See :meth:`rooms`.
 
         Returns
         -------
         RemovalMap
         """
         if not parts:
-            raise InputError("parts: no part was named")
+            raise InputError("parts: no part is named; give at least one name")
         group = sorted({self._assembly.index(name) for name in parts})
         found = self._assembly.removal_map(group, samples, border, tolerance, ignore_overlaps)
         directions, (distance, by), regions, isolated = found
@@ -883,11 +886,11 @@ class Assembly:
         return [names[k] for k in positions]
 
     def meshes(self) -> dict[str, tuple[Floats, NDArray[np.uint32]]]:
-        """Vertices, in the world, and triangles of all parts by their names."""
+        """Returns the vertices in the world and the triangles of all parts, by name."""
         return dict(zip(self.parts, self._assembly.meshes(), strict=True))
 
     def show(self, **options: Any) -> None:
-        """A picture of all parts: see :func:`colltrans.show`."""
+        """Draws all parts; see :func:`colltrans.show`."""
         from colltrans.pictures import show
 
         show(self, **options)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray
 
 Answer_co = TypeVar("Answer_co", covariant=True)
-#: #: The columns of features, which exist if features are requested.
+#: The columns of features, which exist if features are requested.
 FEATURES = ("moving_feature", "fixed_feature")
 
 
@@ -40,7 +40,7 @@ class Failed:
     Attributes
     ----------
     message : str
-            The reason for the failure.
+        The reason for the failure.
     """
 
     message: str
@@ -103,7 +103,7 @@ class Table(Generic[Answer_co]):
     moving_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
     fixed_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
 
-    #: #: The function that answers one row, and the name of the bulk query.
+    #: The function that answers one row, and the name of the bulk query.
     _question: ClassVar[Any]
     _name: ClassVar[str]
 
@@ -138,7 +138,7 @@ class Table(Generic[Answer_co]):
         Parameters
         ----------
         name : str
-                The name of a column, for example ``"outcome"``.
+            The name of a column, for example ``"outcome"``.
 
         Examples
         --------
@@ -210,13 +210,12 @@ class Table(Generic[Answer_co]):
         return self.outcome.counts()
 
     def to_arrow(self) -> "pyarrow.Table":
-        """Converts the columns to a table of pyarrow, without copies; vectors are lists of fixed
-        size.
+        """Converts the columns to a table of pyarrow without copies; vectors become fixed-size lists.
 
         Raises
         ------
         ModuleNotFoundError
-                pyarrow is missing; run ``pip install colltrans[arrow]``.
+            pyarrow is missing; run ``pip install colltrans[arrow]``.
         """
         import pyarrow as pa
 
@@ -236,8 +235,7 @@ class Table(Generic[Answer_co]):
         return pa.table(columns)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Exports the table of :meth:`to_arrow` to libraries that read Arrow: polars, DuckDB,
-        pandas."""
+        """Exports the table of :meth:`to_arrow` to readers of Arrow: polars, DuckDB, pandas."""
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def to_xarray(self) -> "xarray.Dataset":
@@ -246,7 +244,7 @@ class Table(Generic[Answer_co]):
         Raises
         ------
         ModuleNotFoundError
-                xarray is missing; run ``pip install colltrans[xarray]``.
+            xarray is missing; run ``pip install colltrans[xarray]``.
         """
         import xarray as xr
 
@@ -264,7 +262,7 @@ class Table(Generic[Answer_co]):
         Raises
         ------
         ModuleNotFoundError
-                pandas is missing; run ``pip install colltrans[pandas]``.
+            pandas is missing; run ``pip install colltrans[pandas]``.
         """
         import pandas as pd
 
@@ -321,8 +319,8 @@ class TimeColumns(Table[Answer_co]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-            Proven bounds of the times of contacts: no contact before the first one, and the contact
-            that stops the motion at the second one.
+        Proven bounds of the times of contacts: no contact before the first one, and the contact
+        that stops the motion at the second one.
     """
 
     lower: Floats
@@ -340,17 +338,15 @@ class Columns(Table[Answer_co]):
     point : ndarray of shape (N, 3)
         Contact points, in the world.
     translation_lower, translation_upper : ndarray of shape (N,)
-            Proven bounds of the translation, in multiples of the direction; infinite without a
-            bound.
+        Proven bounds of the translation, in multiples of the direction; infinite without a bound.
     translation : ndarray of shape (N,)
-            Translation of the first contact, in multiples of the direction.
+        Translation of the first contact, in multiples of the direction.
     rounding : ndarray of shape (N,)
-            The part of the difference of these bounds that rounding alone can cause.
+        The part of the difference of these bounds that rounding alone can cause.
     margin : ndarray of shape (N,)
-            A lower bound of the distance of the shadows of separated bodies, a length.
+        A lower bound of the distance of the shadows of separated bodies, a length.
     overlap : ndarray of shape (N,)
-            The overlap of the shadows of grazing bodies, a length; negative if they may be
-            disjoint.
+        The overlap of the shadows of grazing bodies, a length; negative if they may be disjoint.
     """
 
     translation: Floats
@@ -365,7 +361,7 @@ class Columns(Table[Answer_co]):
     def _is_row(self, answer: Any, i: int) -> bool:
         record = answer.to_dict()
         told, found = self.translation[i], record.get("translation", np.nan)
-        # # Rows with the same pair of bodies share data in bulk; a single row runs its own cast.
+        # Rows with the same pair of bodies share data in bulk; a single row runs its own cast.
         # Both answers are valid, each within its rounding.
         same = np.array_equal(told, found, equal_nan=True)
         same = same or abs(told - found) <= 2 * self.rounding[i]
@@ -381,7 +377,7 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
     Parameters
     ----------
     columns : sequence of columns
-            At least one, all of answers to the same query.
+        At least one, all of answers to the same query.
 
     Returns
     -------
@@ -390,7 +386,7 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
     Raises
     ------
     InputError
-            There are no columns, or they answer different queries.
+        There are no columns, or they answer different queries.
 
     Examples
     --------
@@ -447,7 +443,7 @@ class RangeColumns(Columns[ContactRange | Separated]):
     exit : ndarray of shape (N,)
         The translation of the last contact, in multiples of the direction.
     exit_lower, exit_upper : ndarray of shape (N,)
-            Proven bounds of the last contact. The bodies never meet beyond the upper one.
+        Proven bounds of the last contact. The bodies never meet beyond the upper one.
     """
 
     exit: Floats
@@ -464,14 +460,14 @@ class ClearanceColumns(Columns[Blocked | Slides | Behind | Separated | Overlappi
     Attributes
     ----------
     distance : ndarray of shape (N,)
-            The free travel, rounded down, in multiples of the direction; infinite if nothing
-            blocks, NaN if the bodies overlap.
+        The free travel, rounded down, in multiples of the direction; infinite if nothing blocks,
+        NaN if the bodies overlap.
     exit : ndarray of shape (N,)
-            The translation of the last contact, if it is behind the body or the bodies overlap.
+        The translation of the last contact, if it is behind the body or the bodies overlap.
     exit_lower, exit_upper : ndarray of shape (N,)
-            Proven bounds of the last contact. The bodies never meet beyond the upper one.
+        Proven bounds of the last contact. The bodies never meet beyond the upper one.
     back, on : ndarray of shape (N,)
-            The travel backwards and forwards after which an overlap ends.
+        The travel backwards and forwards after which an overlap ends.
     """
 
     distance: Floats

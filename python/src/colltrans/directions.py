@@ -17,15 +17,14 @@ class FreeColumns(RowColumns[FreeDirections]):
     Attributes
     ----------
     free_lower, free_upper : ndarray of shape (N,)
-            Proven bounds of the share of all directions that is free, without the undecided ones.
+        Proven bounds of the share of all directions that is free, without the undecided ones.
     undecided : ndarray of shape (N,)
-            An upper bound of the share of directions that are undecided.
+        An upper bound of the share of directions that are undecided.
     regions, arcs, points : ndarray of shape (N,)
-            The numbers of connected regions, and of arcs and single directions that border no
-            region.
+        The numbers of connected regions, and of arcs and single directions that border no region.
     direction : ndarray of shape (N, 3)
-            A direction in the largest region, nearly the farthest from its border; NaN without a
-            region.
+        A direction in the largest region, nearly the farthest from its border; NaN without a
+        region.
     """
 
     free_lower: Floats
@@ -74,11 +73,11 @@ def free_directions_many(
     Parameters
     ----------
     moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
-            See :func:`distance_many`.
+        See :func:`distance_many`.
     tolerance : float or array_like of shape (N,), optional
-            See :func:`free_directions`.
+        See :func:`free_directions`.
     ignore_start_overlaps, depth, looks
-            See :func:`free_directions`; one value for all rows.
+        See :func:`free_directions`; one value for all rows.
 
     Returns
     -------

@@ -22,11 +22,11 @@ from colltrans._colltrans import (
 )
 from colltrans.pictures import EDGE, FIXED, MOVING, TOUCH, Floats, Placed, _Link, placed, said
 
-#: #: Maximum number of triangles in a drawing. Larger bodies are shown as text only.
+#: Maximum number of triangles in a drawing. Larger bodies are shown as text only.
 MOST = 1500
-#: #: Size of a drawing and its margin, in pixels.
+#: Size of a drawing and its margin, in pixels.
 WIDTH, HEIGHT, MARGIN = 320, 240, 8
-#: #: Directions from the scene to the eye and to the light.
+#: Directions from the scene to the eye and to the light.
 EYE = np.array([0.48, -0.72, 0.5])
 LIGHT = np.array([0.35, -0.5, 0.79])
 WORDS = 'font-family="sans-serif" font-size="11"'
@@ -82,8 +82,7 @@ def _bodies(query: Any) -> list[_Shape]:
 
 
 def _moved(thing: MotionCast | MotionClearance | FirstContact) -> tuple[list[_Shape], list[Floats]]:
-    """Returns the bodies at the start and, as a ghost, the moving body at the contact or the
-    end."""
+    """Returns the bodies at the start, and the moving one as a ghost at the contact or the end."""
     query = thing if isinstance(thing, MotionCast) else thing.query
     at = 1.0
     if isinstance(thing, FirstContact) and thing.lower is not None:

@@ -51,30 +51,30 @@ def cast_many(
     Parameters
     ----------
     moving, fixed : ConvexPolyhedron or sequence of them
-            One body for all rows, a list with an index for each row, or a list with a body for each
-            row. An exception in the list stands for a body that could not be built; its rows are
-            errors.
+        One body for all rows, a list with an index for each row, or a list with a body for each
+        row. An exception in the list stands for a body that could not be built; its rows are
+        errors.
     direction : array_like of shape (3,) or (N, 3)
-            Vectors of the world, of any length. Translations are multiples of them.
+        Vectors of the world, of any length. Translations are multiples of them.
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
-            One pose for all rows, of shape (3,), (7,), (3, 4) or (4, 4), or one for each row, of
-            shape (N, 3), (N, 7), (N, 3, 4) or (N, 4, 4); see :class:`Pose`.
+        One pose for all rows, of shape (3,), (7,), (3, 4) or (4, 4), or one for each row, of shape
+        (N, 3), (N, 7), (N, 3, 4) or (N, 4, 4); see :class:`Pose`.
     moving_index, fixed_index : array_like of int, shape (N,), optional
-            The index of the body of each row.
+        The index of the body of each row.
     graze_tolerance : float or array_like of shape (N,)
-            Lateral overlaps up to this length count as grazing. With 0 the limit follows from
-            rounding errors.
+        Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding
+        errors.
     keep : float or array_like of shape (N,)
-            A minimum gap, a length. The result is then the translation at which the distance of the
-            bodies first falls to it.
+        A minimum gap, a length. The result is then the translation at which the distance of the
+        bodies first falls to it.
     solver : {"auto", "cta", "portal"} or Cta
-            The search algorithm. Answers are the same.
+        The search algorithm. Answers are the same.
     features : bool
-            Whether to add the columns ``moving_feature`` and ``fixed_feature`` of the features in
-            contact.
+        Whether to add the columns ``moving_feature`` and ``fixed_feature`` of the features in
+        contact.
     threads : int, optional
-            Number of threads; by default all cores that this process may use. The bits do not
-            depend on it.
+        Number of threads; by default all cores that this process may use. The bits do not depend on
+        it.
 
     Returns
     -------
@@ -83,8 +83,7 @@ def cast_many(
     Raises
     ------
     InputError
-            The shapes of arrays do not fit together. Invalid numbers in a row are errors of that
-            row.
+        The shapes of arrays do not fit together. Invalid numbers in a row are errors of that row.
 
     Notes
     -----
@@ -145,9 +144,9 @@ def contact_range_many(
     Parameters
     ----------
     moving, fixed, direction, moving_pose, fixed_pose, moving_index, fixed_index
-            See :func:`cast_many`.
+        See :func:`cast_many`.
     graze_tolerance, keep, solver, features, threads
-            See :func:`cast_many`.
+        See :func:`cast_many`.
 
     Returns
     -------
@@ -256,15 +255,15 @@ def clearance_many(
     Parameters
     ----------
     moving, fixed : ConvexPolyhedron, Solid or sequence of them
-            See :func:`cast_many`. If one of them is a solid, all bodies are treated as solids.
+        See :func:`cast_many`. If one of them is a solid, all bodies are treated as solids.
     direction, moving_pose, fixed_pose, moving_index, fixed_index
-            See :func:`cast_many`.
+        See :func:`cast_many`.
     graze_tolerance, keep, solver, features, threads
-            See :func:`cast_many`.
+        See :func:`cast_many`.
     tolerance : float or array_like of shape (N,), optional
-            For solids, see :class:`SolidCast`.
+        For solids, see :class:`SolidCast`.
     ignore_start_overlaps : bool
-            For solids, see :class:`SolidCast`.
+        For solids, see :class:`SolidCast`.
 
     Returns
     -------

@@ -22,10 +22,10 @@ from colltrans.queries import (
     together,
 )
 
-#: #: One motion for all rows, one for each row, or a kind of motion with arrays of its numbers.
+#: One motion for all rows, one for each row, or a kind of motion with arrays of its numbers.
 Motions: TypeAlias = Motion | Sequence[Motion] | Mapping[str, Mapping[str, ArrayLike]] | None
 
-#: #: The kinds of motions given as arrays, and the width of each array.
+#: The kinds of motions given as arrays, and the width of each array.
 KINDS: dict[str, dict[str, int]] = {
     "slide": {"by": 3},
     "turn": {"point": 3, "axis": 3, "radians": 1},
@@ -41,8 +41,8 @@ class MotionColumns(TimeColumns[FirstContact]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-            Proven bounds of the times of contacts, from 0 (start of the motion) to 1 (end): the
-            bodies do not meet before the first one, and meet at the second one.
+        Proven bounds of the times of contacts, from 0 (start of the motion) to 1 (end): the bodies
+        do not meet before the first one, and meet at the second one.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
@@ -62,11 +62,11 @@ class MotionClearanceColumns(TimeColumns[MotionClearance]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-            The body can move until the first time. At the second time the stopping features meet in
-            their nominal position.
+        The body can move until the first time. At the second time the stopping features meet in
+        their nominal position.
     least_tolerance : ndarray of shape (N,)
-            The smallest tolerance without an overlap, for bodies that overlap at the start of the
-            motion.
+        The smallest tolerance without an overlap, for bodies that overlap at the start of the
+        motion.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
@@ -100,20 +100,20 @@ def motion_many(
     Parameters
     ----------
     moving, fixed, moving_index, fixed_index, features, threads
-            See :func:`distance_many`.
+        See :func:`distance_many`.
     moving_motion, fixed_motion : Motion, sequence of them, or dict
-            The motions of the bodies: one motion for all rows, one for each row, or ``{"screw":
-            {"point", "axis", "radians", "rise"}}``, ``{"turn": {"point", "axis", "radians"}}``,
-            ``{"slide": {"by"}}`` or ``{"thrown": {"center", "velocity", "angular_velocity"}}`` with
-            arrays of one row for all, or of one row for each. ``"degrees"`` may replace
-            ``"radians"``. None stands for rest.
+        The motions of the bodies: one motion for all rows, one for each row, or ``{"screw":
+        {"point", "axis", "radians", "rise"}}``, ``{"turn": {"point", "axis", "radians"}}``,
+        ``{"slide": {"by"}}`` or ``{"thrown": {"center", "velocity", "angular_velocity"}}`` with
+        arrays of one row for all, or of one row for each. ``"degrees"`` may replace ``"radians"``.
+        None stands for rest.
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
-            The start of motions that are given as arrays, or the pose of a body at rest; see
-            :func:`cast_many`. Motion objects have their own pose.
+        The start of motions that are given as arrays, or the pose of a body at rest; see
+        :func:`cast_many`. Motion objects have their own pose.
     keep : float or array_like of shape (N,)
-            A minimum gap, a length.
+        A minimum gap, a length.
     tolerance : float or array_like of shape (N,), optional
-            See :class:`MotionCast`.
+        See :class:`MotionCast`.
 
     Returns
     -------
@@ -122,8 +122,7 @@ def motion_many(
     Raises
     ------
     InputError
-            The shapes of arrays do not fit together. Invalid numbers in a row are errors of that
-            row.
+        The shapes of arrays do not fit together. Invalid numbers in a row are errors of that row.
 
     Examples
     --------
@@ -165,7 +164,7 @@ def motion_clearance_many(
     Parameters
     ----------
     moving, fixed, moving_motion, fixed_motion, moving_pose, fixed_pose
-            See :func:`motion_many`, also for all other arguments and errors.
+        See :func:`motion_many`, also for all other arguments and errors.
 
     Returns
     -------
@@ -187,7 +186,7 @@ def motion_clearance_many(
     return MotionClearanceColumns._ask(_motions(sides, keep, tolerance), features, threads)
 
 
-#: #: The bodies of a side, the body index of each row, the motions and the poses.
+#: The bodies of a side, the body index of each row, the motions and the poses.
 Side: TypeAlias = tuple[AnyBodies, ArrayLike | None, Motions, Poses]
 
 

@@ -19,9 +19,9 @@ class Outcomes:
     Attributes
     ----------
     codes : ndarray of uint8, shape (N,)
-            Indices into ``names``.
+        Indices into ``names``.
     names : tuple of str
-            All possible outcomes; the last one is ``"error"``.
+        All possible outcomes; the last one is ``"error"``.
 
     Examples
     --------
@@ -35,7 +35,7 @@ class Outcomes:
     """
 
     __slots__ = ("codes", "names")
-    #: #: Comparisons with arrays are left to this class instead of numpy.
+    #: Comparisons with arrays are left to this class instead of numpy.
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
 

@@ -17,7 +17,7 @@ class PairColumns(Table[Answer_co]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-            Proven lower and upper bounds of the distance or the depth, lengths.
+        Proven lower and upper bounds of the distance or the depth, lengths.
     """
 
     lower: Floats
@@ -50,10 +50,10 @@ class DepthColumns(PairColumns[Depth | OverlapDepth]):
     Attributes
     ----------
     least_tolerance : ndarray of shape (N,)
-            For solids that overlap: the smallest tolerance without an overlap, a length.
+        For solids that overlap: the smallest tolerance without an overlap, a length.
     direction : ndarray of shape (N, 3)
-            For convex bodies that overlap: unit vectors, in the world, along which the moving body
-            leaves.
+        For convex bodies that overlap: unit vectors, in the world, along which the moving body
+        leaves.
     """
 
     least_tolerance: Floats
@@ -69,10 +69,9 @@ class WithinColumns(PairColumns[Within]):
     Attributes
     ----------
     normal : ndarray of shape (N, 3)
-            For convex bodies that are farther apart: unit normals, in the world.
+        For convex bodies that are farther apart: unit normals, in the world.
     on_moving, on_fixed : ndarray of shape (N, 3)
-            For bodies that are closer: points of both bodies at the distance ``upper``, in the
-            world.
+        For bodies that are closer: points of both bodies at the distance ``upper``, in the world.
     """
 
     normal: Floats
@@ -98,9 +97,9 @@ def distance_many(
     Parameters
     ----------
     moving, fixed : ConvexPolyhedron, Solid or sequence of them
-            See :func:`cast_many`. If a body of a row is a solid, both are treated as solids.
+        See :func:`cast_many`. If a body of a row is a solid, both are treated as solids.
     moving_pose, fixed_pose, moving_index, fixed_index, features, threads
-            See :func:`cast_many`.
+        See :func:`cast_many`.
 
     Returns
     -------
@@ -140,7 +139,7 @@ def depth_many(
     Parameters
     ----------
     moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
-            See :func:`distance_many`.
+        See :func:`distance_many`.
 
     Returns
     -------
@@ -175,10 +174,9 @@ def within_many(
     Parameters
     ----------
     moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
-            See :func:`distance_many`.
+        See :func:`distance_many`.
     length : float or array_like of shape (N,)
-            A length, not negative, in the unit of the bodies. A row with a negative length is an
-            error.
+        A length, not negative, in the unit of the bodies. A row with a negative length is an error.
 
     Returns
     -------

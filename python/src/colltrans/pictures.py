@@ -1,8 +1,7 @@
-"""Pictures of bodies, queries and answers as figures of plotly (``pip install
-colltrans[pictures]``).
+"""Pictures of bodies, queries and answers as figures of plotly.
 
 The bodies are drawn solid at the start, and the moving body as a ghost at the contact, with the
-contact point and the normal. A notebook shows a figure, a script opens a browser, and a saved file
+contact point and the normal. They need ``pip install colltrans[pictures]``. A notebook shows a figure, a script opens a browser, and a saved file
 needs nothing else. No screen or graphics card is needed.
 """
 
@@ -49,7 +48,7 @@ from colltrans.assembly import Assembly, Plan
 from colltrans.errors import InputError
 
 Floats: TypeAlias = NDArray[np.float64]
-# # The colours of the page (`web/src/colours.ts`): blue and sand, and red for contact points and
+# The colours of the page (`web/src/colours.ts`): blue and sand, and red for contact points and
 # normals.
 MOVING, FIXED, TOUCH, EDGE = "#6f97d6", "#d9cbb0", "#b01657", "#1d2733"
 
@@ -79,11 +78,11 @@ def picture(answer: Any) -> Any:
     Parameters
     ----------
     answer : ConvexPolyhedron, Solid, Assembly, Plan, Cast or any other query, or an answer
-            Bodies and assemblies are drawn at their poses. The moving body is drawn solid at the
-            start, and as a ghost at the contact, with the contact point and the normal from the
-            moving body to the fixed one. Robot paths are drawn likewise, with all links. A distance
-            has a segment between the nearest points. A depth has a ghost after the translation that
-            separates the bodies. Removed parts of a plan are drawn after their moves.
+        Bodies and assemblies are drawn at their poses. The moving body is drawn solid at the start,
+        and as a ghost at the contact, with the contact point and the normal from the moving body to
+        the fixed one. Robot paths are drawn likewise, with all links. A distance has a segment
+        between the nearest points. A depth has a ghost after the translation that separates the
+        bodies. Removed parts of a plan are drawn after their moves.
 
     Returns
     -------
@@ -93,9 +92,9 @@ def picture(answer: Any) -> Any:
     Raises
     ------
     ModuleNotFoundError
-            plotly is missing; run ``pip install colltrans[pictures]``.
+        plotly is missing; run ``pip install colltrans[pictures]``.
     TypeError
-            The argument is not a body, a query or an answer.
+        The argument is not a body, a query or an answer.
 
     Examples
     --------
@@ -236,12 +235,12 @@ def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
     ----------
     answer : ConvexPolyhedron, Solid, Assembly, Plan, Cast or any other query, or an answer
     file : str or os.PathLike, optional
-            A self-contained page (HTML) that is written instead.
+        A self-contained page (HTML) that is written instead.
 
     Raises
     ------
     ModuleNotFoundError
-            plotly is missing; run ``pip install colltrans[pictures]``.
+        plotly is missing; run ``pip install colltrans[pictures]``.
 
     Examples
     --------

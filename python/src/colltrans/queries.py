@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Floats: TypeAlias = NDArray[np.float64]
 Shape: TypeAlias = tuple[int, ...]
-#: #: The body index of each row; None if there is only one body.
+#: The body index of each row; None if there is only one body.
 Index: TypeAlias = NDArray[np.int64] | None
 Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransError]"
 AnyBodies: TypeAlias = (
@@ -30,7 +30,7 @@ AnyBodies: TypeAlias = (
 )
 Poses: TypeAlias = "ArrayLike | Pose | Sequence[Pose] | HasMatrix | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
-#: #: Arguments that precede the poses.
+#: Arguments that precede the poses.
 POSITIONAL = ("direction", "moving_motion", "fixed_motion")
 #: The two bodies of a query.
 SIDES = ("moving", "fixed")
@@ -50,10 +50,10 @@ class Queries:
 
     bodies: tuple[list[Any], list[Any]]
     indices: tuple[Index, Index]
-    #: #: For each argument one row for all queries or one for each. NaN as a tolerance is the
+    #: For each argument one row for all queries or one for each. NaN as a tolerance is the
     #: default.
     tables: dict[str, Floats | list[Motion]]
-    #: #: Arguments with one value for all queries.
+    #: Arguments with one value for all queries.
     choices: dict[str, Any]
     shape: Shape
 
@@ -153,8 +153,7 @@ def queries_of(
 
 
 def together(stacks: Mapping[str, Stack | None]) -> tuple[Shape, dict[str, NDArray[Any]]]:
-    """Broadcasts arguments: returns the common axes, and one row for all queries or one for
-    each."""
+    """Broadcasts arguments; returns the common axes and the rows: one for all, or one for each."""
     given = {name: stack for name, stack in stacks.items() if stack is not None}
     try:
         shape = np.broadcast_shapes(*(stack.shape for stack in given.values())) or (1,)
@@ -205,7 +204,7 @@ def body_list(
         if alone:
             return all_bodies, None
         return all_bodies, Stack(np.arange(len(all_bodies)).reshape(-1, 1), (len(all_bodies),))
-    # # A row that is masked in a masked array has no body.
+    # A row that is masked in a masked array has no body.
     masked = isinstance(index, np.ma.MaskedArray)
     found = np.ma.filled(index, -1) if masked else np.asarray(index)
     if found.ndim == 0 or (found.size > 0 and found.dtype.kind not in "iu"):
@@ -254,7 +253,7 @@ def pose_table(values: Poses, name: str) -> Stack:
     )
 
 
-#: #: Range of defects of a rotation that is treated as one with few digits.
+#: Range of defects of a rotation that is treated as one with few digits.
 FEW_DIGITS, UNIT_LENGTH = 0.02, 1e-6
 
 

@@ -14,10 +14,10 @@ from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
 from colltrans.queries import Floats, Shape, checked_threads
 
-#: #: Rows of joint values, or the name of a file with such rows.
+#: Rows of joint values, or the name of a file with such rows.
 Path: TypeAlias = ArrayLike | str | PathLike[str]
 
-#: #: The integer columns.
+#: The integer columns.
 POSITIONS = ("row", "first", "second")
 
 
@@ -76,20 +76,20 @@ class PathColumns(TimeColumns[PathContact]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-            Proven bounds of the times of first contacts: no two bodies meet before the first one,
-            and two meet at the second one.
+        Proven bounds of the times of first contacts: no two bodies meet before the first one, and
+        two meet at the second one.
     row : ndarray of int64, shape (N,)
-            The row before the contact; -1 without a contact.
+        The row before the contact; -1 without a contact.
     share : ndarray of shape (N,)
-            The fraction of the step to the next row at the contact.
+        The fraction of the step to the next row at the contact.
     first, second : ndarray of int64, shape (N,)
-            The two bodies that meet, as indices into ``bodies``; -1 if none meet.
+        The two bodies that meet, as indices into ``bodies``; -1 if none meet.
     normal : ndarray of shape (N, 3)
-            Unit normals, in the world, from the first body to the second.
+        Unit normals, in the world, from the first body to the second.
     point : ndarray of shape (N, 3)
-            The point of the first body that is nearest to the second, in the world.
+        The point of the first body that is nearest to the second, in the world.
     bodies : tuple of str
-            The names of all bodies: of the links, then of the scene.
+        The names of all bodies: of the links, then of the scene.
     """
 
     row: NDArray[np.int64]
@@ -121,13 +121,13 @@ def path_many(
     ----------
     robot : Robot
     paths : array_like of shape (N, K, J), or sequence of paths
-            See :meth:`Robot.first_contact`. Paths may have different numbers of rows.
+        See :meth:`Robot.first_contact`. Paths may have different numbers of rows.
     scene, ignore, keep, joints, columns
-            See :meth:`Robot.first_contact`; one value for all paths.
+        See :meth:`Robot.first_contact`; one value for all paths.
     times : sequence of array_like, optional
         The times of the rows of each path.
     threads : int, optional
-            Number of threads; by default the number of processors.
+        Number of threads; by default the number of processors.
 
     Returns
     -------
@@ -136,8 +136,8 @@ def path_many(
     Raises
     ------
     InputError
-            An argument is not an array, or a name is unknown. A path that does not fit the robot is
-            an error of its row.
+        An argument is not an array, or a name is unknown. A path that does not fit the robot is an
+        error of its row.
 
     Examples
     --------

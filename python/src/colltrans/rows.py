@@ -14,16 +14,16 @@ from colltrans.columns import FEATURES, Answer_co, Table
 from colltrans.outcomes import Outcomes
 from colltrans.queries import Queries, checked_threads, cores
 
-#: #: The columns with three numbers in a row.
+#: The columns with three numbers in a row.
 VECTORS = ("normal", "point", "direction")
-#: #: Time between two polls for signals, in seconds.
+#: Time between two polls for signals, in seconds.
 PATIENCE = 0.1
 
 
 class RowColumns(Table[Answer_co]):
     """Answers of slow queries, as columns; see :class:`Table`."""
 
-    #: #: All outcomes; the last one is ``"error"``.
+    #: All outcomes; the last one is ``"error"``.
     _outcomes: ClassVar[tuple[str, ...]]
 
     @staticmethod
@@ -72,7 +72,7 @@ def _answer_rows(
     rows, failed, stopped = iter(range(n)), {}, False
 
     def work() -> None:
-        # # One iterator serves all threads, because the interpreter executes each step of it
+        # One iterator serves all threads, because the interpreter executes each step of it
         # atomically.
         for i in rows:
             if stopped:

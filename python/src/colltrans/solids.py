@@ -21,19 +21,19 @@ class SolidColumns(RowColumns[SolidBlocked | SolidFree | SolidOverlapping]):
     Attributes
     ----------
     distance : ndarray of shape (N,)
-            The free travel, rounded down, in multiples of the direction; infinite if nothing
-            blocks, NaN if the bodies overlap.
+        The free travel, rounded down, in multiples of the direction; infinite if nothing blocks,
+        NaN if the bodies overlap.
     translation : ndarray of shape (N,)
-            The translation at which the stopping faces meet in their nominal position, in multiples
-            of the direction.
+        The translation at which the stopping faces meet in their nominal position, in multiples of
+        the direction.
     translation_lower, translation_upper : ndarray of shape (N,)
-            Proven bounds of the translation.
+        Proven bounds of the translation.
     shrunk_distance : ndarray of shape (N,)
-            The free travel of the bodies shrunk by half the tolerance each.
+        The free travel of the bodies shrunk by half the tolerance each.
     shrunk_distance_lower, shrunk_distance_upper : ndarray of shape (N,)
-            Proven bounds of ``shrunk_distance``.
+        Proven bounds of ``shrunk_distance``.
     least_tolerance : ndarray of shape (N,)
-            The smallest tolerance at which overlapping bodies would not overlap, a length.
+        The smallest tolerance at which overlapping bodies would not overlap, a length.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)

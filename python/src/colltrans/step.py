@@ -1,25 +1,27 @@
-"""Converts STEP files to GLB, with the chord error of every part measured.
+"""Converts STEP files to GLB, and measures the chord error of every part.
 
 ``python -m colltrans.step FILE -o OUT.glb`` needs ``pip install 'colltrans[step]'``
-(cadquery-ocp-novtk, which carries OpenCASCADE). It writes a GLB file that ``colltrans assembly``
-reads and that any viewer shows. It prints one JSON object: the name of every part, its number of
-solids and its *chord error*, the distance of its facets from the surface that they stand for.
+(cadquery-ocp-novtk, which contains OpenCASCADE). It writes a GLB file that ``colltrans assembly``
+and any viewer read. It prints one JSON object: the name of every part, its number of solids and its
+*chord error*, the distance of its facets from the surface that they approximate.
 
-The product tree comes from OpenCASCADE's document (XCAF), external files included. A part is a leaf
-of the product tree. Curves and points are left out; a note names the parts that hold nothing else.
+The product tree comes from OpenCASCADE's document (XCAF), including external files. A part is a
+leaf of the product tree. Curves and points are left out; a note names the parts that contain
+nothing else.
 
-OpenCASCADE aims at the chord error of ``--chord`` and does not always keep it. So the error is
-measured, in the numbers of the file that is written:
+OpenCASCADE aims at the chord error of ``--chord`` but does not always reach it. Therefore the error
+is measured, with the numbers that are written to the file:
 
-- on planes, cylinders and spheres exactly, up to rounding: the farthest point of each facet;
+- on planes, cylinders and spheres exactly up to rounding, as the farthest point of each facet
+  (``exact``);
 - on cones and tori as the largest of the exact distances of 45 points of each facet (``sampled``);
-- on all other surfaces by a tessellation that is four times as fine: the largest distance of
-  its vertices from the facets of the same face, and a sixteenth more (``compared``).
+- on all other surfaces with a tessellation that is four times as fine, as the largest distance of
+  its vertices from the facets of the same face, plus a sixteenth (``compared``).
 
-The first is the error; the others are measures that a point between the samples may exceed.
+The exact measure is a bound of the error. Points between samples may exceed the other two measures.
 
-``-o -`` writes the GLB to standard output, and nothing else: so ``colltrans assembly FILE.step``
-calls it.
+``-o -`` writes only the GLB file, to standard output. The command ``colltrans assembly FILE.step``
+uses this form.
 """
 
 import argparse
@@ -38,19 +40,19 @@ from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
-#: How much finer the tessellation is that others are compared with: its own error is a sixteenth.
+#: Refinement factor of the tessellation for comparison; its own error is a sixteenth.
 FINER = 4.0
-#: Lengths of the file in a metre: all of GLB is in metres, and STEP files are told in millimetres.
+#: Millimetres in a metre: GLB is in metres, STEP shapes are in millimetres.
 PER_METRE = 1000.0
-#: Weights of the corners at which a facet is sampled.
+#: Barycentric weights of the sample points of a facet.
 _SAMPLES = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
-#: Pairs of points and facets that are compared at once.
+#: Maximum number of point-facet pairs that are compared at once.
 _AT_ONCE = 1 << 20
-#: Seconds between two messages about the progress.
+#: Seconds between two progress messages.
 _SAID_EVERY = 0.5
-#: Facets of a shape whose comparison with a finer tessellation may take many seconds.
+#: Number of facets above which the comparison with a finer tessellation may take many seconds.
 _MANY_FACETS = 2000
-#: Cells along the longest side of a face, by which its points are compared.
+#: Number of grid cells along the longest side of a face, for grouping its points.
 _CELLS = 32
 
 
@@ -60,7 +62,7 @@ class StepError(Exception):
 
 @dataclass
 class Measured:
-    """The chord error of one mesh, in metres, and how it was found."""
+    """The chord error of one mesh in metres, and the number of faces for each measure."""
 
     chord_error: float = 0.0
     exact: int = 0
@@ -68,7 +70,7 @@ class Measured:
     compared: int = 0
 
     def take(self, error: float, how: str) -> None:
-        """Takes in one face."""
+        """Adds the error of one face."""
         self.chord_error = max(self.chord_error, error)
         setattr(self, how, getattr(self, how) + 1)
 
@@ -82,13 +84,13 @@ class Glb:
 
     @classmethod
     def parse(cls, data: bytes) -> "Glb":
-        """Takes a file apart."""
+        """Splits a file into its chunks."""
         length = struct.unpack_from("<I", data, 12)[0]
         document = json.loads(data[20 : 20 + length])
         return cls(document, data[28 + length :])
 
     def to_bytes(self) -> bytes:
-        """Puts it together again."""
+        """Returns the bytes of the file."""
         text = json.dumps(self.document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         binary = self.binary + b"\0" * (-len(self.binary) % 4)
@@ -97,7 +99,7 @@ class Glb:
         return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
 
     def numbers(self, accessor: int) -> NDArray[Any]:
-        """The rows of an accessor."""
+        """Returns the rows of an accessor."""
         found = self.document["accessors"][accessor]
         view = self.document["bufferViews"][found["bufferView"]]
         kind = np.dtype(
@@ -113,7 +115,7 @@ class Glb:
 
 
 def _across(points: Points, origin: Any, axis: Any) -> tuple[Points, Points]:
-    """Points in the plane across an axis, and their heights along it."""
+    """Projects points to the plane perpendicular to an axis; returns also the heights along it."""
     axis = np.asarray(axis, dtype=np.float64)
     axis = axis / np.linalg.norm(axis)
     u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
@@ -124,7 +126,7 @@ def _across(points: Points, origin: Any, axis: Any) -> tuple[Points, Points]:
 
 
 def _nearest(point: Points, facets: Points) -> Points:
-    """The distances of points from facets (n x 3 x d, of 2 or 3 dimensions): all that broadcast."""
+    """Returns the distances of points from facets (n x 3 x d, d = 2 or 3), with broadcasting."""
     a, b, c = facets[..., 0, :], facets[..., 1, :], facets[..., 2, :]
     best = np.full(np.broadcast_shapes(point.shape[:-1], a.shape[:-1]), np.inf)
     for p, q in ((a, b), (b, c), (c, a)):
@@ -132,11 +134,11 @@ def _nearest(point: Points, facets: Points) -> Points:
         length = np.maximum((way * way).sum(-1), np.finfo(float).tiny)
         t = np.clip(((point - p) * way).sum(-1) / length, 0.0, 1.0)
         best = np.minimum(best, np.linalg.norm(point - p - t[..., None] * way, axis=-1))
-    # Where the foot of the perpendicular lies within the facet.
+    # The distance from the plane counts if the foot of the perpendicular is inside the facet.
     u, v, w = b - a, c - a, point - a
     uu, uv, vv = (u * u).sum(-1), (u * v).sum(-1), (v * v).sum(-1)
     wu, wv, area = (w * u).sum(-1), (w * v).sum(-1), uu * vv - uv * uv
-    # Facets without an area have their sides alone.
+    # For facets without an area only the sides count.
     whole = np.where(area > 0, area, 1.0)
     s, t = (wu * vv - wv * uv) / whole, (wv * uu - wu * uv) / whole
     inside = (area > 0) & (s >= 0) & (t >= 0) & (s + t <= 1)
@@ -145,17 +147,17 @@ def _nearest(point: Points, facets: Points) -> Points:
 
 
 def _round(radius: float, corners: Points, nearest: Points) -> float:
-    """The error of facets whose points are ``nearest`` to the farthest corner from the centre."""
+    """Returns the error on a sphere or circle, from distances of corners and nearest points."""
     return float(max(radius - nearest.min(), np.abs(corners - radius).max()))
 
 
 def on_surface(surface: dict[str, Any], facets: Points) -> tuple[float, str]:
-    """The largest distance of facets from the surface they stand for, and how that was found.
+    """Returns the largest distance of facets from their surface, and the kind of measure.
 
     Parameters
     ----------
     surface : dict
-        Its ``type``, and its lengths and directions by name.
+        The ``type`` of the surface, with its lengths and directions by name.
     facets : array of shape (n, 3, 3)
 
     Returns
@@ -180,22 +182,22 @@ def on_surface(surface: dict[str, Any], facets: Points) -> tuple[float, str]:
     if kind == "cone":
         flat, height = _across(points, surface["apex"], surface["axis"])
         angle = surface["semi_angle"]
-        # On either side of the apex.
+        # The cone continues on both sides of the apex.
         away = np.linalg.norm(flat, axis=-1) * np.cos(angle) - np.abs(height) * abs(np.sin(angle))
     elif kind == "torus":
         flat, height = _across(points, surface["center"], surface["axis"])
         ring = np.linalg.norm(flat, axis=-1) - surface["major_radius"]
         away = np.hypot(ring, height) - surface["minor_radius"]
     else:
-        raise StepError(f"the surface {kind} is not known")
+        raise StepError(f"unknown surface type {kind}")
     return float(np.abs(away).max()), "sampled"
 
 
 def beside(fine: Points, facets: Points) -> float:
-    """The largest distance of the corners of a finer tessellation from coarse facets.
+    """Returns the largest distance of the corners of a finer tessellation from coarse facets.
 
-    Corners are taken by the cells of a grid. Of the facets those are looked at whose boxes are no
-    farther from a cell's corners than some facet is for certain.
+    Corners are grouped by the cells of a grid. For each cell only facets are examined whose boxes
+    are not farther away than an upper bound of the nearest distance.
     """
     corners = np.unique(fine.reshape(-1, 3), axis=0)
     low = corners.min(axis=0)
@@ -220,7 +222,7 @@ def beside(fine: Points, facets: Points) -> float:
 
 @dataclass
 class Face:
-    """A tessellated face, in millimetres: facets name points by their numbers."""
+    """A tessellated face in millimetres; facets refer to points by index."""
 
     shape: Any = field(repr=False)
     surface: dict[str, Any] | None
@@ -228,22 +230,22 @@ class Face:
     facets: NDArray[np.int64]
 
     def corners(self) -> Points:
-        """Returns the corners of the facets as the file will have them, in single precision."""
+        """Returns the corners of the facets in single precision, as they are written."""
         written = (self.points / PER_METRE).astype(np.float32).astype(np.float64) * PER_METRE
         return np.asarray(written[self.facets])
 
 
 @dataclass
 class Progress:
-    """Messages about the work on one shape after another, on standard error."""
+    """Progress messages about the conversion of shapes, on standard error."""
 
     shape: str = ""
     said: float = field(default_factory=time.monotonic)
 
     def say(self, what: str, is_long: bool = False) -> None:
-        """Says what is done next if it takes long, or if the last message is some time ago.
+        """Prints the next operation if it takes long or the last message is some time ago.
 
-        OpenCASCADE does not let other threads run, so the message comes before its work.
+        OpenCASCADE does not let other threads run, so the message precedes the operation.
         """
         if is_long or time.monotonic() - self.said > _SAID_EVERY:
             self.said = time.monotonic()
@@ -277,7 +279,7 @@ def _xyz(triple: Any) -> list[float]:
 
 
 def _surface(face: Any) -> dict[str, Any] | None:
-    """Returns the surface of a face if distances from it are known, in the form of `on_surface`."""
+    """Returns the surface of a face in the form of `on_surface`; None for free-form surfaces."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
@@ -319,7 +321,7 @@ def _surface(face: Any) -> dict[str, Any] | None:
 
 
 def _explored(shape: Any, kind: Any) -> Iterator[Any]:
-    """Yields the shapes of a kind that a shape is made of."""
+    """Yields the sub-shapes of a kind in a shape."""
     from OCP.TopExp import TopExp_Explorer
 
     explorer = TopExp_Explorer(shape, kind)
@@ -329,7 +331,7 @@ def _explored(shape: Any, kind: Any) -> Iterator[Any]:
 
 
 def _tessellated(shapes: list[Any], chord: float, angle: float) -> list[Face]:
-    """Tessellates the faces of shapes together, so that neighbours share their corners."""
+    """Tessellates the faces of shapes together, so that neighbours share corners."""
     from OCP.BRep import BRep_Builder, BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.BRepTools import BRepTools
@@ -382,7 +384,7 @@ class Node:
     children: list["Node"] = field(default_factory=list)
 
     def leaves(self) -> "Iterator[Node]":
-        """Yields the leaves below, or itself."""
+        """Yields the leaves below this node, or the node itself."""
         if self.is_leaf:
             yield self
         for child in self.children:
@@ -390,7 +392,7 @@ class Node:
 
 
 def _entry(label: Any) -> str:
-    """Returns the place of a label in its document, which identifies it."""
+    """Returns the entry of a label in its document, which identifies the label."""
     from OCP.TCollection import TCollection_AsciiString
     from OCP.TDF import TDF_Tool
 
@@ -400,10 +402,10 @@ def _entry(label: Any) -> str:
 
 
 class Product:
-    """The product tree of a STEP file, as OpenCASCADE's document (XCAF) has it."""
+    """The product tree of a STEP file, from OpenCASCADE's document (XCAF)."""
 
     def __init__(self, path: Path) -> None:
-        """Reads a file, and the external files that it names."""
+        """Reads a file and the external files that it references."""
         from OCP.IFSelect import IFSelect_ReturnStatus
         from OCP.Interface import Interface_Static
         from OCP.STEPCAFControl import STEPCAFControl_Reader
@@ -418,18 +420,19 @@ class Product:
         reader.SetNameMode(True)
         reader.SetColorMode(True)
         Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
-        # Part 21 allows ASCII and escapes alone. Some programs write UTF-8, others their code page.
+        # Part 21 allows only ASCII and escapes. Some programs write UTF-8, others their code
+        # page.
         Interface_Static.SetCVal_s("read.step.codepage", _encoding(path.read_bytes()))
         done = IFSelect_ReturnStatus.IFSelect_RetDone
-        # External files are found by the absolute path alone.
+        # The reader finds external files only if the path is absolute.
         if reader.ReadFile(str(path.resolve())) != done:
             raise StepError(
-                f"{path}: OpenCASCADE cannot read it; export it once more as STEP AP214"
+                f"{path}: OpenCASCADE cannot read the file; export it again as STEP AP214"
             )
         _check_external_files(path, reader.Reader().WS(), set())
-        _say(f"{path}: building its product tree")
+        _say(f"{path}: building the product tree")
         if not reader.Transfer(self.document):
-            raise StepError(f"{path}: OpenCASCADE finds no shape in it")
+            raise StepError(f"{path}: OpenCASCADE finds no shape in the file")
         self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
         self.colours = XCAFDoc_DocumentTool.ColorTool_s(self.document.Main())
         sessions = [reader.Reader().WS()]
@@ -437,7 +440,8 @@ class Product:
             name = file.GetName().ToCString()
             if file.GetLoadStatus() != done:
                 raise StepError(
-                    f"{path}: cannot read its external file {name}; put it beside the source"
+                    f"{path}: cannot read its external file {name}; "
+                    "put it into the folder of the source"
                 )
             sessions.append(file.GetWS())
         self.assemblies = {
@@ -459,7 +463,7 @@ class Product:
                     yield _entry(placed.Father())
 
     def roots(self) -> list[Node]:
-        """Returns the nodes that no other one holds."""
+        """Returns the nodes that have no parent."""
         from OCP.collections import Sequence_TDF_Label
 
         free = Sequence_TDF_Label()
@@ -467,7 +471,7 @@ class Product:
         return [self._node(label, False) for label in free]
 
     def _node(self, label: Any, is_within: bool) -> Node:
-        """Returns a node and all nodes below it; ``is_within`` a part, or not."""
+        """Returns a node and all nodes below it; ``is_within`` is set inside a part."""
         from OCP.collections import Sequence_TDF_Label
         from OCP.TDF import TDF_Label
         from OCP.TopLoc import TopLoc_Location
@@ -477,13 +481,15 @@ class Product:
         is_placed = XCAFDoc_ShapeTool.GetReferredShape_s(label, of)
         of = of if is_placed else label
         place = XCAFDoc_ShapeTool.GetLocation_s(label) if is_placed else TopLoc_Location()
-        # Programs number occurrences ("1", "*DIT33", "=>[0:1:1:3]"): the product's name is better.
+        # Programs number occurrences ("1", "*DIT33", "=>[0:1:1:3]"); the name of the product is
+        # better.
         names = [_name(label), _name(of)]
         told = [name for name in names if name and name[0] not in "*=" and not name.isdigit()]
         name = next(iter(told + names[::-1]))
         node = Node(name, _matrix(place), of, self._colour(label) or self._colour(of))
         node.is_leaf = not XCAFDoc_ShapeTool.IsAssembly_s(of)
-        # OpenCASCADE expands a product of several bodies too, though it holds no other product.
+        # OpenCASCADE also expands a product with several bodies, though it contains no other
+        # product.
         expanded = bool(self.assemblies) and _entry(of) not in self.assemblies
         node.is_part = not is_within and (node.is_leaf or expanded)
         if not node.is_leaf:
@@ -494,7 +500,7 @@ class Product:
         return node
 
     def _colour(self, label: Any) -> tuple[float, ...] | None:
-        """Returns the colour of a label, linear as glTF has it."""
+        """Returns the colour of a label in linear RGB, as in glTF; None without a colour."""
         from OCP.Quantity import Quantity_Color
         from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType
 
@@ -505,7 +511,7 @@ class Product:
         return None
 
     def colours_within(self, label: Any) -> list[tuple[Any, tuple[float, ...]]]:
-        """Returns the shapes of a leaf that have colours of their own, larger ones first."""
+        """Returns the shapes of a leaf with colours of their own, larger shapes first."""
         from OCP.collections import Sequence_TDF_Label
         from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
@@ -517,7 +523,7 @@ class Product:
 
 
 def _name(label: Any) -> str:
-    """Returns the name of a label, empty if it has none."""
+    """Returns the name of a label; empty if it has no name."""
     from OCP.TDataStd import TDataStd_Name
 
     name = TDataStd_Name()
@@ -525,7 +531,7 @@ def _name(label: Any) -> str:
 
 
 def _encoding(data: bytes) -> str:
-    """Returns the name that OpenCASCADE has for the encoding of a text."""
+    """Returns OpenCASCADE's name of the encoding of a text."""
     try:
         data.decode()
     except UnicodeDecodeError:
@@ -534,15 +540,15 @@ def _encoding(data: bytes) -> str:
 
 
 def _lies_beside(name: str) -> bool:
-    """Checks whether a file name leads nowhere out of its folder, on any system."""
+    """Checks whether a file name stays inside its folder, on any system."""
     parts = name.replace("\\", "/").split("/")
     return ".." not in parts and parts[0] != "" and ":" not in name
 
 
 def _check_external_files(path: Path, session: Any, known: set[Path]) -> None:
-    """Checks that the external files of a source, and those of these, lie beside it.
+    """Checks that the external files of a source, also indirect ones, are in its folder.
 
-    Nothing outside of the folder is opened. A file that is missing is left to OpenCASCADE.
+    No file outside the folder is opened. Missing files are left to OpenCASCADE.
     """
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPConstruct import STEPConstruct_ExternRefs
@@ -553,9 +559,7 @@ def _check_external_files(path: Path, session: Any, known: set[Path]) -> None:
     for number in range(1, references.NbExternRefs() + 1):
         name = str(references.FileName(number))
         if not _lies_beside(name):
-            raise StepError(
-                f"{path}: the external file {name} must lie in the folder of the source"
-            )
+            raise StepError(f"{path}: the external file {name} must be in the folder of the source")
         file = path.parent / name
         if file in known or not file.is_file():
             continue
@@ -566,7 +570,7 @@ def _check_external_files(path: Path, session: Any, known: set[Path]) -> None:
 
 
 def _quieten() -> None:
-    """Keeps OpenCASCADE's messages from standard output."""
+    """Keeps the messages of OpenCASCADE away from standard output."""
     from OCP.Message import Message
 
     for printer in list(Message.DefaultMessenger_s().Printers()):
@@ -589,7 +593,7 @@ class Writer:
     progress: Progress = field(default_factory=Progress)
 
     def shape_of(self, node: Node) -> tuple[list[Face], Measured, int]:
-        """Returns the faces of a leaf, their chord error and its number of solids; keeps them."""
+        """Returns the faces of a leaf, their chord error and its number of solids; caches them."""
         from OCP.TopAbs import TopAbs_ShapeEnum
         from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
@@ -606,7 +610,7 @@ class Writer:
         return self.shapes[entry]
 
     def write(self, roots: list[Node]) -> None:
-        """Writes all nodes; names from time to time the shape that is converted."""
+        """Writes all nodes, with progress messages about the current shape."""
         leaves = {_entry(leaf.label): leaf for root in roots for leaf in root.leaves()}
         for number, leaf in enumerate(leaves.values()):
             self.progress.shape = f"part {leaf.name!r} (shape {number + 1} of {len(leaves)})"
@@ -631,12 +635,11 @@ class Writer:
         """Returns a sentence about the parts that are left out."""
         names = ", ".join(repr(name) for name in self.left_out[:5])
         more = ", ..." if len(self.left_out) > 5 else ""
-        return (
-            f"left out, as they hold curves or points alone ({len(self.left_out)}): {names}{more}"
-        )
+        what = "left out because they contain only curves or points"
+        return f"{what} ({len(self.left_out)}): {names}{more}"
 
     def _node(self, node: Node) -> int | None:
-        """Writes a node with all below it; returns its number, ``None`` if it has no face."""
+        """Writes a node and its descendants; returns its index, ``None`` if it has no face."""
         written: dict[str, Any] = {"name": node.name}
         if node.is_part and not any(self.shape_of(leaf)[0] for leaf in node.leaves()):
             self.left_out.append(node.name)
@@ -671,7 +674,7 @@ class Writer:
         self.parts.append(told)
 
     def _mesh(self, node: Node) -> int | None:
-        """Writes the mesh of a leaf once for each colour; returns its number."""
+        """Writes the mesh of a leaf once for each colour; returns its index."""
         faces = self.shape_of(node)[0]
         key = _entry(node.label), node.colour
         if faces and key not in self.meshes:
@@ -684,7 +687,7 @@ class Writer:
         return self.meshes.get(key)
 
     def _face_colours(self, node: Node, faces: list[Face]) -> list[Any]:
-        """Returns the colour of each face: its own, its solid's or its part's."""
+        """Returns the colour of each face: its own, that of its solid or that of its part."""
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
         from OCP.TopAbs import TopAbs_ShapeEnum
 
@@ -697,7 +700,7 @@ class Writer:
         return [own.get(number, node.colour) for number in numbers]
 
     def _primitive(self, faces: list[Face], colour: Any) -> dict[str, Any]:
-        """Writes faces of one colour."""
+        """Writes faces of one colour as a primitive."""
         first = np.cumsum([0, *(len(face.points) for face in faces)])
         points = np.concatenate([face.points for face in faces]) / PER_METRE
         facets = np.concatenate([face.facets + n for face, n in zip(faces, first, strict=False)])
@@ -714,7 +717,7 @@ class Writer:
         return primitive
 
     def _accessor(self, numbers: NDArray[Any], kind: int, width: str) -> int:
-        """Writes numbers; returns the number of their accessor."""
+        """Writes numbers; returns the index of their accessor."""
         data = numbers.tobytes()
         views, accessors = self.document["bufferViews"], self.document["accessors"]
         views.append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data)})
@@ -735,13 +738,13 @@ class Writer:
 def convert(
     path: str | os.PathLike[str], chord: float = 0.05, angle: float = 0.2
 ) -> tuple[bytes, dict[str, Any]]:
-    """Tessellates a STEP file.
+    """Tessellates a STEP file and converts it to GLB.
 
     Parameters
     ----------
     path : str or os.PathLike
     chord : float
-        The chord error that is aimed at, in millimetres.
+        The intended chord error, in millimetres.
     angle : float
         The largest angle between neighbouring facets of one face, in radians.
 
@@ -749,9 +752,8 @@ def convert(
     -------
     glb : bytes
     report : dict
-        The name of each part, its number of solids, its chord error in millimetres, and the number
-        of faces for which the error was found in each way; ``left_out``, the names of the parts
-        that have no face.
+        For each part its name, its number of solids, its chord error in millimetres, and the number
+        of faces for each kind of measure; ``left_out``, the names of the parts without a face.
     """
     try:
         import OCP.STEPCAFControl  # noqa: F401
@@ -762,7 +764,7 @@ def convert(
     path = Path(path)
     with path.open("rb") as file:
         if not file.read(1024).lstrip().startswith(b"ISO-10303-21"):
-            raise StepError(f"{path}: is no STEP file: it does not begin with ISO-10303-21")
+            raise StepError(f"{path}: not a STEP file: it does not begin with ISO-10303-21")
     _say(f"{path}: reading")
     product = Product(path)
     writer = Writer(product, chord, angle)
@@ -784,7 +786,7 @@ def _say(text: str) -> None:
 
 
 def main() -> int:
-    """The command line."""
+    """Runs the command line and returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m colltrans.step", description=__doc__)
     parser.add_argument("file", help="a STEP file")
     parser.add_argument("--chord", type=float, default=0.05, help="in millimetres (default 0.05)")
@@ -792,8 +794,8 @@ def main() -> int:
     parser.add_argument("-o", "--output", required=True, help="the GLB file to write, or -")
     arguments = parser.parse_args()
     if not (0 < arguments.chord < float("inf") and 0 < arguments.angle < float("inf")):
-        parser.error("--chord and --angle are lengths and angles above 0")
-    # Whatever a library writes to standard output must not mix with the GLB file or the report.
+        parser.error("--chord and --angle must be positive and finite")
+    # Output of a library on standard output must not mix with the GLB file or the report.
     output = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     try:

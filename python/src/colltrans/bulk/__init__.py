@@ -1,12 +1,11 @@
-"""Queries in files: one shard in, one shard out, on one machine or a cluster.
+"""Queries in files: one shard of answers for each shard of queries, on one machine or a cluster.
 
-``python -m colltrans.bulk QUERIES OUT`` is the program; :func:`answer_table` is what it does to a
-table, for pipelines of one's own (``ray.data.Dataset.map_batches``).
+``python -m colltrans.bulk QUERIES OUT`` is the program. :func:`answer_table` answers one table, for
+other pipelines (``ray.data.Dataset.map_batches``).
 
-The way: ``files`` (paths and URLs) -> ``bodies`` (keys to bodies) -> ``reads`` (which columns a
-question reads) -> ``lines`` (JSON to tables) -> ``table`` (a table of queries to one of answers) ->
-``shard`` (a file to a file) -> ``engines`` (which process answers which shard) -> ``__main__``. A
-shard knows nothing of engines.
+Each module uses only those before it: ``files`` (paths and URLs), ``bodies`` (keys to bodies),
+``reads`` (columns of a question), ``lines`` (JSON to tables), ``table`` (queries to answers),
+``shard`` (file to file), ``engines`` (distribution of shards to processes), ``__main__``.
 """
 
 from colltrans.bulk.bodies import Bodies

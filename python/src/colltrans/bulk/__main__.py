@@ -1,7 +1,7 @@
-"""``python -m colltrans.bulk QUERIES OUT``: files of queries to files of answers.
+"""``python -m colltrans.bulk QUERIES OUT``: answers files of queries.
 
-Every file is a shard: its answers have its name, and stand there only when they are whole. A second
-run answers what is missing, has changed or is damaged.
+Every file is a shard. Its answers have the same file name, which appears only when they are
+complete. A second run answers shards that are missing, changed or damaged.
 """
 
 import argparse
@@ -27,33 +27,35 @@ SUFFIXES = (".parquet", ".jsonl")
 
 def arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser("python -m colltrans.bulk", description=__doc__)
-    parser.add_argument("queries", help="a Parquet file, a file of JSON lines, a folder of them")
-    parser.add_argument("out", help="a folder, or for one file a file *.parquet")
-    parser.add_argument("--bodies", help="a Parquet table of key, vertices and faces")
+    parser.add_argument("queries", help="a Parquet file, a file of JSON lines, or a folder of them")
+    parser.add_argument("out", help="a folder, or for one file of queries a file *.parquet")
+    parser.add_argument("--bodies", help="a Parquet table with columns key, vertices and faces")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--hull", action="store_true", help="take the convex hull of all meshes")
-    kind.add_argument("--solids", action="store_true", help="take all bodies as solids")
+    kind.add_argument("--solids", action="store_true", help="treat all bodies as solids")
     parser.add_argument("--question", choices=QUESTIONS, default="range")
     parser.add_argument("--solver", choices=["auto", "cta", "portal"], default="auto")
     parser.add_argument(
         "--keep",
         default="",
         metavar="A,B",
-        help="columns of the queries that the answers have too; '*' for all",
+        help="columns of the queries to copy to the answers; '*' for all",
     )
     parser.add_argument(
-        "--features", action="store_true", help="answers have what touches: its first vertices"
+        "--features", action="store_true", help="add the first vertices of the features in contact"
     )
-    parser.add_argument("--check", action="store_true", help="answer nothing: say what is whole")
+    parser.add_argument("--check", action="store_true", help="only check which shards are complete")
     parser.add_argument("--engine", choices=["local", "ray"], default="local")
-    parser.add_argument("--address", help="of a Ray cluster; one is started here without")
+    parser.add_argument(
+        "--address", help="address of a Ray cluster; by default one is started here"
+    )
     parser.add_argument(
         "--rows-per-task",
         type=int,
         metavar="N",
-        help="make shards of row groups of Parquet files, of at least so many rows each",
+        help="split Parquet files into shards of row groups with at least N rows",
     )
-    parser.add_argument("--threads", type=int, default=cores(), help="all cores by default")
+    parser.add_argument("--threads", type=int, default=cores(), help="default: all cores")
     return parser.parse_args(words)
 
 
@@ -64,7 +66,7 @@ def jobs_of(asked: argparse.Namespace) -> list[Job]:
     pairs = shards_of(asked.queries, asked.out)
     for file, target in pairs:
         if target == file:
-            raise InputError(f"{target}: holds the queries; give the answers another place")
+            raise InputError(f"{target}: contains the queries; choose another place for answers")
     jobs = [Job(file, target, options) for file, target in pairs]
     if asked.rows_per_task is None:
         return jobs
@@ -72,34 +74,34 @@ def jobs_of(asked: argparse.Namespace) -> list[Job]:
 
 
 def shards_of(queries: str, out: str) -> list[tuple[str, str]]:
-    """Files of queries, and where their answers go."""
+    """Returns the files of queries with the files for their answers."""
     queries, out = files.absolute(queries), files.absolute(out)
     if files.is_folder(queries):
         if PurePath(queries) in (PurePath(out), *PurePath(out).parents):
-            raise InputError(f"{out}: is in the folder of the queries, and would be read as some")
+            raise InputError(f"{out}: must not be in the folder of the queries")
         names = [name for name in files.names_in(queries) if name.endswith(SUFFIXES)]
         if not names:
-            raise InputError(f"{queries}: holds no file *.parquet or *.jsonl")
+            raise InputError(f"{queries}: contains no file *.parquet or *.jsonl")
         sources = [files.join(queries, name) for name in names]
     elif queries.endswith(SUFFIXES) and files.exists(queries):
         sources, names = [queries], [PurePath(queries).name]
         if out.endswith(".parquet"):
             return [(queries, out)]
     else:
-        raise InputError(f"{queries}: no folder, and no file *.parquet or *.jsonl")
+        raise InputError(f"{queries}: not a folder, and not a file *.parquet or *.jsonl")
     answers = [name.removesuffix(".jsonl").removesuffix(".parquet") + ".parquet" for name in names]
     if len(set(answers)) < len(answers):
-        raise InputError(f"{queries}: two files have one name but for their suffix")
+        raise InputError(f"{queries}: two file names differ only in their suffix; rename one")
     return list(zip(sources, (files.join(out, name) for name in answers), strict=True))
 
 
 def parts_of(job: Job, rows: int) -> Iterator[Job]:
-    """Yields runs of row groups of `rows` rows or more, each with a file of answers of its own.
+    """Yields runs of row groups with at least `rows` rows, each with its own file of answers.
 
-    A file that cannot be read stays one shard, because the report of that shard says why.
+    A file that cannot be read stays one shard, because the report of the shard has the reason.
     """
     if rows < 1:
-        raise InputError("--rows-per-task: at least one")
+        raise InputError("--rows-per-task: must be at least 1")
     begins, count = [0], 0
     counts = row_counts(job) if job.queries.endswith(".parquet") else []
     for number, group in enumerate(counts):
@@ -118,7 +120,7 @@ def parts_of(job: Job, rows: int) -> Iterator[Job]:
 
 
 def row_counts(job: Job) -> list[int]:
-    """Returns the number of rows of each row group, none of a Parquet file that cannot be read."""
+    """Returns the number of rows of each row group; empty if the file cannot be read."""
     try:
         with files.local(job.queries) as file:
             metadata = metadata_of(job.queries, file)
@@ -135,10 +137,10 @@ def metadata_of(name: str, file: object) -> pq.FileMetaData:
 
 
 def rows_of(job: Job) -> int:
-    """How many rows a shard has; of one that cannot be read none, which its report tells."""
+    """Returns the number of rows of a shard; 0 if it cannot be read, which its report explains."""
     try:
         if files.is_url(job.queries):
-            return 0  # It is not fetched for the sake of this.
+            return 0  # Not worth fetching the file.
         if job.queries.endswith(".parquet"):
             metadata = metadata_of(job.queries, job.queries)
             groups = range(*(job.groups or (0, metadata.num_row_groups)))
@@ -150,7 +152,7 @@ def rows_of(job: Job) -> int:
 
 
 class Progress:
-    """A line a second on the standard error: rows, rate, time left."""
+    """Prints a line each second on standard error: rows, rate, time left."""
 
     def __init__(self, total: int) -> None:
         self.total, self.rows, self.began = total, 0, time.perf_counter()
@@ -173,16 +175,16 @@ class Progress:
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Answers all shards.
+    """Answers all shards and returns the exit code.
 
-    Returns 0 if every row has an answer, 5 if some have none, 2 if some shards could not be
-    answered (or, of ``--check``, are not whole) or nothing could be begun, 130 after Ctrl-C.
+    The code is 0 if every row has an answer, 5 if some have none, 2 if some shards were not
+    answered (or with ``--check`` are incomplete) or nothing could start, 130 after Ctrl-C.
     """
     asked = arguments(words)
     try:
         return run(asked)
     except KeyboardInterrupt:
-        print("interrupted; the same words go on from here", file=sys.stderr)
+        print("interrupted; the same command continues from here", file=sys.stderr)
         return 130
     except (ColltransError, ModuleNotFoundError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
@@ -195,7 +197,7 @@ def main(words: Sequence[str] | None = None) -> int:
 def run(asked: argparse.Namespace) -> int:
     jobs = jobs_of(asked)
     if asked.threads < 1:
-        raise InputError("--threads: at least one")
+        raise InputError("--threads: must be at least 1")
     queries = files.absolute(asked.queries)
     folder = queries if files.is_folder(queries) else files.parent(queries)
     table = files.absolute(asked.bodies) if asked.bodies else None
@@ -224,7 +226,7 @@ def counted(reports: Iterator[Report], progress: Progress) -> Iterator[Report]:
 
 
 def told(reports: Iterator[Report], jobs: list[Job], progress: Progress) -> int:
-    """Says what became of all shards; the exit code."""
+    """Prints a summary of all shards; returns the exit code."""
     rows = errors = skipped = failed = 0
     for report in reports:
         rows, errors = rows + report.rows, errors + report.errors

@@ -1,4 +1,4 @@
-"""Keys to bodies: from a table of bodies, or from mesh files."""
+"""Bodies by their keys, from a table of bodies or from mesh files."""
 
 import hashlib
 import threading
@@ -20,14 +20,14 @@ Body: TypeAlias = ConvexPolyhedron | Solid | ColltransError
 
 @dataclass(frozen=True)
 class Doubled:
-    """The row of a key that a table has twice, so that no body is meant."""
+    """A row whose key occurs twice in its table, so that it defines no body."""
 
     table: str
 
 
-#: A row of a table: where it is, and its number there; None when its body is built.
+#: A row of a table: its batch and its index there; None after its body is built.
 Row: TypeAlias = tuple[Any, int] | Doubled | None
-#: Bytes of a table that are let go of together, when all bodies in them are built: about.
+#: Approximate number of bytes after which memory of built rows is released.
 PIECE = 1 << 22
 
 
@@ -38,14 +38,14 @@ class Bodies:
     Attributes
     ----------
     table : str or None
-        A Parquet file with the columns ``key``, ``vertices`` (lists of three numbers each) and, if
-        they are not hulls of points, ``faces`` (lists of vertex indices). Without it a key is the
-        path of a mesh file, relative to ``folder``. All may be URLs that fsspec knows.
+        A Parquet file with the columns ``key``, ``vertices`` (lists of three numbers) and, unless
+        bodies are hulls of points, ``faces`` (lists of vertex indices). Without a table a key is
+        the path of a mesh file relative to ``folder``. All paths may be URLs for fsspec.
     folder : str
     hull : bool
-        Take the convex hull of all meshes.
+        Whether to take the convex hull of all meshes.
     solids : bool
-        Take all as solids, which need not be convex; each has faces then.
+        Whether to treat all bodies as solids, which need not be convex. Each body then needs faces.
     """
 
     table: str | None = None
@@ -59,25 +59,25 @@ class Bodies:
 
     def __post_init__(self) -> None:
         if self.hull and self.solids:
-            raise InputError("hull, solids: a body is taken as one of them")
+            raise InputError("hull and solids are both set; set only one of them")
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
         if self._rows is not None and None in self._rows.values():
-            kept["_rows"] = None  # What has been built is no more in the table: it is read again.
+            kept["_rows"] = None  # Rows of built bodies are gone: the table is read again.
         return {**kept, "_built": {}}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.RLock())
 
     def get(self, keys: Iterable[Any]) -> list[Body]:
-        """The bodies of these keys; for one that cannot be built the reason."""
+        """Returns the bodies of these keys, or the error of a body that cannot be built."""
         keys = list(keys)
         with self._lock:
             missing = [key for key in dict.fromkeys(keys) if key not in self._built]
             if missing:
                 rows, gone = self.read_table(), 0
-                # They are built without the interpreter's lock.
+                # Bodies are built without the interpreter's lock.
                 with ThreadPoolExecutor(min(len(missing), cores())) as pool:
                     for taken in pool.map(lambda key: self._make(key, rows), missing):
                         gone += taken
@@ -87,7 +87,7 @@ class Bodies:
             return [self._built[key] for key in keys]
 
     def _make(self, key: Any, rows: dict[str, Row]) -> int:
-        """Builds a body, and lets go of its row; how many bytes of numbers that had, about."""
+        """Builds a body and releases its row; returns the approximate size of the row in bytes."""
         body = self._built[key] = self._build(key, rows)
         if rows.get(key) is None or isinstance(rows[key], Doubled):
             return 0
@@ -95,12 +95,12 @@ class Bodies:
         return 0 if isinstance(body, ColltransError) else body.nbytes // 4
 
     def read_table(self) -> dict[str, Row]:
-        """The rows of the table, if there is one, by their keys.
+        """Returns the rows of the table by their keys; empty without a table.
 
         Raises
         ------
         ColltransError
-            A table that is none.
+            The table cannot be read.
         """
         with self._lock:
             if self._rows is None:
@@ -109,17 +109,17 @@ class Bodies:
             return self._rows
 
     def share(self) -> None:
-        """Reads the table, if there is one; copies of these read it no more.
+        """Reads the table, if there is one, so that copies of this object do not read it again.
 
-        They build what they need, from numbers that all processes of a machine share where copies
-        go through shared memory (Arrow's arrays do, in Ray's object store).
+        Copies build the bodies that they need. Their numbers are shared by all processes of a
+        machine if copies go through shared memory, as Arrow arrays do in Ray's object store.
         """
         with self._lock:
             self.read_table()
             self.digest(())
 
     def digest(self, keys: Iterable[Any]) -> str:
-        """What the bodies of these keys are made of, as a hash."""
+        """Returns a hash of the sources of these bodies."""
         with self._lock:
             if self.table is not None:
                 return self._digest(self.table)
@@ -138,7 +138,7 @@ class Bodies:
     def _build(self, key: Any, rows: dict[str, Row]) -> Body:
         try:
             if not isinstance(key, str):
-                raise InputError("no key of a body")
+                raise InputError("the key of a body is not a text")
             if self.table is not None:
                 return self._of_row(rows.get(key), key)
             with files.local(files.join(self.folder, key)) as file:
@@ -156,7 +156,7 @@ class Bodies:
         faces = _faces(batch.column("faces"), row) if "faces" in batch.schema.names else None
         if self.solids:
             if faces is None:
-                raise InputError("a solid has faces")
+                raise InputError("a solid needs faces, but the table has no column 'faces'")
             return Solid(vertices, faces)
         if faces is None or self.hull:
             return ConvexPolyhedron(vertices)
@@ -164,12 +164,12 @@ class Bodies:
 
 
 def doubled_name(names: list[str]) -> str | None:
-    """Returns a name that is there more than once."""
+    """Returns a name that occurs more than once; None if there is none."""
     return next((name for name in names if names.count(name) > 1), None)
 
 
 def texts_of(column: Any) -> list[str | None]:
-    """Returns the texts of a column, None for a null and for bytes that are not UTF-8."""
+    """Returns the texts of a column; None for a null and for bytes that are not UTF-8."""
     import pyarrow as pa
 
     try:
@@ -187,14 +187,14 @@ def _decoded(text: bytes | None) -> str | None:
 
 
 def _release() -> None:
-    """Gives back what Arrow keeps for later: after a table has been read, its size again."""
+    """Releases memory that Arrow caches; after reading a table it is as large as the table."""
     import pyarrow as pa
 
     pa.default_memory_pool().release_unused()
 
 
 def rows_of(table: str) -> dict[str, Row]:
-    """Where the rows of a table are, by their keys."""
+    """Returns the batch and row of each key of a table."""
     import pyarrow as pa
 
     found: dict[str, Row] = {}
@@ -228,21 +228,21 @@ def _batches(file: Any, table: str) -> Iterator[Any]:
 
 
 def _lists(column: Any, row: int, name: str) -> Any:
-    """The lists in a row of lists of lists; None for a row without."""
+    """Returns the lists in a row of a column of lists; None for a null."""
     import pyarrow as pa
 
     if pa.types.is_null(column.type) or not column[row].is_valid:
         return None
     if not pa.types.is_nested(column.type):
-        raise InputError(f"{name}: no lists of numbers, but {column.type}")
+        raise InputError(f"{name}: not lists of numbers, but {column.type}")
     lists = column[row].values
     if not any(
         of(lists.type)
         for of in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
     ):
-        raise InputError(f"{name}: no lists of numbers, but {lists.type}")
+        raise InputError(f"{name}: not lists of numbers, but {lists.type}")
     if lists.null_count:
-        raise InputError(f"{name}: number {_first(lists.is_null())} of them is null")
+        raise InputError(f"{name}: entry {_first(lists.is_null())} is null")
     return lists
 
 
@@ -251,22 +251,22 @@ def _first(mask: Any) -> int:
 
 
 def _runs(lists: Any) -> tuple[Any, Any]:
-    """All numbers of lists, and where each list begins and the last one ends."""
+    """Returns all numbers of lists, the start of each list, and the last end."""
     numbers = lists.flatten().to_numpy(zero_copy_only=False)
     lengths = lists.value_lengths().to_numpy(zero_copy_only=False)
     return numbers, np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
 
 
 def _vertices(column: Any, row: int) -> Any:
-    """An array of shape (N, 3), a view where Arrow has the numbers one behind the other."""
+    """Returns an array of shape (N, 3), without a copy if Arrow stores the numbers contiguously."""
     lists = _lists(column, row, "points")
     if lists is None:
-        raise InputError("points: none")
+        raise InputError("points: missing")
     numbers, ends = _runs(lists)
     if (others := np.diff(ends) != 3).any():
         point = _first(others)
         told = f"point {point} has {ends[point + 1] - ends[point]}, not 3"
-        raise InputError(f"points: no array of numbers: {told}")
+        raise InputError(f"points: not an array of numbers: {told}")
     return numbers.reshape(-1, 3)
 
 

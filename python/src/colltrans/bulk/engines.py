@@ -1,6 +1,6 @@
-"""Which thread or process answers which shard.
+"""Distribution of shards to threads and processes.
 
-A shard that cannot be read or written is a report with a failure, and the others go on.
+A shard that cannot be read or written has a report with a failure; the others continue.
 """
 
 import threading
@@ -14,12 +14,12 @@ from colltrans.bulk.shard import Job, Report, answer_shard
 from colltrans.errors import ColltransError, as_error
 
 Answer = Callable[..., Report]
-#: Bodies of this process, by the object that they came with.
+#: The bodies of this process, by the object reference that they came from.
 _CACHE: dict[str, Bodies] = {}
 
 
 def attempt(answer: Answer, job: Job, *rest: Any) -> Report:
-    """Returns the report of a shard. Whatever is raised, a panic included, is its failure."""
+    """Returns the report of a shard. Any exception, including a panic, becomes its failure."""
     try:
         return answer(job, *rest)
     except BaseException as error:
@@ -33,9 +33,10 @@ def local(
     progress: Callable[[int], None] = lambda rows: None,
     answer: Answer = answer_shard,
 ) -> Iterator[Report]:
-    """Shards on threads of this process, as they are done: the work is done without its lock.
+    """Answers shards on threads of this process, without the interpreter's lock.
 
-    A shard has as many threads to itself as there are for each shard.
+    Yields the reports as shards finish. If there are more threads than shards, each shard uses
+    several.
     """
     stopped = threading.Event()
 
@@ -52,7 +53,7 @@ def local(
             for future in as_completed(futures):
                 yield future.result()
         finally:
-            # Ctrl-C: the others end with the batch they are at.
+            # After Ctrl-C the other shards end with their current batch.
             stopped.set()
             pool.shutdown(wait=False, cancel_futures=True)
 
@@ -64,19 +65,19 @@ def ray(
     address: str | None = None,
     answer: Answer = answer_shard,
 ) -> Iterator[Report]:
-    """Shards as tasks of a Ray cluster, as they are done; here, if there is no address.
+    """Answers shards as tasks of a Ray cluster; without an address a local one is started.
 
-    Files must be where every node finds them under the same name. The table of bodies is read here
-    and goes once through the object store, where all workers of a node read the same numbers; each
-    builds the bodies that it needs, and keeps them. Meshes are read by every worker. A task whose
-    worker dies is done again, up to five times.
+    Yields the reports as shards finish. Every node must find the files under the same names. The
+    table of bodies is read here and copied once to the object store, which all workers of a node
+    share. Each worker builds and caches the bodies that it needs. Meshes are read by every worker.
+    A task whose worker dies is repeated up to five times.
     """
     import ray
 
     if not ray.is_initialized():
         here: dict[str, Any] = {"num_cpus": workers, "include_dashboard": False}
         here["object_store_memory"] = 256 << 20
-        # Without an address Ray would take a cluster that it finds on this machine.
+        # Without an address Ray would connect to a cluster that runs on this machine.
         ray.init(address=address or "local", log_to_driver=False, **({} if address else here))
     bodies.share()
     store = ray.put(bodies)
@@ -99,7 +100,7 @@ def ray(
 
 
 def _kept(reference: Any) -> Bodies:
-    """The bodies of a reference, fetched once in a worker."""
+    """Returns the bodies of a reference, which a worker fetches once."""
     import ray
 
     name = reference.hex()

@@ -1,11 +1,11 @@
-"""Files by their paths, and by URLs that fsspec knows (``s3://bucket/shard.parquet``).
+"""Files by path, and by URL for fsspec (``s3://bucket/shard.parquet``).
 
-A URL is fetched whole to a temporary file, and what is made for one is put there whole. So all else
-reads and writes local files.
+A URL is copied to a temporary file for reading, and a temporary file is copied to the URL after
+writing. All other modules read and write local files.
 
-Invariant: a file that is :func:`made` has its name only when it is whole. A local one is written
-under another name beside its place and renamed. While it is written it is locked, and the lock goes
-with the process, however that ends: :func:`clean` knows which such files nobody writes any more.
+Invariant: a file that :func:`made` writes has its name only when it is complete. A local file is
+written under another name in the same folder and renamed. While it is written it is locked, and the
+lock ends with the process. Therefore :func:`clean` can identify abandoned files.
 """
 
 import hashlib
@@ -22,7 +22,7 @@ from colltrans.errors import ColltransError, InputError
 
 try:
     import fcntl
-except ImportError:  # Windows, where a file that is open cannot be removed.
+except ImportError:  # Windows, where open files cannot be removed.
     fcntl = None  # type: ignore[assignment]
 
 
@@ -31,7 +31,7 @@ def is_url(path: str) -> bool:
 
 
 def join(folder: str, name: str) -> str:
-    """A name relative to a folder; a path that needs none, or a URL, as it is."""
+    """Joins a folder and a relative name; absolute paths and URLs stay as they are."""
     if is_url(name):
         return name
     return f"{folder.rstrip('/')}/{name}" if is_url(folder) else str(Path(folder, name))
@@ -54,7 +54,7 @@ def exists(path: str) -> bool:
 
 
 def _is(path: str, here: Callable[[Path], bool], there: str) -> bool:
-    """What a path says of itself, or the file system of a URL of it."""
+    """Evaluates a check of a path, or of a URL with its file system."""
     if not is_url(path):
         return here(Path(path))
     with _told(path):
@@ -63,9 +63,9 @@ def _is(path: str, here: Callable[[Path], bool], there: str) -> bool:
 
 
 def names_in(folder: str) -> list[str]:
-    """The files of a folder and of those in it, by their names relative to it, in order.
+    """Returns the sorted names of all files in a folder and its subfolders, relative to it.
 
-    What begins with a dot is left out.
+    Names that begin with a dot are left out.
     """
     if is_url(folder):
         with _told(folder):
@@ -79,7 +79,7 @@ def names_in(folder: str) -> list[str]:
 
 @contextmanager
 def local(path: str) -> Iterator[Path]:
-    """The file here: itself, or of a URL a copy for as long as it is needed."""
+    """Provides a local file: the file itself, or a temporary copy of a URL."""
     if not is_url(path):
         yield Path(path)
         return
@@ -93,12 +93,12 @@ def local(path: str) -> Iterator[Path]:
 
 @contextmanager
 def made(path: str) -> Iterator[BufferedRandom]:
-    """A file to be written, which has its name when it is whole: after this, without an error.
+    """Opens a file for writing, which gets its name when this context ends without an error.
 
     Raises
     ------
     ColltransError
-        A file that cannot be written: what is raised in between as an ``OSError``, too.
+        The file cannot be written. An ``OSError`` raised in the context is converted too.
     """
     try:
         with _made(path) as file:
@@ -126,7 +126,7 @@ def _made(path: str) -> Iterator[BufferedRandom]:
         with file:
             yield file
             file.flush()
-            if fcntl:  # As long as it is locked nobody takes it for abandoned.
+            if fcntl:  # While it is locked, nothing else treats it as abandoned.
                 partial.replace(target)
         if not fcntl:
             partial.replace(target)
@@ -135,21 +135,21 @@ def _made(path: str) -> Iterator[BufferedRandom]:
 
 
 def clean(paths: Iterable[str]) -> int:
-    """Removes what others have begun beside these files and will not end; how many there were."""
+    """Removes abandoned partial files next to these files; returns their number."""
     folders = {Path(path).parent for path in paths if not is_url(path)}
     partials = (file for folder in folders for file in folder.glob(".*.partial"))
     return sum(_removed_if_abandoned(file) for file in partials)
 
 
 def digest(path: str | Path) -> str:
-    """SHA-256 of a local file."""
+    """Returns the SHA-256 of a local file."""
     with Path(path).open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextmanager
 def _told(url: str) -> Iterator[None]:
-    """What goes wrong with a URL, of whatever kind, by its name."""
+    """Adds the URL to the message of any exception."""
     try:
         yield
     except ColltransError:
@@ -159,30 +159,30 @@ def _told(url: str) -> Iterator[None]:
 
 
 def _system(url: str) -> tuple[Any, str]:
-    """The file system of a URL, and where in it this is."""
+    """Returns the file system of a URL, and the path in it."""
     import fsspec
 
     try:
         system, inside = fsspec.core.url_to_fs(url)
-    except (ImportError, ValueError) as error:  # A kind nobody knows, or whose package is missing.
+    except (ImportError, ValueError) as error:  # Unknown protocol, or missing package.
         raise InputError(f"{url}: {error}") from error
-    system.invalidate_cache()  # Others write there, too.
+    system.invalidate_cache()  # Other processes write there too.
     return system, str(inside).rstrip("/") or "/"
 
 
 def _begun(target: Path) -> tuple[Path, BufferedRandom]:
-    """A new locked file beside a place."""
+    """Creates and locks a new partial file next to the target."""
     while True:
         partial = target.with_name(f".{target.name}.{uuid.uuid4().hex}.partial")
         file = partial.open("x+b")
-        # Somebody who cleans may have come between.
+        # Another process may have removed the file before it was locked.
         if _locked(file) is not False and (not fcntl or os.fstat(file.fileno()).st_nlink > 0):
             return partial, file
         file.close()
 
 
 def _locked(file: BufferedRandom) -> bool | None:
-    """Whether it could be locked; None where files cannot be."""
+    """Tries to lock a file; returns None if files cannot be locked."""
     if fcntl is None:
         return None
     try:

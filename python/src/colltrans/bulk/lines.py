@@ -1,6 +1,6 @@
-"""Lines of JSON to tables of queries.
+"""Tables of queries from lines of JSON.
 
-A line that is no query is a row all the same, with the reason in the column :data:`REFUSED`.
+An invalid line is a row too, with the reason in the column :data:`REFUSED`.
 """
 
 import json
@@ -14,16 +14,16 @@ import pyarrow as pa
 
 from colltrans.bulk.reads import EVERYTHING, LISTS, SIDES, Reads
 
-#: The column of why a line is no query.
+#: The column with the reason why a line is invalid.
 REFUSED = "colltrans: refused"
-#: The column of the whole line, of which everything is kept.
+#: The column with the complete line, if everything is kept.
 LINE = "line"
-#: A screw or a turn as `colltrans batch` reads it, by the fields that follow each other.
+#: Fields of motions in lines, and the columns of screws that they become.
 MOTIONS = {"moving_motion": "moving_screw", "fixed_motion": "fixed_screw"}
 
 
 def tables_of(path: Path, reads: Reads, rows: int) -> Iterator[Any]:
-    """The lines of a file in tables of so many rows, at least one; blank lines are skipped."""
+    """Yields tables with up to `rows` lines of a file, at least one; skips blank lines."""
     with path.open("rb") as file:
         lines = ((number, line) for number, line in enumerate(file, 1) if line.strip())
         first = True
@@ -33,7 +33,7 @@ def tables_of(path: Path, reads: Reads, rows: int) -> Iterator[Any]:
 
 
 def _row(line: bytes, number: int, reads: Reads) -> dict[str, Any]:
-    """A query of a line; of one that is none why it is refused."""
+    """Returns the query of a line, or the reason why it is invalid."""
     row = None
     kept: dict[str, Any] = {}
     if EVERYTHING in reads.kept:
@@ -52,15 +52,15 @@ def _id_of(row: Any) -> str | None:
 
 
 def _as_text(row: Any, name: str) -> str | None:
-    """A field that is kept, as JSON: lines have fields of one name and any kind."""
+    """Returns a kept field as JSON, because lines may have any kind of value in it."""
     found = row.get(name) if isinstance(row, dict) else None
     return None if found is None else json.dumps(found)
 
 
 def _query(row: Any, reads: Reads) -> dict[str, Any]:
-    """What a line asks. What it asks beside that is refused, for its answer would be another."""
+    """Returns the query of a line. Unread fields that would change the answer are errors."""
     if not isinstance(row, dict):
-        raise ValueError("no object")
+        raise ValueError("not an object")
     row = {MOTIONS.get(name, name): _plain(value, name) for name, value in row.items()}
     if (stray := reads.stray(row)) is not None:
         raise ValueError(stray)
@@ -78,23 +78,23 @@ def _query(row: Any, reads: Reads) -> dict[str, Any]:
 
 
 def _plain(value: Any, name: str) -> Any:
-    """A motion as the numbers of its screw; anything else as it is."""
+    """Returns a motion as the numbers of its screw; other values are returned unchanged."""
     if name not in MOTIONS:
         return value
     kind = next(iter(value)) if isinstance(value, dict) and len(value) == 1 else None
     if kind not in ("screw", "turn") or not isinstance(value[kind], dict):
-        raise ValueError(f'{name}: no {{"screw": ...}} and no {{"turn": ...}}')
+        raise ValueError(f'{name}: neither {{"screw": ...}} nor {{"turn": ...}}')
     fields = {"rise": 0.0, **value[kind]} if kind == "turn" else value[kind]
     if "degrees" in fields and "radians" not in fields:
         (degrees,) = _numbers([fields["degrees"]], f"{name}.degrees")
         fields = {**fields, "radians": math.radians(degrees)}
         del fields["degrees"]
     if fields.keys() != {"point", "axis", "radians", "rise"}:
-        raise ValueError(f"{name}: {kind!r} has other fields")
+        raise ValueError(f"{name}: {kind!r} has missing or unknown fields")
     point, axis = (_numbers(fields[part], f"{name}.{part}") for part in ("point", "axis"))
     rest = _numbers([fields["radians"], fields["rise"]], f"{name}.radians")
     if (len(point), len(axis)) != (3, 3):
-        raise ValueError(f"{name}: a point and an axis have three numbers each")
+        raise ValueError(f"{name}: point and axis must have three numbers each")
     return [*point, *axis, *rest]
 
 
@@ -102,7 +102,7 @@ def _key(value: Any, side: str) -> str:
     if isinstance(value, dict) and value.keys() == {"mesh"}:  # As `colltrans batch` reads it.
         value = value["mesh"]
     if not isinstance(value, str):
-        raise ValueError(f'{side}: a body is a key, or an object with nothing but "mesh"')
+        raise ValueError(f'{side}: expected a key, or an object with the field "mesh" only')
     value.encode()
     return value
 
@@ -111,19 +111,19 @@ def _numbers(value: Any, name: str) -> list[float]:
     if name in LISTS and isinstance(value, dict):  # A pose as `colltrans batch` reads it.
         parts = {"translation": [0, 0, 0], "rotation": [0, 0, 0, 1]}
         if name == "direction" or value.keys() - parts.keys():
-            raise ValueError(f"{name}: no list of numbers, and no pose")
+            raise ValueError(f"{name}: neither a list of numbers nor a pose")
         each = {**parts, **value}
         place, turn = (_numbers(part, f"{name}.{of}") for of, part in each.items())
         if (len(place), len(turn)) != (3, 4):
             raise ValueError(f"{name}: {len(place)} and {len(turn)} numbers, not 3 and 4")
         return place + turn
     if not isinstance(value, list) or any(type(x) not in (int, float) for x in value):
-        raise ValueError(f"{name}: no list of numbers")
+        raise ValueError(f"{name}: not a list of numbers")
     return [float(x) for x in value]
 
 
 def _table(rows: list[dict[str, Any]], reads: Reads) -> Any:
-    """The same columns for any rows."""
+    """Builds a table that has the same columns for any rows."""
     whole = [LINE] if EVERYTHING in reads.kept else []
     kinds = dict.fromkeys((*reads.unread, *whole, "id", *SIDES, REFUSED), pa.string())
     lists = [name for name in reads.columns if name in LISTS]

@@ -1,4 +1,4 @@
-"""Which columns a question reads, which are kept for the answers, and which are refused."""
+"""The columns that a question reads, keeps for the answers, or rejects."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from difflib import get_close_matches
 SIDES = ("moving", "fixed")
 POSES = ("moving_pose", "fixed_pose")
 SCREWS = ("moving_screw", "fixed_screw")
-#: Lists of numbers, and how many there may be; all other columns are numbers.
+#: Columns of lists, and the accepted numbers of entries; all other columns are numbers.
 LISTS = {
     "direction": (3,),
     **dict.fromkeys(POSES, (3, 7)),
@@ -15,7 +15,7 @@ LISTS = {
 }
 _OF_MOTIONS = (*POSES, *SCREWS, "keep", "tolerance")
 _OF_CASTS = ("direction", *POSES, "graze_tolerance", "keep")
-#: Beside the bodies and ``id``, what each question reads of convex bodies.
+#: The columns that each question of convex bodies reads, besides the bodies and ``id``.
 OF_CONVEX: dict[str, tuple[str, ...]] = {
     "contact": _OF_CASTS,
     "range": _OF_CASTS,
@@ -27,10 +27,10 @@ OF_CONVEX: dict[str, tuple[str, ...]] = {
     "motion": _OF_MOTIONS,
     "motion_clearance": _OF_MOTIONS,
 }
-#: The same of solids, which are not asked all of these.
+#: The columns of each question of solids, which lack some questions.
 OF_SOLIDS = {name: columns for name, columns in OF_CONVEX.items() if columns is not _OF_CASTS}
 OF_SOLIDS["clearance"] = ("direction", *POSES, "keep", "tolerance")
-#: What changes an answer where it is read (``colltrans batch`` does): never kept unread.
+#: Columns that would change an answer (``colltrans batch`` reads them): never kept unread.
 MEANT = {
     "query",
     "solver",
@@ -48,21 +48,21 @@ MEANT = {
     "moving_motion",
     "fixed_motion",
 }
-#: Of :attr:`Reads.kept`: all columns.
+#: Entry of :attr:`Reads.kept` that stands for all columns.
 EVERYTHING = "*"
 
 
 @dataclass(frozen=True)
 class Reads:
-    """What is done with the columns of a table of queries.
+    """The use of the columns of a table of queries.
 
     Attributes
     ----------
     question : str
     columns : tuple of str
-        Those that it reads beside ``id``, ``moving`` and ``fixed``.
+        Columns that the question reads, besides ``id``, ``moving`` and ``fixed``.
     kept : tuple of str
-        Those that go into the answers as they are.
+        Columns that are copied to the answers.
     """
 
     question: str
@@ -71,20 +71,23 @@ class Reads:
 
     @property
     def known(self) -> tuple[str, ...]:
-        """What has a place, whether it is kept or not."""
+        """Returns the columns with a meaning, whether they are kept or not."""
         return ("id", *SIDES, *self.columns)
 
     @property
     def unread(self) -> tuple[str, ...]:
-        """What is kept by its name alone."""
+        """Returns the columns that are kept but not read."""
         return tuple(name for name in self.kept if name not in (EVERYTHING, *self.known))
 
     def stray(self, names: Collection[str]) -> str | None:
-        """Why these columns are refused, if they are: by the names of all that nobody wants."""
+        """Returns an error that names columns neither read nor kept; None if there are none."""
         unread = [name for name in names if name not in self.known]
         if meant := [name for name in unread if name in MEANT]:
             which = ", ".join(map(repr, meant))
-            return f"the question {self.question!r} does not read {which}, and would be another"
+            return (
+                f"the question {self.question!r} does not read {which}, which would change "
+                "the answer; remove it"
+            )
         if EVERYTHING in self.kept:
             return None
         stray = [name for name in unread if name not in self.kept]

@@ -1,9 +1,9 @@
-"""A file of queries to a file of answers.
+"""Answers a file of queries with a file of answers.
 
-Invariant: an answer file has its name only when it is whole. Its metadata say what it answers (the
-queries' bytes, the bodies, the choices, the version), so a second run knows which are done, and two
-that answer the same shard do no harm. They have a digest of all its bytes, too, so that one that
-has changed since is found; and pages have the checksums that readers of Parquet can look at.
+Invariant: a file of answers has its name only when it is complete. Its metadata identify what it
+answers (bytes of the queries, bodies, options, version). A second run therefore skips completed
+shards, and two runs of the same shard do no harm. The metadata also have a digest of all bytes,
+which detects later changes. Pages have the checksums that readers of Parquet can verify.
 """
 
 import hashlib
@@ -25,26 +25,26 @@ from colltrans.bulk.reads import SIDES
 from colltrans.bulk.table import Options, answer_table, column_of
 from colltrans.errors import ColltransError
 
-#: Rows that are in memory at once.
+#: Number of rows in memory at once.
 BATCH = 65_536
-#: In the metadata: what is answered.
+#: Metadata key of the fingerprint of the query.
 FINGERPRINT = b"colltrans"
-#: In the metadata: SHA-256 of the file with zeros in the place of this.
+#: Metadata key of the SHA-256 of the file with zeros in place of the digest.
 DIGEST = b"colltrans: sha256 of all but these 64 digits"
 ZEROS = b"0" * 64
 
 
 @dataclass(frozen=True)
 class Job:
-    """One shard: where its queries are and where its answers go.
+    """One shard: the places of its queries and of its answers.
 
     Attributes
     ----------
     queries, answers : str
-        Paths, or URLs that fsspec knows.
+        Paths, or URLs for fsspec.
     options : Options
     groups : tuple of int or None
-        Of a Parquet file the row groups from the first up to the second, without it; None for all.
+        For a Parquet file the half-open range of its row groups; None for all.
     """
 
     queries: str
@@ -55,17 +55,17 @@ class Job:
 
 @dataclass(frozen=True)
 class Report:
-    """What became of a shard.
+    """The result of a shard.
 
     Attributes
     ----------
     job : Job
     rows, errors : int
-        How many rows it has, and how many of them have no answer.
+        Number of rows, and of rows without an answer.
     skipped : bool
-        Whether it had been answered before.
+        Whether the shard had been answered before.
     failure : str or None
-        Why there are no answers at all.
+        The reason if the shard has no answers.
     """
 
     job: Job
@@ -78,14 +78,14 @@ class Report:
 def answer_shard(
     job: Job, bodies: Bodies, progress: Callable[[int], None] = lambda rows: None
 ) -> Report:
-    """Answers a shard, unless that has been done and its answers are whole.
+    """Answers a shard, unless its answers exist and are complete.
 
     Parameters
     ----------
     job : Job
     bodies : Bodies
     progress : callable
-        Called with the number of rows that have been answered since it was called last.
+        Called with the number of rows that were answered since the last call.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def answer_shard(
     Raises
     ------
     ColltransError
-        Queries that cannot be read, or answers that cannot be written, with their names.
+        The queries cannot be read, or the answers cannot be written; the message has their names.
     """
     with _named(job), files.local(job.queries) as queries:
         fingerprint = _fingerprint(job, queries, bodies)
@@ -109,7 +109,7 @@ def answer_shard(
 
 
 def check_shard(job: Job, bodies: Bodies) -> Report:
-    """Whether there are answers to a shard, and whole: of these queries, and as they were written.
+    """Checks whether the answers of a shard exist, belong to its queries and are undamaged.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def check_shard(job: Job, bodies: Bodies) -> Report:
     Returns
     -------
     Report
-        Its ``failure`` says what is wrong.
+        Its ``failure`` is the reason if they are not.
     """
     with _named(job), files.local(job.queries) as queries:
         return _finished(job, _fingerprint(job, queries, bodies))
@@ -127,7 +127,7 @@ def check_shard(job: Job, bodies: Bodies) -> Report:
 
 @contextmanager
 def _named(job: Job) -> Iterator[None]:
-    """What goes wrong with a shard, by its name."""
+    """Adds the name of the shard to the message of an exception."""
     try:
         yield
     except (ColltransError, pa.ArrowException, OSError) as error:
@@ -142,7 +142,7 @@ def _write(
     fingerprint: str,
     progress: Callable[[int], None],
 ) -> tuple[int, int]:
-    """Answers all rows; how many there are, and how many of them are errors."""
+    """Answers all rows; returns their number and the number of errors."""
     writer, rows, errors = None, 0, 0
     try:
         for batch in _batches(queries, job, bodies):
@@ -167,21 +167,21 @@ def _write(
 
 
 def _finished(job: Job, fingerprint: str) -> Report:
-    """Of a shard that has been answered already; a failure says that it has not."""
+    """Returns the report of existing answers; a failure means that they cannot be used."""
     if not files.exists(job.answers):
-        return Report(job, failure=f"{job.answers} is not there")
+        return Report(job, failure=f"{job.answers} does not exist")
     with files.local(job.answers) as answers:
         if (damage := _damage(answers)) is not None:
             return Report(job, failure=f"{job.answers} {damage}")
         metadata = pq.read_metadata(answers).metadata
     if metadata.get(FINGERPRINT) != fingerprint.encode():
-        told = f"{job.answers} is of other queries, bodies or choices, or of another version"
+        told = f"{job.answers} belongs to other queries, bodies, options or another version"
         return Report(job, failure=told)
     return Report(job, int(metadata[b"rows"]), int(metadata[b"errors"]), skipped=True)
 
 
 def _seal(file: BinaryIO) -> None:
-    """Writes the digest into its place."""
+    """Writes the digest to its place in the file."""
     place = _place_of_digest(file)
     assert place is not None
     found = _digest_around(file, place)
@@ -190,20 +190,20 @@ def _seal(file: BinaryIO) -> None:
 
 
 def _damage(path: Path) -> str | None:
-    """What is wrong with the bytes of a file that should have its digest."""
+    """Compares a file with its digest; returns a description of the damage, or None."""
     with path.open("rb") as file:
         place = _place_of_digest(file)
         if place is None:
-            return "is no whole file of answers"
+            return "is not a complete file of answers"
         found = _digest_around(file, place)
         file.seek(place)
         if file.read(len(ZEROS)) != found.encode():
-            return "is damaged: its bytes are not those that were written"
+            return "is damaged: its bytes have changed since it was written"
     return None
 
 
 def _place_of_digest(file: BinaryIO) -> int | None:
-    """Where in a Parquet file the digest stands: in its footer, behind its name."""
+    """Returns the offset of the digest, which follows its name in the footer."""
     size = file.seek(0, 2)
     file.seek(max(0, size - 8))
     length = int.from_bytes(file.read(4), "little")
@@ -213,7 +213,7 @@ def _place_of_digest(file: BinaryIO) -> int | None:
     file.seek(start)
     footer = file.read(length)
     named = max(0, footer.rfind(DIGEST))
-    # Between them stand the kind and the length of the value.
+    # The kind and the length of the value are between the name and the digest.
     found = re.compile(re.escape(DIGEST) + rb".{1,4}?([0-9a-f]{64})", re.DOTALL).match(
         footer, named
     )
@@ -221,7 +221,7 @@ def _place_of_digest(file: BinaryIO) -> int | None:
 
 
 def _digest_around(file: BinaryIO, place: int) -> str:
-    """SHA-256 of the file with zeros in the place of the digest."""
+    """Returns the SHA-256 of the file with zeros in place of the digest."""
     found = hashlib.sha256()
     file.seek(0)
     for end in (place, None):
@@ -248,7 +248,7 @@ def _fingerprint(job: Job, queries: Path, bodies: Bodies) -> str:
 
 
 def _digest_of(queries: Path, groups: tuple[int, int] | None) -> str:
-    """SHA-256 of a file, or of these row groups and of what their columns are."""
+    """Returns the SHA-256 of a file, or of these row groups with their schema."""
     if groups is None:
         return files.digest(queries)
     with pq.ParquetFile(queries) as parquet:
@@ -264,7 +264,7 @@ def _digest_of(queries: Path, groups: tuple[int, int] | None) -> str:
 
 
 def _keys(queries: Path, job: Job, bodies: Bodies) -> set[str]:
-    """The keys of all bodies of a file."""
+    """Returns the keys of all bodies in a file."""
     keys: set[str] = set()
     for batch in _batches(queries, job, bodies, list(SIDES)):
         for side in SIDES:
@@ -275,7 +275,7 @@ def _keys(queries: Path, job: Job, bodies: Bodies) -> set[str]:
 def _batches(
     queries: Path, job: Job, bodies: Bodies, columns: list[str] | None = None
 ) -> Iterator[Any]:
-    """The queries of a file; of one without any an empty batch, which has its columns."""
+    """Yields the queries of a file in batches; an empty file yields one empty batch."""
     try:
         if queries.suffix != ".parquet":
             yield from lines.tables_of(queries, job.options.reads(bodies.solids), BATCH)
@@ -286,4 +286,4 @@ def _batches(
                 yield file.schema_arrow.empty_table()
             yield from file.iter_batches(BATCH, row_groups=groups, columns=columns)
     except (OSError, pa.ArrowException) as error:
-        raise ColltransError(f"cannot be read: {error}") from error
+        raise ColltransError(f"cannot read the queries: {error}") from error

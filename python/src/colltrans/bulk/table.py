@@ -1,4 +1,4 @@
-"""A table of queries to a table of answers."""
+"""Answers a table of queries with a table of answers."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -29,31 +29,31 @@ QUESTIONS: dict[str, Any] = {
     "motion": motion_many,
     "motion_clearance": motion_clearance_many,
 }
-#: Of bodies along a direction.
+#: Questions with a direction.
 CASTS = ("contact", "range", "clearance")
-#: Whose answers have features.
+#: Questions whose answers have features.
 FEATURED = (*CASTS, "distance", "motion", "motion_clearance")
-#: Of bodies that turn.
+#: Questions of moving bodies.
 MOTIONS = ("motion", "motion_clearance")
-#: A screw that moves nothing: what a row without one does.
+#: A screw without motion, for rows that have none.
 REST = (0, 0, 0, 0, 0, 1, 0, 0)
 
 
 @dataclass(frozen=True)
 class Options:
-    """What is asked of every row.
+    """The question of every row, with its options.
 
     Attributes
     ----------
     question : str
     solver : str
-        As for :func:`colltrans.cast_many`.
+        See :func:`colltrans.cast_many`.
     threads : int or None
-        None stands for all processors.
+        Number of threads; None for all processors.
     keep_columns : tuple of str
-        Columns of the queries that the answers have too; ``"*"`` stands for all.
+        Columns of the queries to copy to the answers; ``"*"`` stands for all.
     features : bool
-        Whether the answers have ``moving_feature`` and ``fixed_feature``, as of
+        Whether to add ``moving_feature`` and ``fixed_feature``; see
         :class:`colltrans.columns.Table`.
     """
 
@@ -76,43 +76,42 @@ class Options:
     def __post_init__(self) -> None:
         if self.features and self.question not in FEATURED:
             told = ", ".join(FEATURED)
-            raise InputError(f"features: the question {self.question!r} has none; {told} do")
+            raise InputError(f"features: the question {self.question!r} has none; accepted: {told}")
 
     def reads(self, solids: bool) -> Reads:
-        """What is done with the columns, of convex bodies or of solids."""
+        """Returns the use of the columns, for convex bodies or solids."""
         known = OF_SOLIDS if solids else OF_CONVEX
         if self.question not in known:
-            of = "of solids" if solids else "there is"
-            raise InputError(f"no question {self.question!r} {of}: {', '.join(known)}")
+            of = " of solids" if solids else ""
+            raise InputError(f"unknown question {self.question!r}{of}; known: {', '.join(known)}")
         return Reads(self.question, known[self.question], self.keep_columns)
 
 
 def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> Any:
-    """Answers of a table of queries.
+    """Answers a table of queries.
 
     Parameters
     ----------
     queries : pyarrow.Table or pyarrow.RecordBatch
-        Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and, if there
-        are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``keep`` and
-        ``id``. A distance, a depth and *within* have no ``direction``, the last has ``length``. A
-        motion, or how far along one, has ``moving_screw``, ``fixed_screw`` or both, 8 numbers each:
-        a point and the axis, the angle in radians and the rise; and ``keep`` or ``tolerance``, if
-        there is one. A clearance of solids has ``tolerance`` in the place of ``graze_tolerance``;
-        *directions* may have one.
+        Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and optionally
+        ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``keep`` and ``id``.
+        *distance*, *depth* and *within* have no ``direction``; *within* has ``length``. *motion*
+        and *motion_clearance* have ``moving_screw``, ``fixed_screw`` or both, with 8 numbers each
+        (point, axis, angle in radians, rise), and optionally ``keep`` or ``tolerance``. A clearance
+        of solids has ``tolerance`` instead of ``graze_tolerance``; *directions* may have it.
     bodies : Bodies
     options : Options
 
     Returns
     -------
     pyarrow.Table
-        The column ``id``, if there is one, those that are kept, and those of
-        :meth:`Table.to_arrow`. A row that cannot be answered has the outcome *error* and a message.
+        The column ``id`` if there is one, kept columns, and the columns of :meth:`Table.to_arrow`.
+        A row that cannot be answered has the outcome *error* and a message.
 
     Raises
     ------
     InputError
-        A column that is missing, or of another kind, or that nobody reads or keeps.
+        A column is missing, has the wrong type, or is neither read nor kept.
     """
     reads = options.reads(bodies.solids)
     if (doubled := doubled_name(queries.schema.names)) is not None:
@@ -134,7 +133,7 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
 
 
 def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
-    """The question, asked of columns as arrays."""
+    """Converts the columns to arrays and runs the query."""
     names = queries.schema.names
     arguments: dict[str, Any] = {}
     sides: list[Any] = []
@@ -167,7 +166,7 @@ def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
 
 
 def _motion(queries: Any) -> dict[str, Any]:
-    """What bodies do in each row."""
+    """Returns the motions of the bodies in each row."""
     names = queries.schema.names
     screws = [name for name in SCREWS if name in names]
     if not screws:
@@ -187,7 +186,7 @@ def _motion(queries: Any) -> dict[str, Any]:
 def _solid_clearances(
     queries: Any, sides: list[Any], arguments: dict[str, Any], options: Options
 ) -> Table[Any]:
-    """As solids, whatever they are: the columns are the same if no body could be built."""
+    """Answers clearances as solids, with the same columns even if no body could be built."""
     names = queries.schema.names
     moving, fixed, direction = sides
     asked = solid_casts(
@@ -226,7 +225,7 @@ def _is_list(kind: Any) -> bool:
 
 
 def _vectors(queries: Any, name: str, widths: tuple[int, ...]) -> np.ndarray[Any, Any]:
-    """Lists of numbers as a table; rows that are none, or of another length, are NaN."""
+    """Converts lists of numbers to a table; invalid rows and rows of other lengths are NaN."""
     column = column_of(queries, name)
     if isinstance(column, pa.ChunkedArray):
         column = column.combine_chunks()

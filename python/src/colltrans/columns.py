@@ -210,7 +210,7 @@ class Table(Generic[Answer_co]):
         return self.outcome.counts()
 
     def to_arrow(self) -> "pyarrow.Table":
-        """Converts the columns to a table of pyarrow without copies; vectors become fixed-size lists.
+        """Converts the columns to a pyarrow table without copies; vectors become fixed-size lists.
 
         Raises
         ------

@@ -1,8 +1,9 @@
 """Pictures of bodies, queries and answers as figures of plotly.
 
 The bodies are drawn solid at the start, and the moving body as a ghost at the contact, with the
-contact point and the normal. They need ``pip install colltrans[pictures]``. A notebook shows a figure, a script opens a browser, and a saved file
-needs nothing else. No screen or graphics card is needed.
+contact point and the normal. Pictures need ``pip install colltrans[pictures]``. A notebook shows a
+figure, a script opens a browser, and a saved file needs nothing else. No screen or graphics card is
+needed.
 """
 
 from collections.abc import Iterator

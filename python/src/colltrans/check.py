@@ -1,63 +1,67 @@
-"""``python -m colltrans.check PROOF``: checks what ``--save-proof`` has written, in fractions.
+"""``python -m colltrans.check PROOF``: checks a file of ``--save-proof`` in exact fractions.
 
-Nothing of the library is used and nothing is rounded: every number of the file is the fraction
-that its 64 bits are, and bodies stand where the nine entries of their poses put them. It needs no
-other package: ``python check.py PROOF`` does without the extension, too. It is one file, long as it
-is, so that who does not trust the library can take this file alone, read it from its beginning, as
-each part uses what stands before it, and run it anywhere.
+The checker shares no code with the library and rounds nothing: every number of the file is the
+fraction that its 64 bits represent, and the nine entries of a pose place a body. It needs no other
+package, so ``python check.py PROOF`` works without the extension. It is a single file on purpose: a
+reader who does not trust the library can read it from top to bottom, because each part uses only
+earlier parts, and run it anywhere.
 
-With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points in the world:
+Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in the world.
 
-- *Lower bound.* ``(min_Q n.q - max_P n.p) / n.d`` over all vertices, for ``n.d > 0``: no earlier
-  translation makes the bodies meet. The one claimed must not be larger.
-- *Upper bound.* The weighted mean of the three differences ``q - p`` of the certificate comes as
-  near to the line ``t d`` as rounding explains. The bound claimed must not be smaller than where it
-  does, with what rounding makes of it. Where the line meets the triangle of the differences by
-  then, the bodies do meet; that is said.
-- *Slides.* ``(max_P n'.p - min_Q n'.q) / |n'|`` over all vertices, for what of ``n`` is across the
-  direction, ``n' = n (d.d) - d (n.d)``: so much do the bodies overlap seen along it, at most. The
-  one claimed must not be smaller.
-- *Bodies.* The faces of a convex body, if it has any, close up around all vertices, and none of
-  their neighbours is far above them. No proof leans on them. Where they may not be those of the
-  hull of the vertices, that is said to be unchecked: ``colltrans verify`` refuses such a body.
-- *Separation.* ``n'`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p`` proves that the bodies
-  never meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` that their shadows are so far apart. The
-  margin claimed must not be larger.
-- *A gap to be kept*, ``g``: where bodies are said to meet, they are as near as that. ``g |n|`` is
-  taken from what planes prove, and at the upper bound the weighted mean of the pairs is as near. Of
-  solids it is not checked where two facets are.
-- *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a gap; the weighted means of the
-  pairs, one of each body, a distance that is not exceeded. Of a distance of 0 the differences of
+- *Lower bound.* ``(min_Q n.q - max_P n.p) / n.d`` over all vertices, for ``n.d > 0``: the bodies do
+  not meet at any smaller translation. The claimed bound must not be larger.
+- *Upper bound.* The weighted mean of the three differences ``q - p`` of the certificate is as near
+  to the line ``t d`` as rounding explains. The claimed bound must not be smaller than the ``t`` of
+  this point plus an allowance for rounding. If the line also meets the triangle of the differences
+  by then, the bodies do meet exactly, which is reported.
+- *Slides.* ``(max_P n'.p - min_Q n'.q) / |n'|`` over all vertices, where ``n' = n (d.d) - d (n.d)``
+  is the part of ``n`` across the direction: an upper bound of the overlap of the shadows. The
+  claimed overlap must not be smaller.
+- *Bodies.* The faces of a convex body, if it has any, form a closed surface with all vertices, and
+  no neighbouring vertex is far above a face. No proof depends on the faces. If they may not be
+  those of the hull of the vertices, this is reported as unchecked; ``colltrans verify`` rejects
+  such a body.
+- *Separation.* ``n'`` is orthogonal to ``d``. ``min_Q n'.q > max_P n'.p`` proves that the bodies
+  never meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` is a lower bound of the distance of their
+  shadows. The claimed margin must not be larger.
+- *A minimum gap* ``g`` replaces contact by a distance: ``g |n|`` is subtracted from what planes
+  prove, and at the upper bound the weighted means of the pairs are at most ``g`` apart. For solids
+  it is not checked where two facets are.
+- *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a lower bound. The weighted means
+  of the pairs, one point of each body, prove an upper bound. For a distance of 0 the differences of
   the pairs enclose the origin.
-- *Depth.* A translation of ``max_Q d.q - min_P d.p`` along the direction ``d`` parts the bodies. A
-  closed surface of triangles between differences ``q - p`` winds around the origin, seen along a
-  ray that meets none of its edges; none of its triangles is nearer than is claimed, or turned away.
-- *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
-  said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
-  distance of solids the two points are checked, not that no others are nearer.
-- *One body among many.* Every obstacle is looked at: by what is claimed of it, as above, or else by
-  the boxes of both bodies, how far they are apart or when one meets the other on its way.
-- *Motions.* Of bodies that turn, at each plane's time, the gap that it leaves over all vertices,
-  with sine and cosine to 36 digits; between two planes how far the heights of vertices bend from
-  their chords, or how far each rises on its arc; at the time of contact, a surface around the
-  origin as for a depth.
-- *Motions of solids.* Their facets, moved inwards as the file has them, in the parts that it names:
-  every entry of the cover, by a normal of its own that parts two boxes or facets at both ends of
-  its time and, bent as above, in between; lists of planes; that no shell lies inside the other
-  solid when the motion begins, along a ray; the edge that passes through a facet. Not checked is
-  how the tolerance moves facets: how far they were moved is said.
-- *Paths of joints.* Of convex bodies, at each plane's place, the gap that it leaves over all
-  vertices, the joints one after the other; between two of a row how far heights bend; over rows how
-  far points can move. Of solids the same for pairs of boxes and facets; that no body is inside
-  another one at the start, along a ray.
+- *Depth.* A translation of ``max_Q d.q - min_P d.p`` along the direction ``d`` separates the
+  bodies. A closed surface of triangles between differences ``q - p`` winds around the origin, which
+  a ray that meets none of its edges shows. No triangle is nearer than claimed, or turned away.
+- *Solids.* A plane between them as above, and the translation at which the two stopping facets
+  meet. The claims about all other facets (the covers) are not checked here; ``colltrans verify``
+  checks them. For a distance of solids the two points are checked, but not that no others are
+  nearer.
+- *One body among many.* Every obstacle is checked: by its claim, as above, or else by the bounding
+  boxes of both bodies, with their distance or the translation at which they meet.
+- *Motions.* For bodies that turn: at the time of each plane, its gap over all vertices, with sine
+  and cosine to 36 digits; between two planes, a bound of the curvature of the heights, or of the
+  rise of each vertex on its arc; at the time of contact, a surface around the origin as for a
+  depth.
+- *Motions of solids.* Their facets, moved inwards as stored in the file, in the tree that it names.
+  Every entry of the cover is checked: its normal separates two boxes or facets at both ends of its
+  time and, with a curvature bound, in between; or a list of planes does. A ray shows that no shell
+  is inside the other solid at the start, and an edge passes through a facet at the contact. It is
+  not checked that the tolerance moves facets as stored; the displacement is reported.
+- *Joint paths.* For convex bodies: at each plane its gap over all vertices, with the joints
+  composed one after the other; between two planes of a row a curvature bound of the heights; across
+  rows a bound of the motion of points. For solids the same with pairs of boxes and facets. A ray
+  shows that no body is inside another one at the start.
 - *All directions.* Two facets ``f`` and ``g`` block an open cone: ``n_f.d > 0``, ``n_g.d < 0``, and
-  ``d`` inside the cone of the nine differences ``g - f``. A cell that they block has its four
-  corners in it. What cones leave of any other cell is convex pieces, whose corners are vector
-  products; nothing else blocks them, as pairs of boxes and then of facets show. Not checked is that
-  the bodies do not overlap where they are, and how they were shrunk.
+  ``d`` inside the cone of the nine differences ``g - f``. A blocked cell has its four corners in
+  the cone. The remainder of any other cell after cones are removed consists of convex pieces, whose
+  corners are vector products. A search over pairs of boxes and then facets shows that nothing else
+  blocks them. It is not checked that the bodies do not overlap at the start, nor how they were
+  shrunk.
 
-Exit codes: 0 the proof holds, 7 what was checked of it holds (of solids, never all), 6 something
-does not, 3 the file is no proof, 1 there is nothing in it that can be checked here, 2 usage.
+Exit codes: 0 if the whole proof holds, 7 if the checked part holds (always for solids), 6 if a
+claim does not hold, 3 if the file is not a proof, 1 if nothing in it can be checked here, 2 for
+wrong usage.
 """
 
 from __future__ import annotations
@@ -79,61 +83,62 @@ Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
 Triangle: TypeAlias = tuple[Vector, Vector, Vector]
 
-#: Rounding of one operation.
+#: Rounding error of one operation.
 _U = Fraction(1, 2**53)
-#: How far the length of a unit vector may be from 1: as the library has it, and an eighth more,
-#: as it rounds lengths.
+#: Maximum deviation of the length of a unit vector from 1: the library's limit plus an eighth,
+#: because the library rounds lengths.
 _UNIT_VECTOR = 36 * _U
-#: Rounding of a coordinate, in sizes of the configuration: the library's noise.
+#: Rounding error of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
-#: A gap of so many noises or less is slight: points that are as near for certain may not be found.
-#: As the library has it, and a little more, as it rounds noises; so are the next ones.
+#: Number of noises up to which a gap is slight: points at that distance may not be found with
+#: certainty. This limit and the next ones are the library's with a small margin, because the
+#: library rounds noises.
 _SLIGHT = 8 + Fraction(1, 64)
-#: So many noises witness points may miss each other by, and so many an upper bound is above them,
-#: over ``n.d``.
+#: Numbers of noises by which witness points may miss each other, and by which an upper bound
+#: exceeds them, divided by ``n.d``.
 _MISS, _RAISE = Fraction(13, 4), Fraction(11, 4)
-#: So many where no upper bound is claimed.
+#: Number of noises by which witness points may miss each other if no upper bound is claimed.
 _MISS_WIDENED = 46
-#: The largest ``rounding`` of a contact in noises, and what is added for a normal across the
+#: The largest ``rounding`` of a contact in noises, and an allowance for a normal across the
 #: direction.
 _MOST_STATED = (63, 175)
-#: The largest coordinate, displacement or gap.
+#: Maximum magnitude of a coordinate, displacement or gap.
 MOST = 2**200
-#: Magnitudes of coordinates that are not 0.
+#: Range of magnitudes of nonzero coordinates.
 _RANGE = (Fraction(1, MOST), Fraction(MOST))
-#: No gap is to be kept.
+#: The minimum gap if there is none.
 _NO_GAP = Fraction()
-#: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``; see
+#: Maximum distance of a face from its plane, in sizes of the body, beyond its ``hull_error``; see
 #: :func:`are_own_faces`.
 _PLANE = Fraction(1, 2**20)
-#: How far a pose may be from a rotation.
+#: Maximum deviation of the products of a pose's axes from those of a rotation.
 _TURN = Fraction(1, 10**6)
 
 
-#: What reading a file that is no proof ends in; the first, numbers out of all range.
+#: Exceptions of reading a malformed file. The first one comes from numbers out of range.
 _MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 class NoProofError(ValueError):
-    """The file is not what ``--save-proof`` writes."""
+    """The file is not a proof file of ``--save-proof``."""
 
 
 class RefusedError(Exception):
-    """Something that is claimed does not hold."""
+    """A claim does not hold."""
 
 
 @dataclass
 class Report:
-    """What was found out about a proof."""
+    """The results of a check."""
 
     holds: list[str] = field(default_factory=list)
     unchecked: list[str] = field(default_factory=list)
-    #: Whether a part of what is claimed was not looked at.
+    #: Whether a part of the claims was not checked.
     partly: bool = False
 
 
 def number(value: Any) -> Fraction:
-    """The fraction that a number of the file is."""
+    """Returns a number of the file as a fraction."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise NoProofError(f"{value!r} is not a number")
     if not math.isfinite(value):
@@ -142,7 +147,7 @@ def number(value: Any) -> Fraction:
 
 
 def coordinate(value: Any) -> Fraction:
-    """A number of the range that coordinates have."""
+    """Returns a number in the range of coordinates."""
     found = number(value)
     if found and not _RANGE[0] <= abs(found) <= _RANGE[1]:
         raise NoProofError(f"{value!r} is neither 0 nor a magnitude from 2^-200 to 2^200")
@@ -150,7 +155,7 @@ def coordinate(value: Any) -> Fraction:
 
 
 def fields(value: Any, needed: str, optional: str = "") -> dict[str, Any]:
-    """An object with these fields and no others; None for an optional one that is not there."""
+    """Returns an object with exactly these fields; missing optional fields are None."""
     if not isinstance(value, dict):
         raise NoProofError(
             f"there has to be an object with {needed or optional}, not {value!r:.40}"
@@ -159,23 +164,23 @@ def fields(value: Any, needed: str, optional: str = "") -> dict[str, Any]:
     missing = [name for name in names if name not in value]
     unknown = [name for name in value if name not in (*names, *optional.split())]
     if missing or unknown:
-        raise NoProofError(f"fields are missing, {missing}, or are none of a proof, {unknown}")
+        raise NoProofError(f"missing fields {missing}, unknown fields {unknown}")
     return dict.fromkeys(optional.split()) | value
 
 
 def listed(value: Any, count: int | None = None) -> list[Any]:
-    """A list, of so many entries."""
+    """Returns a list; checks its length if ``count`` is given."""
     if not isinstance(value, list) or (count is not None and len(value) != count):
         raise NoProofError(f"{value!r:.40} is not a list" + (f" of {count}" if count else ""))
     return value
 
 
 def whole(value: Any, end: int) -> int:
-    """An index below ``end``."""
+    """Returns an index below ``end``."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise NoProofError(f"{value!r} is not an index")
     if not 0 <= value < end:
-        raise RefusedError(f"there is no number {value} of {end}")
+        raise RefusedError(f"index {value} is out of range; there are {end}")
     return value
 
 
@@ -185,13 +190,13 @@ def vector(values: Any) -> Vector:
 
 
 def place(values: Any) -> Vector:
-    """A vector whose coordinates are in their range."""
+    """Returns a vector whose coordinates are in range."""
     x, y, z = listed(values, 3)
     return coordinate(x), coordinate(y), coordinate(z)
 
 
 def one_of(of: Any, *kinds: str) -> tuple[str, Any]:
-    """Returns the name and the content of the only field of an object, one of these kinds."""
+    """Returns name and content of the only field of an object, which has one of these names."""
     if not isinstance(of, dict) or len(of) != 1 or next(iter(of)) not in kinds:
         raise NoProofError(f"there has to be one of {', '.join(kinds)}")
     ((kind, content),) = of.items()
@@ -199,31 +204,31 @@ def one_of(of: Any, *kinds: str) -> tuple[str, Any]:
 
 
 def is_text(value: Any) -> bool:
-    """Checks whether a value is a string of characters, without halves of surrogate pairs."""
+    """Checks whether a value is a string without unpaired surrogates."""
     return isinstance(value, str) and not any("\ud800" <= c <= "\udfff" for c in value)
 
 
 def node_of_tree(value: Any, end: int) -> int:
-    """Returns a node of a tree in preorder: -1, or a number of facets below ``end``."""
+    """Returns a node of a tree in preorder: -1, or a facet index below ``end``."""
     return -1 if type(value) is int and value == -1 else whole(value, end)
 
 
 def truth(value: Any) -> bool:
-    """Returns a value that is true or false."""
+    """Returns a boolean."""
     if not isinstance(value, bool):
         raise NoProofError(f"{value!r} is not true or false")
     return value
 
 
 def bounded(value: Fraction, most: int | Fraction, what: str) -> Fraction:
-    """Returns a number whose magnitude is at most this."""
+    """Returns a number if its magnitude is at most ``most``."""
     if abs(value) > most:
-        raise NoProofError(f"{what}, {float(value)!r}, is out of range")
+        raise NoProofError(f"{what} of {float(value)!r} is out of range")
     return value
 
 
 def bounded_vector(values: Any, what: str) -> Vector:
-    """Returns a vector whose components are at most 2^200."""
+    """Returns a vector whose components have magnitudes of at most 2^200."""
     x, y, z = vector(values)
     return bounded(x, MOST, what), bounded(y, MOST, what), bounded(z, MOST, what)
 
@@ -253,12 +258,12 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 
 def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> None:
-    """Checks that a surface that is not said to be open is closed: something can be inside.
+    """Checks that a surface without the mark ``open`` is closed, so that it has an interior.
 
-    As many facets are on one side of each edge as on the other, and one of them has an area.
+    The facets on both sides of each edge are equal in number, and one facet has an area.
     """
     first: dict[Vector, int] = {}
-    # Corners at one place are one corner.
+    # Corners with equal coordinates are one corner.
     names = {k: first.setdefault(points[k], k) for facet in facets for k in facet}
     sides: dict[tuple[int, int], int] = {}
     has_area = False
@@ -269,14 +274,14 @@ def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> No
             sides[side[::-1]] = sides.get(side[::-1], 0) - 1
         has_area = has_area or any(area(points, [a, b, c]))
     if any(sides.values()):
-        raise RefusedError("a surface that is not said to be open has an edge with one facet")
+        raise RefusedError("a surface not marked as open has an edge with unbalanced facets")
     if not has_area:
-        raise RefusedError("a surface that is not said to be open has no facet with an area")
+        raise RefusedError("a surface not marked as open has no facet with an area")
 
 
 @dataclass(frozen=True)
 class Body:
-    """Points in their frame, and the pose: ``R x + t``. Facets of a solid by their corners."""
+    """Points in the body frame and the pose ``R x + t``; a solid also has facets."""
 
     points: list[Vector]
     rows: Matrix
@@ -285,7 +290,7 @@ class Body:
 
     @staticmethod
     def shape(shape: Any) -> tuple[list[Vector], list[tuple[int, int, int]]]:
-        """Points in their frame, and facets."""
+        """Returns the points in the body frame, and the facets."""
         points: list[Vector] = []
         facets: list[tuple[int, int, int]] = []
         ((kind, content),) = shape.items()
@@ -297,7 +302,7 @@ class Body:
             for each in listed(content):
                 piece = fields(each, "vertices triangles", "open")
                 if not isinstance(each.get("open", False), bool):
-                    raise NoProofError("a piece is open or it is not")
+                    raise NoProofError("the field open of a piece is not a boolean")
                 base = len(points)
                 points += [place(v) for v in listed(piece["vertices"])]
                 begin = len(facets)
@@ -310,9 +315,9 @@ class Body:
                 if not each.get("open", False):
                     check_closed(points, facets[begin:])
         else:
-            raise NoProofError(f"a body is convex or made of pieces, not {kind!r}")
+            raise NoProofError(f"unknown kind of body {kind!r}; known kinds: convex, pieces")
         if not points or (kind == "pieces" and not facets):
-            raise NoProofError("a body without points or facets")
+            raise NoProofError("a body has no points or no facets")
         return points, facets
 
     @classmethod
@@ -331,14 +336,14 @@ class Body:
         return cls(points, rows, place(pose["translation"]), facets)
 
     def at(self, k: int) -> Vector:
-        """A point in the world."""
+        """Returns a point in the world."""
         v = self.points[k]
         x, y, z = (dot(row, v) for row in self.rows)
         return plus((x, y, z), self.offset)
 
     @property
     def is_convex(self) -> bool:
-        """Whether it is the hull of its points; others are made of facets."""
+        """Checks whether the body is the hull of its points; other bodies have facets."""
         return not self.facets
 
     def facet(self, k: int) -> Triangle:
@@ -346,19 +351,19 @@ class Body:
         return self.at(a), self.at(b), self.at(c)
 
     def turn(self, v: Vector) -> Vector:
-        """A direction of the frame in the world."""
+        """Rotates a vector of the body frame to the world."""
         x, y, z = (dot(row, v) for row in self.rows)
         return x, y, z
 
     def skew(self) -> Fraction:
-        """By how much products of its axes are off those of a rotation, and a rounding."""
+        """Returns a bound of the deviation of the axis products from those of a rotation."""
         products = (
             abs(dot(self.rows[i], self.rows[j]) - (i == j)) for i, j in product(range(3), repeat=2)
         )
         return max(products) + _TINY
 
     def heights(self, normal: Vector) -> Iterator[Fraction]:
-        """Of all points along a normal of the world."""
+        """Yields the heights of all points along a normal of the world."""
         columns = [
             sum((normal[r] * self.rows[r][c] for r in range(3)), Fraction()) for c in range(3)
         ]
@@ -368,14 +373,14 @@ class Body:
             yield dot(local, v) + base
 
     def reach(self) -> float:
-        """The largest distance of a point from the origin of the frame, nearly."""
+        """Returns the largest distance of a point from the origin of the frame, rounded."""
         return math.sqrt(max(float(dot(v, v)) for v in self.points))
 
 
 def described(points: list[Vector], content: Any) -> None:
-    """Whether what a file says of a convex body beside its vertices fits them."""
+    """Checks the data of a convex body besides its vertices against them."""
     inputs = [whole(k, 2**32) for k in listed(content["input_indices"])]
-    # Of a body made larger or smaller, several vertices may come from one.
+    # After shrinking or growing, several vertices may come from one input vertex.
     if len(inputs) != len(points):
         raise RefusedError("the input indices are not one for each vertex")
     error = number(content["hull_error"])
@@ -410,16 +415,17 @@ def described(points: list[Vector], content: Any) -> None:
                 raise RefusedError(f"vertex {k} is not where the faces around it are")
 
 
-#: How far vertices are from the plane of their face, and how far they are beyond their neighbours
-#: at least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
+#: Limits of :func:`are_own_faces` in largest coordinates: maximum distance of vertices from the
+#: plane of their face, and minimum distance beyond their neighbours. Within them the library
+#: certainly accepts the faces of a body.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
 
-#: How far below 0 the volume of a flat body may be by rounding, in cubes of the largest coordinate.
+#: Limit of the negative volume of a flat body by rounding, in cubes of the largest coordinate.
 _OWN_VOLUME = 48 * 2.0**-53
 
 
 def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
-    """Whether a body is so thin that rounding hides which faces it has."""
+    """Checks whether a body is so thin that rounding can hide which faces it has."""
     room = 512 * _U * Fraction(math.sqrt(max(float(dot(v, v)) for v in points)))
     for normal in (area(points, face) for face in faces):
         heights = [dot(normal, v) for v in points]
@@ -429,9 +435,10 @@ def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
 
 
 def are_own_faces(points: list[Vector], content: Any) -> bool:
-    """Whether the faces of a body are clearly those of the hull of its vertices, all corners.
+    """Checks whether the faces of a body are clearly those of the hull of its vertices.
 
-    Rounded numbers tell, as no claim hangs on it: the library refuses a body whose faces are not.
+    Rounded numbers are used because no claim depends on the result: the library rejects other
+    bodies.
     """
     faces: list[list[int]] = content["faces"]
     at = [(float(x), float(y), float(z)) for x, y, z in points]
@@ -456,7 +463,7 @@ def are_own_faces(points: list[Vector], content: Any) -> bool:
         heights = [_along(normals[k], at[a], at[v]) for v in (*faces[k], *faces[other])]
         if max(heights) > _OWN_PLANE * most or min(heights[: len(faces[k])]) < -_OWN_PLANE * most:
             return False
-        # Beyond a face, or, of a flat body, beyond both neighbours in its plane.
+        # Beyond a face or, for a flat body, beyond both neighbours in its plane.
         way = normals[k] if len(faces) > 2 else _unit_way(at[b], at[a])
         outward[a] = [p + q for p, q in zip(outward[a], way, strict=True)]
     if len(faces) == 2:
@@ -467,7 +474,7 @@ def are_own_faces(points: list[Vector], content: Any) -> bool:
         ]
         if min(turns) <= 0:
             return False
-        # The library refuses flat bodies that rounding turns inside out by more than it allows.
+        # The library rejects flat bodies with a negative volume beyond its rounding limit.
         if _rounded_volume(at, faces) < -_OWN_VOLUME * most**3:
             return False
     lengths = [math.hypot(*normal) for normal in outward]
@@ -478,14 +485,14 @@ def are_own_faces(points: list[Vector], content: Any) -> bool:
 
 
 def _unit_way(p: Sequence[float], q: Sequence[float]) -> list[float]:
-    """The direction from one point to another, rounded."""
+    """Returns the unit vector from one point to another, rounded."""
     way = [b - a for a, b in zip(p, q, strict=True)]
     length = math.hypot(*way) or math.inf
     return [x / length for x in way]
 
 
 def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, float, float]:
-    """Along the normal of a polygon, rounded."""
+    """Returns twice the area vector of a polygon, rounded."""
     (x, y, z), total = corners[0], [0.0, 0.0, 0.0]
     for (a, b, c), (p, q, r) in pairwise(corners[1:]):
         a, b, c, p, q, r = a - x, b - y, c - z, p - x, q - y, r - z
@@ -495,19 +502,19 @@ def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, flo
 
 
 def _along(normal: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
-    """How far one point is from another along a normal, rounded."""
+    """Returns the height of one point above another along a normal, rounded."""
     return sum(n * (b - a) for n, a, b in zip(normal, p, q, strict=True))
 
 
 def _rounded_volume(at: list[tuple[float, float, float]], faces: list[list[int]]) -> float:
-    """Returns the volume within a closed surface, rounded."""
+    """Returns the volume inside a closed surface, rounded."""
     x, y, z = (sum(axis) / len(at) for axis in zip(*at, strict=True))
     corners = ([at[k] for k in face] for face in faces)
     return sum(_along(_rounded_area(face), (x, y, z), face[0]) for face in corners) / 6
 
 
 def area(points: list[Vector], face: list[int]) -> Vector:
-    """Along the normal of a polygon."""
+    """Returns twice the area vector of a polygon."""
     total = (Fraction(), Fraction(), Fraction())
     for a, b in pairwise(face[1:]):
         side, other = minus(points[a], points[face[0]]), minus(points[b], points[face[0]])
@@ -516,9 +523,9 @@ def area(points: list[Vector], face: list[int]) -> Vector:
 
 
 def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | None:
-    """The least and the largest ``t`` at which ``t d`` is in the convex hull of points.
+    """Returns the least and the largest ``t`` for which ``t d`` is in the convex hull of points.
 
-    Both are taken at corners, on edges or in triangles of the points.
+    Both occur at points, on segments or in triangles of the points; None if there is no such ``t``.
     """
     square = dot(d, d)
     axis: Vector = min(
@@ -539,7 +546,7 @@ def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | No
     for i, j in combinations(range(len(points)), 2):
         a, b = shadows[i], shadows[j]
         if turn(i, j) == 0 and a[0] * b[0] + a[1] * b[1] < 0:
-            # The origin is between the two: by the coordinate that tells them apart.
+            # The origin is between the two shadows; use the coordinate in which they differ.
             k = 0 if a[0] != b[0] else 1
             share = a[k] / (a[k] - b[k])
             found.append(times[i] + share * (times[j] - times[i]))
@@ -564,7 +571,7 @@ def contact(
     which: str,
     keep: Fraction = _NO_GAP,
 ) -> None:
-    """Both bounds of a certificate between convex bodies."""
+    """Checks both bounds of a certificate between convex bodies."""
     proof = fields(proof, "normal lower pairs weights upper rounding")
     normal = vector(proof["normal"])
     unit(normal)
@@ -602,7 +609,7 @@ def contact(
         return
     if keep > _SLIGHT * noise:
         raise RefusedError(f"{which}: the witness points are not as near as {float(keep)!r}")
-    # Of so slight a gap it may be all that is proven that the bodies meet.
+    # For a slight gap the proof may only show that the bodies meet.
     if miss > (_MISS * noise) ** 2:
         raise RefusedError(f"{which}: the witness points miss each other")
     if upper < estimate + _RAISE * noise / along:
@@ -618,7 +625,7 @@ def contact(
 
 
 def stated(d: Vector, proof: Any, noise: Fraction, keep: Fraction) -> None:
-    """Whether what a certificate says of rounding, which proves nothing, is within its limits."""
+    """Checks that the stated rounding of a certificate is within limits; it proves nothing."""
     normal, rounding = vector(proof["normal"]), number(proof["rounding"])
     sideways = cross(normal, d)
     share = root_above(dot(sideways, sideways) / dot(d, d))
@@ -630,21 +637,21 @@ def stated(d: Vector, proof: Any, noise: Fraction, keep: Fraction) -> None:
 
 
 def size(moving: Body, fixed: Body) -> Fraction:
-    """No two points are farther apart."""
+    """Returns an upper bound of the distance of any two points, rounded."""
     between = minus(fixed.offset, moving.offset)
     reach = moving.reach() + fixed.reach() + math.sqrt(float(dot(between, between)))
     return max(Fraction(reach), _RANGE[0])
 
 
 def across(d: Vector, normal: Vector) -> Vector:
-    """What of a normal is orthogonal to the direction, ``d.d`` times as long."""
+    """Returns the part of a normal across the direction, scaled by ``d.d``."""
     return minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
 
 
 def are_shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector, by: Fraction) -> bool:
-    """Checks whether the part of a normal across the direction proves shadows a length apart.
+    """Checks whether the part of a normal across the direction proves a distance of the shadows.
 
-    A negative length is how far they overlap at most.
+    A negative length is an upper bound of their overlap.
     """
     unit(normal)
     if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
@@ -657,21 +664,21 @@ def are_shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector, by: 
 
 
 def shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector) -> float:
-    """How far the shadows are apart along what of a normal is across the direction, nearly."""
+    """Returns the rounded distance of the shadows along the part of a normal across ``d``."""
     level = across(d, normal)
     gap = min(fixed.heights(level)) - max(moving.heights(level))
     return float(gap) / math.sqrt(float(dot(level, level)))
 
 
 def never_near(keep: Fraction) -> str:
-    """What a plane between bodies that keeps a gap says of them."""
+    """Returns the statement that a plane between the bodies proves."""
     return f"are never as near as {float(keep)!r}" if keep else "never meet"
 
 
 def slide(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
-    """How much of the bodies, with a gap, is in each other's way, seen along the direction."""
+    """Checks the overlap of the shadows, including the gap, along the direction."""
     claim = fields(claim, "normal overlap")
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
     if not are_shadows_apart(moving, fixed, d, normal, keep - overlap):
@@ -686,7 +693,7 @@ def slide(
 def separation(
     moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
-    """A plane between convex bodies."""
+    """Checks a separating plane between convex bodies."""
     proof = fields(proof, "normal margin")
     normal, margin = vector(proof["normal"]), number(proof["margin"])
     if margin <= keep or not are_shadows_apart(moving, fixed, d, normal, margin):
@@ -698,15 +705,15 @@ def separation(
 
 
 def check_letters(cover: Any, letters: str = "mfapnxdos") -> None:
-    """Checks that a cover of pairs of facets has its form."""
+    """Checks the form of a cover of pairs of facets."""
     if not isinstance(cover, str) or set(cover) - set(letters):
-        raise NoProofError("a cover is a text of letters")
+        raise NoProofError("a cover is not a text of letters")
 
 
 def overlap_of(value: Any, counts: tuple[int, int], *others: str) -> str:
-    """Returns which kind of overlap of two solids a file names, once its form is checked.
+    """Checks the form of an overlap of two solids, and returns its kind.
 
-    ``counts`` has the numbers of their facets, and ``others`` the kinds that are no overlap.
+    ``counts`` has their numbers of facets, and ``others`` the kinds that are not overlaps.
     """
     kind, where = one_of(value, *others, "facets", "moving_inside", "fixed_inside")
     if kind == "apart":
@@ -722,11 +729,11 @@ def overlap_of(value: Any, counts: tuple[int, int], *others: str) -> str:
 def clearance(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
-    """What can be checked of solids without their trees."""
+    """Checks the claims of a clearance of solids that do not depend on their trees."""
     claim = fields(claim, "start_overlap certificate", "stop separation")
     certificate = fields(claim["certificate"], "tolerance start lower cover", "stop")
     if claim["start_overlap"] not in ("refuse", "ignore"):
-        raise NoProofError(f"an overlap is refused or ignored, not {claim['start_overlap']!r}")
+        raise NoProofError(f"start_overlap is {claim['start_overlap']!r}, not refuse or ignore")
     counts = (len(moving.facets), len(fixed.facets))
     if certificate["start"] != "assumed":
         overlap_of(certificate["start"], counts, "apart")
@@ -737,7 +744,7 @@ def clearance(
         for k, count in zip(listed(first["triangles"], 2), counts, strict=True):
             whole(k, count)
     tolerance = number(certificate["tolerance"])
-    # Nothing stops the body where it is null.
+    # The lower bound is null if nothing stops the body.
     if tolerance < 0 or (certificate["lower"] is not None and number(certificate["lower"]) < 0):
         raise RefusedError("a tolerance, or a bound, is negative")
     plane, stop = claim["separation"], claim["stop"]
@@ -748,7 +755,7 @@ def clearance(
         proven = shadows_apart(moving, fixed, d, normal)
         if margin <= keep or (tolerance == 0 and not is_apart):
             raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
-        # Of the bodies as they are, where those that are shrunk are farther apart.
+        # A gap of the nominal bodies, if the shrunk bodies have a larger margin.
         gap = margin if is_apart else Fraction(proven) * (1 - 8 * _U)
         if gap > keep and are_shadows_apart(moving, fixed, d, normal, gap):
             report.holds.append(
@@ -780,7 +787,7 @@ def clearance(
 
 
 def translation_of(stop: Any) -> tuple[Fraction | None, Fraction | None]:
-    """Returns the bounds of where two facets meet; None is no bound."""
+    """Returns the bounds of the translation at which two facets meet; None stands for no bound."""
     ends = fields(stop["translation"], "value lower upper")
     value = number(ends["value"])
     lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
@@ -792,7 +799,7 @@ def translation_of(stop: Any) -> tuple[Fraction | None, Fraction | None]:
 def facets(
     moving: Body, fixed: Body, d: Vector, stop: Any, tolerance: Fraction, report: Report
 ) -> None:
-    """Where the two facets that stop a solid meet as they are."""
+    """Checks the translation at which the two nominal stopping facets meet."""
     named = listed(stop["facets"], 2)
     f, g = (whole(k, len(body.facets)) for k, body in zip(named, (moving, fixed), strict=True))
     lower, upper = translation_of(stop)
@@ -816,12 +823,12 @@ def facets(
 
 
 def above(length: Fraction, square: Fraction) -> bool:
-    """Whether a length is at least the root of a square."""
+    """Checks whether a length is at least the root of a square."""
     return length >= 0 and length * length >= square
 
 
 def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
-    """The weighted mean."""
+    """Returns the weighted mean of points."""
     shares = [w if isinstance(w, Fraction) else number(w) for w in listed(weights)]
     total = sum(shares, Fraction())
     if len(shares) != len(points) or min(shares) < 0 or abs(total - 1) > _UNIT_VECTOR:
@@ -833,7 +840,7 @@ def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
 
 
 def ends_of(moving: Body, fixed: Body, pairs: Any) -> list[tuple[Vector, Vector]]:
-    """The points that pairs of vertices name."""
+    """Returns the points of pairs of vertices."""
     named = [fields(pair, "moving fixed") for pair in listed(pairs)]
     return [
         (
@@ -845,7 +852,7 @@ def ends_of(moving: Body, fixed: Body, pairs: Any) -> list[tuple[Vector, Vector]
 
 
 def encloses(corners: Sequence[Vector]) -> bool:
-    """Whether a tetrahedron of some volume contains the origin."""
+    """Checks whether a tetrahedron with a volume contains the origin."""
     a, b, c, d = corners
     faces = ((b, c, d), (a, d, c), (a, b, d), (a, c, b))
     signs = [dot(u, cross(v, w)) for u, v, w in faces]
@@ -853,7 +860,7 @@ def encloses(corners: Sequence[Vector]) -> bool:
 
 
 def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
-    """How far convex bodies are apart, at least and at most."""
+    """Checks the bounds of the distance of convex bodies."""
     claim = fields(claim, "", "gap near")
     gap, near = claim["gap"], claim["near"]
     if gap is None and near is None:
@@ -881,7 +888,7 @@ def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
 
 
 def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:
-    """A point of each body, and how far they are apart at most."""
+    """Checks the distance of a point of each body as an upper bound."""
     between = minus(q, p)
     if not above(upper, dot(between, between)):
         found = math.sqrt(float(dot(between, between)))
@@ -890,7 +897,7 @@ def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:
 
 
 def check_solid_near(near: Any) -> None:
-    """Checks that what a file says of the nearest places of two solids has its form."""
+    """Checks the form of a claim about the nearest points of two solids."""
     kind, claim = one_of(near, "points", "meeting")
     if kind == "meeting":
         overlap_of(claim, (2**32, 2**32))
@@ -905,7 +912,7 @@ def check_solid_near(near: Any) -> None:
 
 
 def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
-    """What can be checked of the distance of solids without their trees."""
+    """Checks the claims about the distance of solids that do not depend on their trees."""
     claim = fields(claim, "lower near cover")
     check_letters(claim["cover"], "mfpqwxs")
     check_solid_near(claim["near"])
@@ -932,17 +939,21 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
 
 
 def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
-    """The shortest translation that parts convex bodies, at least and at most."""
-    # What work it was may be there, and is not read.
+    """Checks the bounds of the shortest translation that separates convex bodies."""
+    # The step counts are optional and are not read.
     claim = fields(claim, "lower upper direction enclosure", "steps")
     d, lower, upper = vector(claim["direction"]), number(claim["lower"]), number(claim["upper"])
     unit(d)
     reach = -(min(moving.heights(d)) - max(fixed.heights(d)))
     if reach > 0 and not above(upper, reach * reach / dot(d, d)):
-        raise RefusedError(f"it takes {float(reach)!r} to part the bodies, not {float(upper)!r}")
+        raise RefusedError(
+            f"a translation by {float(reach)!r} separates the bodies, not {float(upper)!r}"
+        )
     if upper < 0 or not 0 <= lower <= upper:
         raise RefusedError("the bounds are in the wrong order")
-    report.holds.append(f"a translation by {float(upper)!r} along the direction parts the bodies")
+    report.holds.append(
+        f"a translation by {float(upper)!r} along the direction separates the bodies"
+    )
     surface = fields(claim["enclosure"], "pairs triangles normals")
     if lower > 0 or any(listed(part) for part in surface.values()):
         corners = [minus(q, p) for p, q in ends_of(moving, fixed, surface["pairs"])]
@@ -953,14 +964,14 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         for a, b, c in triangles:
             if dot(corners[a], cross(corners[b], corners[c])) < 0:
                 raise RefusedError("a triangle is turned away, as seen from the origin")
-        report.holds.append(f"no translation below {float(lower)!r} parts them")
+        report.holds.append(f"no translation below {float(lower)!r} separates them")
 
 
 def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
-    """A closed surface around the origin, no part of which is nearer than a length."""
+    """Checks a closed surface around the origin whose triangles are not nearer than a length."""
     triangles = [tuple(whole(k, len(corners)) for k in t) for t in listed(surface["triangles"])]
     if any(len(t) != 3 for t in triangles) or len(surface["normals"]) != len(triangles):
-        raise NoProofError("a triangle has three corners and a normal")
+        raise NoProofError("a triangle does not have three corners and a normal")
     sides = [(t[k], t[k - 2]) for t in triangles for k in range(3)]
     if len(set(sides)) < len(sides) or any((b, a) not in set(sides) for a, b in sides):
         raise RefusedError("the surface is not closed")
@@ -974,9 +985,9 @@ def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
 
 
 def turns(corners: list[Vector], triangles: list[tuple[int, ...]]) -> int:
-    """How often a closed surface winds around the origin."""
+    """Returns the winding number of a closed surface around the origin."""
     for k in range(1, 100):
-        # Some ray, that meets no edge.
+        # Try rays until one meets no edge.
         ray = (Fraction(1, k), Fraction(k, 7), Fraction(3, k + 1))
         total, clean = 0, True
         for a, b, c in ((corners[i], corners[j], corners[k]) for i, j, k in triangles):
@@ -994,25 +1005,25 @@ def turns(corners: list[Vector], triangles: list[tuple[int, ...]]) -> int:
 
 
 Bounds: TypeAlias = tuple[list[Fraction], list[Fraction]]
-#: A bound that is not there: nothing ever stops the body.
+#: The bound if nothing ever stops the body.
 _NEVER = None
 
 
 def box(body: Body) -> Bounds:
-    """The least and the largest coordinates."""
+    """Returns the least and the largest coordinates of a body."""
     axes = [tuple(Fraction(i == k) for k in range(3)) for i in range(3)]
     all_heights = [list(body.heights((x, y, z))) for x, y, z in axes]
     return [min(h) for h in all_heights], [max(h) for h in all_heights]
 
 
 def box_gap(p: Bounds, q: Bounds) -> Fraction:
-    """The square of the distance of two boxes."""
+    """Returns the squared distance of two boxes."""
     sides = zip(*p, *q, strict=True)
     return sum((max(c - b, a - d, Fraction()) ** 2 for a, b, c, d in sides), Fraction())
 
 
 def box_entry(p: Bounds, q: Bounds, d: Vector, keep: Fraction) -> Fraction | None:
-    """When a box, grown by a gap, first meets another on its way from 0 on; None if never."""
+    """Returns the first translation, from 0 on, at which a box grown by a gap meets another."""
     first, last = Fraction(), None
     for a, b, c, e, x in zip(*p, *q, d, strict=True):
         near, far = c - b - keep, e - a + keep
@@ -1027,23 +1038,23 @@ def box_entry(p: Bounds, q: Bounds, d: Vector, keep: Fraction) -> Fraction | Non
 
 
 def beyond(bound: Fraction | None, lower: Fraction | None) -> bool:
-    """Whether a bound is at least another one; None stands for infinity."""
+    """Checks whether a bound is at least another one; None stands for infinity."""
     return bound is None or (lower is not None and bound >= lower)
 
 
 def refuses(start_overlap: Any) -> bool:
-    """Whether bodies that overlap where they are are stopped there, or that is ignored."""
+    """Checks whether an overlap at the start stops the bodies, instead of being ignored."""
     if start_overlap not in ("refuse", "ignore"):
-        raise NoProofError(f"an overlap means 'refuse' or 'ignore', not {start_overlap!r}")
+        raise NoProofError(f"start_overlap is {start_overlap!r}, not refuse or ignore")
     return bool(start_overlap == "refuse")
 
 
 @dataclass(frozen=True)
 class File:
-    """The bodies of a file, where they are, and what is asked of them."""
+    """The bodies of a file, their placement, and the query."""
 
     bodies: list[Any]
-    #: Of each body its points in its frame, and its facets.
+    #: For each body its points in the body frame, and its facets.
     shapes: list[tuple[list[Vector], list[tuple[int, int, int]]]]
     asked: str
     query: Any
@@ -1062,27 +1073,27 @@ class File:
         return cls(bodies, shapes, asked, query, placement)
 
     def number(self, value: Any) -> int:
-        """The number of a body."""
+        """Returns the index of a body."""
         return whole(value, len(self.bodies))
 
     def placed(self, of: Any) -> Body:
-        """A body in its pose."""
+        """Returns a body at its pose."""
         return Body.placed(*self.shapes[self.number(of["body"])], of["pose"])
 
     def poses(self) -> list[Body]:
-        """The bodies where they are, the moving one first."""
+        """Returns the bodies at their poses, the moving one first."""
         return [self.placed(fields(of, "body pose")) for of in listed(self.placement)]
 
     def two(self, solids: bool) -> tuple[Body, Body]:
-        """The moving and the fixed body: two solids, or two convex bodies."""
+        """Returns the moving and the fixed body: two solids, or two convex bodies."""
         listed(self.placement, 2)
         moving, fixed = self.poses()
         if moving.is_convex == solids or fixed.is_convex == solids:
-            raise NoProofError("this is not claimed of such bodies")
+            raise NoProofError("this claim does not apply to bodies of this kind")
         return moving, fixed
 
 
-#: What places bodies, by what is asked of them.
+#: The kind of placement for each kind of query.
 PLACEMENTS = {
     "cast": "poses",
     "pair": "poses",
@@ -1093,7 +1104,7 @@ PLACEMENTS = {
 
 
 class Scene:
-    """A proof about one body among many."""
+    """The check of a proof about one body among many."""
 
     def __init__(self, file: File, report: Report) -> None:
         self.moving, *self.obstacles = file.poses()
@@ -1113,18 +1124,18 @@ class Scene:
         kinds.get(kind, self.clearance)(claim)
 
     def named(self, claims: Any) -> dict[int, Any]:
-        """What is claimed of obstacles, each once and in order."""
+        """Returns the claims by obstacle, each obstacle once and in order."""
         pairs = [listed(pair, 2) for pair in listed(claims)]
         found = {whole(k, len(self.obstacles)): claim for k, claim in pairs}
         if sorted(found) != [k for k, _ in pairs]:
-            raise RefusedError("obstacles are not named once each, in order")
+            raise RefusedError("obstacles are not listed once each, in order")
         return found
 
     def part(self, k: int, claim: Any, kinds: dict[str, Any]) -> Any:
-        """Checks what is claimed of one, by its kind; what it proves."""
+        """Checks a claim about an obstacle with the function for its kind; returns the value."""
         ((kind, content),) = claim.items()
         if kind not in kinds:
-            raise NoProofError(f"{kind!r} is no kind of bodies")
+            raise NoProofError(f"unknown kind of claim {kind!r}")
         if (kind == "convex") != (self.moving.is_convex and self.obstacles[k].is_convex):
             raise RefusedError(f"obstacle {k}: a {kind} claim about bodies that are not")
         scratch = Report()
@@ -1138,7 +1149,7 @@ class Scene:
         return found
 
     def told(self, line: str, since: int, by_boxes: str = "") -> None:
-        """Notes a claim: it holds, unless some of it was left unchecked since then."""
+        """Reports a claim as valid, unless a part of it was left unchecked since ``since``."""
         if len(self.report.unchecked) == since:
             self.report.holds.append(line)
             return
@@ -1147,12 +1158,12 @@ class Scene:
             self.report.holds.append(by_boxes)
 
     def boxed(self, claims: Iterable[int], what: str) -> str:
-        """What the boxes tell of obstacles of which nothing is claimed."""
+        """Returns what the bounding boxes prove about obstacles without a claim."""
         count = len(self.obstacles) - len(set(claims))
         return f"by their boxes, {count} obstacles {what}" if count else ""
 
     def near(self, k: int, claim: Any) -> Fraction:
-        """The distance that an obstacle does not exceed."""
+        """Returns the proven upper bound of the distance of an obstacle."""
 
         def convex(body: Body, near: Any, report: Report) -> Fraction:
             distance(self.moving, body, {"near": near}, report)
@@ -1164,7 +1175,7 @@ class Scene:
             if self.moving.facets and body.facets:
                 solid_distance(self.moving, body, {"near": near, "lower": 0.0, "cover": ""}, report)
             else:
-                # Facets of a convex body have no numbers in the file.
+                # The file does not number the facets of a convex body.
                 report.partly = True
                 report.unchecked.append(f"that it is at most {float(upper)!r} away")
             return upper
@@ -1173,7 +1184,7 @@ class Scene:
         return found
 
     def is_apart(self, k: int, claim: Any, length: Fraction, strictly: bool) -> bool:
-        """Whether an obstacle is farther than a length, or as far, by its claim or its box."""
+        """Checks whether an obstacle is farther than a length, by its claim or its bounding box."""
 
         def convex(body: Body, gap: Any, report: Report) -> Fraction:
             distance(self.moving, body, {"gap": gap}, report)
@@ -1217,7 +1228,7 @@ class Scene:
         if length is not None and number(length) < 0:
             raise RefusedError(f"a length of {length!r} is negative")
         if len({*closer, *open_ones, *claims}) < len(closer) + len(open_ones) + len(claims):
-            raise RefusedError("of an obstacle two things are said")
+            raise RefusedError("an obstacle has two claims")
         open_lines = len(self.report.unchecked)
         for k, near in closer.items():
             if self.near(k, near) > (number(length) if length is not None else math.inf):
@@ -1244,7 +1255,7 @@ class Scene:
         claims, stop = self.named(claim["passed"]), claim["stop"]
         if self.graze > 0:
             self.report.holds.append(
-                f"who overlaps sideways by no more than {float(self.graze)!r} counts as passed"
+                f"an overlap of the shadows by at most {float(self.graze)!r} counts as passed"
             )
         open_lines = len(self.report.unchecked)
         bounds = {k: self.passed(k, of, d) for k, of in claims.items()}
@@ -1267,7 +1278,7 @@ class Scene:
         self.told(line, open_lines, by_boxes)
 
     def passed(self, k: int, claim: Any, d: Vector) -> Any:
-        """Bounds of where an obstacle stops the moving body; None if it does not."""
+        """Returns bounds of the translation at which an obstacle stops the body, or None."""
 
         def solid(_: Body, proof: Any, report: Report) -> Any:
             report.partly = True
@@ -1303,7 +1314,7 @@ class Scene:
                     raise RefusedError("the bodies are not proven to overlap")
             return Fraction(), -math.inf
         if kind != "free":
-            raise NoProofError(f"{kind!r} is no clearance")
+            raise NoProofError(f"unknown clearance {kind!r}")
         ((why, free),) = of.items()
         if why == "separated":
             separation(self.moving, body, d, free["certificate"], report, self.keep)
@@ -1315,29 +1326,29 @@ class Scene:
         elif why == "slides":
             self.slides(body, d, vector(free["separating_direction"]))
         else:
-            raise NoProofError(f"{why!r} is no reason")
+            raise NoProofError(f"unknown reason {why!r} of a free motion")
         return never
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
-        """That bodies overlap sideways by no more than is tolerated, to within rounding."""
+        """Checks that the shadows overlap by at most the graze tolerance, up to rounding."""
         noise = _NOISE * (size(self.moving, body) + self.keep)
         most = max(self.graze, 8 * noise) + 3 * noise
         if not are_shadows_apart(self.moving, body, d, normal, self.keep - most):
-            raise RefusedError("the bodies overlap sideways by more than is tolerated")
+            raise RefusedError("the shadows overlap by more than the graze tolerance")
 
 
 Whole: TypeAlias = tuple[int, int, int]
 
-#: Pairs of boxes that are looked at in one file, at most: nothing else blocks what is free.
+#: Maximum number of pairs of boxes in the search for facets that block a free direction.
 MOST_LOOKS = 5_000_000
-#: How often the sides of the cube of directions are halved, at most, and parts of their unit.
+#: Maximum depth of a cell, and the fixed-point unit of slopes.
 _DEEPEST = 50
 _PARTS = 1 << 60
 
 
 @dataclass
 class Box:
-    """A box of facets: a single one, or two boxes. Coordinates are whole numbers."""
+    """A box of facets with integer coordinates: a single facet, or two boxes."""
 
     low: Whole
     high: Whole
@@ -1346,7 +1357,7 @@ class Box:
 
 
 def boxes(triangles: Sequence[tuple[Whole, Whole, Whole]]) -> Box:
-    """A tree of boxes, halved along the longest side."""
+    """Builds a tree of boxes, halved along the longest side."""
 
     def around(t: tuple[Whole, Whole, Whole], of: Any) -> Whole:
         return of(c[0] for c in t), of(c[1] for c in t), of(c[2] for c in t)
@@ -1387,14 +1398,14 @@ def _negative(a: Whole) -> Whole:
 
 @dataclass
 class Polygon:
-    """A convex set of directions on a side of the cube, borders included; also an arc, a point."""
+    """A closed convex set of directions on a side of the cube; it may be an arc or a point."""
 
     corners: list[Whole]
     #: The planes from each corner to the next, with the polygon on their positive side.
     edges: list[Whole]
 
     def clipped(self, form: Whole, axis: int, sign: int) -> Polygon:
-        """What of it has a form that is not negative."""
+        """Returns the part of the polygon where a linear form is not negative."""
         sides = [_dot(form, c) for c in self.corners]
         kept = Polygon([], [])
         for k, (corner, edge) in enumerate(zip(self.corners, self.edges, strict=True)):
@@ -1422,27 +1433,27 @@ class Polygon:
 
 @dataclass
 class Sphere:
-    """What two bodies of whole coordinates block."""
+    """The facets of two bodies with integer coordinates, and the directions that they block."""
 
     bodies: tuple[list[tuple[Whole, Whole, Whole]], list[tuple[Whole, Whole, Whole]]]
     trees: tuple[Box, Box]
-    #: Boxes inside the moving and inside the fixed body, by their least and greatest coordinates.
+    #: Boxes inside the moving and the fixed body, as least and greatest coordinates.
     inner: tuple[list[tuple[Whole, Whole]], list[tuple[Whole, Whole]]] = ([], [])
     cones: dict[tuple[int, int], list[Whole]] = field(default_factory=dict)
     looks: int = 0
 
     def cone(self, pair: tuple[int, int]) -> list[Whole]:
-        """Forms that are positive on all directions that two facets block, and on no others."""
+        """Returns forms that are all positive exactly on the directions that two facets block."""
         if pair not in self.cones:
             self.cones[pair] = blocking(self.bodies[0][pair[0]], self.bodies[1][pair[1]])
         return self.cones[pair]
 
 
 def blocking(f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole]) -> list[Whole]:
-    """Of the moving facet ``f`` and the fixed one ``g``; no forms if they block nothing.
+    """Returns the forms of the cone that facets ``f`` (moving) and ``g`` (fixed) block.
 
-    A side of the cone over the differences is the plane of a vertex of one and an edge of the
-    other that has all nine differences on one side.
+    The list is empty if they block nothing. A side of the cone over the differences is spanned by a
+    vertex of one facet and an edge of the other, and has all nine differences on one side.
     """
     ahead = _cross(_minus(f[1], f[0]), _minus(f[2], f[0]))
     back = _negative(_cross(_minus(g[1], g[0]), _minus(g[2], g[0])))
@@ -1465,7 +1476,7 @@ def blocking(f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole]) -> li
 def faces(
     f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole], ahead: Whole, back: Whole
 ) -> bool:
-    """Whether two facets of one plane look at each other, and their interiors overlap."""
+    """Checks whether two coplanar facets face each other with overlapping interiors."""
     if _dot(ahead, back) <= 0:
         return False
     for one, other in ((f, g), (g, f)):
@@ -1479,7 +1490,7 @@ def faces(
 
 @dataclass(frozen=True)
 class Cell:
-    """A square on a side of the cube: of ``2 ** depth`` by as many, the one of these numbers."""
+    """A square on a side of the cube, which has ``2 ** depth`` by ``2 ** depth`` squares."""
 
     side: int
     depth: int
@@ -1519,14 +1530,14 @@ class Cell:
 
 
 def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
-    """Which directions are free: cell by cell, in whole numbers."""
+    """Checks the classification of all directions, cell by cell, in integers."""
     fields(claim, "tolerance start_overlap cells", "shrunk boxes")
     refuses_overlap = refuses(claim["start_overlap"])
     sphere = whole_bodies(moving, fixed, claim, report)
     stack = [Cell(side, 0, (0, 0)) for side in range(5, -1, -1)]
     count = {"blocked": 0, "inner": 0, "open": 0, "undecided": 0}
     if any(sphere.inner) and not refuses_overlap:
-        raise RefusedError("boxes inside say nothing where an overlap is ignored")
+        raise RefusedError("inner boxes prove nothing if overlaps at the start are ignored")
     for k in range(2):
         for at, box_ in enumerate(sphere.inner[k]):
             if not is_inside(sphere, k, box_):
@@ -1538,7 +1549,7 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
         cell = stack.pop()
         if said == "cut":
             if cell.depth == _DEEPEST:
-                raise RefusedError("a cell is cut too often")
+                raise RefusedError("a cell is divided too often")
             stack += reversed(cell.quarters())
             continue
         kind, content = one_of(said, *count)
@@ -1569,7 +1580,9 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
         for polygon in left:
             met = first_met(sphere, cell, polygon)
             if met is not None:
-                raise RefusedError(f"facets {list(met)} block what is said to be free")
+                raise RefusedError(
+                    f"facets {list(met)} block a direction that is claimed to be free"
+                )
     if stack:
         raise RefusedError("the cells do not cover the sphere")
     summary(report, count, [free, undecided], skipped)
@@ -1580,18 +1593,18 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
 
 def summary(report: Report, count: dict[str, int], areas: list[float], skipped: int) -> None:
     free, undecided = (f"{100 * area / (4 * math.pi):.6g} %" for area in areas)
-    told = f"{sum(count.values())} cells are the sphere"
+    told = f"{sum(count.values())} cells cover the sphere"
     told += f", {count['blocked']} are blocked by two facets each"
     if count["inner"]:
         told += f", {count['inner']} by two boxes inside the bodies each"
     if count["open"]:
-        told += f", {count['open'] - skipped} are told exactly"
+        told += f", {count['open'] - skipped} are decided exactly"
     report.holds.append(f"{told}: about {free} of all directions are free")
     if count["undecided"]:
         report.unchecked.append(f"{count['undecided']} cells are undecided: about {undecided}")
     if skipped:
         report.unchecked.append(
-            f"that nothing else blocks what is free in {skipped} cells: too many"
+            f"that nothing else blocks the free parts of {skipped} cells: too many pairs"
         )
 
 
@@ -1601,10 +1614,10 @@ def pair_of(value: Any, sphere: Sphere) -> tuple[int, int]:
 
 
 def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Sphere:
-    """Both bodies, shrunk as the file says, with coordinates that are whole numbers."""
+    """Returns both bodies with integer coordinates, shrunk as stored in the file."""
     tolerance, shrunk = number(claim["tolerance"]), claim.get("shrunk")
     if tolerance < 0 or (tolerance > 0) != (shrunk is not None):
-        raise RefusedError("bodies are shrunk if there is a tolerance, and only then")
+        raise RefusedError("a tolerance above 0 and shrunk vertices must occur together")
     bodies = [moving, fixed]
     if shrunk is not None:
         farthest = 0.0
@@ -1626,7 +1639,7 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
         ends = [(vector(fields(of, "low high")["low"]), vector(of["high"])) for of in listed(said)]
         inner.append([(plus(low, origin), plus(high, origin)) for low, high in ends])
     if len(inner) != 2:
-        raise NoProofError("there are boxes of two bodies, or of none")
+        raise NoProofError("inner boxes are not given for both bodies")
     told = [v for boxes_ in inner for ends in boxes_ for v in ends]
     unit_of = math.lcm(*(x.denominator for points in (*placed, told) for v in points for x in v))
 
@@ -1642,7 +1655,7 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
 
 
 def is_between(near: tuple[Whole, Whole], far: tuple[Whole, Whole], d: Whole) -> bool:
-    """Whether a positive multiple of ``d`` is inside the box of differences of two boxes."""
+    """Checks whether a positive multiple of ``d`` is inside the box of differences of two boxes."""
     low, high = _minus(far[0], near[1]), _minus(far[1], near[0])
     after, before = Fraction(0), None
     for k in range(3):
@@ -1657,7 +1670,7 @@ def is_between(near: tuple[Whole, Whole], far: tuple[Whole, Whole], d: Whole) ->
 
 
 def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
-    """Whether a box is inside a body: no facet meets its inside, and a ray leaves the body."""
+    """Checks whether a box is inside a body: no facet meets its interior, and a ray exits."""
     low, high = box_
     if any(a >= b for a, b in zip(low, high, strict=True)):
         return False
@@ -1670,7 +1683,7 @@ def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
             stack += node.parts
         elif not is_parted(sphere.bodies[side][node.facet], low, high):
             return False
-    # A place of it, in parts of the whole.
+    # Test points of the box, as sixteenths of its sides.
     for shares in ((8, 8, 8), (7, 9, 6), (5, 10, 11)):
         at = [low[k] * (16 - shares[k]) + high[k] * shares[k] for k in range(3)]
         turns = winding(sphere, side, (at[0], at[1], at[2]))
@@ -1680,7 +1693,7 @@ def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
 
 
 def is_parted(facet: tuple[Whole, Whole, Whole], low: Whole, high: Whole) -> bool:
-    """Whether a plane parts a facet from the inside of a box."""
+    """Checks whether a plane separates a facet from the interior of a box."""
     a, b, c = facet
     edges = _minus(b, a), _minus(c, b), _minus(a, c)
     across = [_cross(edges[0], edges[1])]
@@ -1696,8 +1709,10 @@ def is_parted(facet: tuple[Whole, Whole, Whole], low: Whole, high: Whole) -> boo
 
 
 def winding(sphere: Sphere, side: int, at: Whole) -> int | None:
-    """How much more often a ray along ``x`` leaves a body than it enters it; ``at`` is in
-    sixteenths. Nothing if it meets an edge."""
+    """Returns the winding number of a body around a point, from a ray along ``x``.
+
+    The coordinates of ``at`` are in sixteenths. Returns None if the ray meets an edge.
+    """
     stack, count = [sphere.trees[side]], 0
     while stack:
         node = stack.pop()
@@ -1723,19 +1738,19 @@ def winding(sphere: Sphere, side: int, at: Whole) -> int | None:
 
 
 def is_met(cone: list[Whole], polygon: Polygon, cell: Cell) -> bool:
-    """Whether a cone has a direction of a polygon."""
+    """Checks whether a cone contains a direction of a polygon."""
     if not cone or any(all(_dot(form, c) <= 0 for c in polygon.corners) for form in cone):
         return False
     for form in cone:
         polygon = polygon.clipped(form, cell.axes[0], cell.sign)
         if not polygon.corners:
             return False
-    # The mean of the corners is inside if some corner is, for each side.
+    # If each form is positive at some corner, all are positive at the mean of the corners.
     return all(any(_dot(form, c) > 0 for c in polygon.corners) for form in cone)
 
 
 def rest(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polygon]:
-    """What some pairs leave of a cell."""
+    """Returns the remainder of a cell after the cones of some pairs of facets are removed."""
     left = [cell.polygon()]
     for pair in pairs:
         cone, after = sphere.cone(pair), []
@@ -1758,7 +1773,7 @@ def rest(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polyg
 
 
 def first_met(sphere: Sphere, cell: Cell, polygon: Polygon) -> tuple[int, int] | None:
-    """A pair of facets that blocks a direction of a polygon."""
+    """Finds a pair of facets that blocks a direction of a polygon."""
     k, i, j = cell.axes
     ends = []
     for axis in (i, j):
@@ -1783,7 +1798,7 @@ def first_met(sphere: Sphere, cell: Cell, polygon: Polygon) -> tuple[int, int] |
 
 
 def away(sphere: Sphere, pair: tuple[int, int], polygon: Polygon) -> bool:
-    """Whether one of two facets looks away from all directions of a polygon."""
+    """Checks whether one of two facets faces away from all directions of a polygon."""
     for facet, sign in ((sphere.bodies[0][pair[0]], 1), (sphere.bodies[1][pair[1]], -1)):
         normal = _cross(_minus(facet[1], facet[0]), _minus(facet[2], facet[0]))
         if all(sign * _dot(normal, c) <= 0 for c in polygon.corners):
@@ -1796,13 +1811,13 @@ def _extent(box: Box) -> int:
 
 
 def is_beside(cell: Cell, ends: list[tuple[int, int]], low: Whole, high: Whole) -> bool:
-    """Whether no ``t d``, ``t >= 0``, is in a box, for all ``d`` between the ends."""
+    """Checks whether no ``t d`` with ``t >= 0`` is in a box, for all ``d`` between the ends."""
     k, i, j = cell.axes
     near, far = (low[k], high[k]) if cell.sign > 0 else (-high[k], -low[k])
     near = max(near, 0)
     for (least, most), axis in zip(ends, (i, j), strict=True):
         for slope, limit in ((most, low[axis]), (-least, -high[axis])):
-            # t slope >= limit.
+            # The condition t slope >= limit.
             if slope > 0:
                 near = max(near, limit * _PARTS // slope)
             elif slope < 0:
@@ -1813,7 +1828,7 @@ def is_beside(cell: Cell, ends: list[tuple[int, int]], low: Whole, high: Whole) 
 
 
 def solid_angle(corners: list[Whole]) -> float:
-    """Of a convex polygon of directions, nearly."""
+    """Returns the solid angle of a convex polygon of directions, rounded."""
     largest = max(abs(x) for c in corners for x in c)
     ways = [tuple(float(Fraction(x, largest)) for x in c) for c in corners]
     ways = [tuple(x / math.hypot(*c) for x in c) for c in ways]
@@ -1830,15 +1845,15 @@ def solid_angle(corners: list[Whole]) -> float:
     return total
 
 
-#: Sines, cosines and roots are known to within this, or to this share of them.
+#: Absolute or relative error of sines, cosines and roots.
 _TINY = Fraction(1, 2**120)
-#: Binary digits behind the point in what they are computed with.
+#: Binary digits after the point in their computation.
 _DIGITS = 160
 _ZERO: Vector = (Fraction(), Fraction(), Fraction())
 
 
 def root_above(square: Fraction) -> Fraction:
-    """At least the root of a number, by a share of no more than `_TINY`."""
+    """Returns an upper bound of the root of a number, with a relative error of at most `_TINY`."""
     if square <= 0:
         return Fraction()
     size = (square.numerator.bit_length() - square.denominator.bit_length()) // 2
@@ -1849,7 +1864,7 @@ def root_above(square: Fraction) -> Fraction:
 
 @cache
 def quarter_turn() -> int:
-    """Half of pi with twice the digits, by Machin's formula."""
+    """Returns half of pi with twice the digits, by Machin's formula."""
     one = 1 << (2 * _DIGITS)
 
     def arctan(n: int) -> int:
@@ -1864,7 +1879,7 @@ def quarter_turn() -> int:
 
 @cache
 def sine_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
-    """Of an angle in radians, by Taylor's series of what is left of quarter turns."""
+    """Returns sine and cosine of an angle in radians, by reduction to a quarter turn and series."""
     one = 1 << _DIGITS
     fine = math.floor(angle * (1 << (2 * _DIGITS)))
     quarters = round(Fraction(fine, quarter_turn()))
@@ -1882,10 +1897,10 @@ def sine_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
 
 @dataclass
 class Spin:
-    """A convex body while it spins evenly: where ``y`` is, ``place + way (t - since) + E y``.
+    """A body that spins evenly; a point ``y`` is at ``place + way (t - since) + E y``.
 
-    ``y`` runs over ``arm + R v``: from a point of the axis to the vertices when it begins. ``E`` is
-    the turn by ``rate (t - since)`` about the axis, which counts as if its length were 1.
+    ``y`` runs over ``arm + R v``, the vectors from a point of the axis to the vertices at the
+    start. ``E`` is the rotation by ``rate (t - since)`` about the normalised axis.
     """
 
     body: Body
@@ -1894,10 +1909,10 @@ class Spin:
     axis: Vector
     rate: Fraction
     way: Vector
-    #: The squared length of the axis, and one over its length.
+    #: The squared length of the axis, and the inverse of its length.
     square: Fraction
     inverse: Fraction
-    #: At most so far is a point from the axis, and from that point of it.
+    #: Upper bounds of the distance of points from the axis, and from the point on it.
     radius: Fraction
     reach: Fraction
 
@@ -1909,14 +1924,14 @@ class Spin:
         rate, way = number(piece["rate"]), bounded_vector(piece["velocity"], "a velocity")
         unit(axis)
         if abs(rate) > _MOST_TURN:
-            raise NoProofError(f"a turn by {float(rate)!r}")
+            raise NoProofError(f"a rotation by {float(rate)!r} is out of range")
         square = dot(axis, axis)
         since, inverse, zero = number(piece["since"]), 1 / root_above(square), Fraction()
         spin = cls(body, since, arm, axis, rate, way, square, inverse, zero, zero)
         return spin.of(points)
 
     def of(self, points: list[Vector]) -> Spin:
-        """The same spin of other points."""
+        """Returns this spin with other points."""
         body = replace(self.body, points=points)
         ways = [plus(self.arm, minus(body.at(k), body.offset)) for k in range(len(points))]
         beside = [cross(self.axis, y) for y in ways]
@@ -1926,11 +1941,11 @@ class Spin:
         )
 
     def turned(self, v: Vector, time: Fraction) -> Vector:
-        """A direction of the body, when the spin began, in the world: ``E v``."""
+        """Returns ``E v``: rotates a vector from the start of the spin to a time."""
         return replace(self, rate=-self.rate).back(v, time)
 
     def back(self, n: Vector, time: Fraction) -> Vector:
-        """A direction of the world in the body's, when the spin began: ``E' n``."""
+        """Returns ``E' n``: rotates a vector from a time back to the start of the spin."""
         if self.rate == 0:
             return n
         sin, cos = sine_cosine(self.rate * (time - self.since))
@@ -1939,18 +1954,18 @@ class Spin:
         return plus(found, scaled(cross(self.axis, beside), (1 - cos) / self.square))
 
     def along(self, n: Vector, time: Fraction) -> list[Fraction]:
-        """``n . E y`` of all points."""
+        """Returns ``n . E y`` for all points."""
         u = self.back(n, time)
         base = dot(u, self.arm) - dot(u, self.body.offset)
         return [base + height for height in self.body.heights(u)]
 
     def foot(self, n: Vector, time: Fraction) -> Fraction:
-        """What all heights along a normal have in common."""
+        """Returns the common part of all heights along a normal."""
         start = minus(self.body.offset, self.arm)
         return dot(n, plus(start, scaled(self.way, time - self.since)))
 
     def at(self, k: int, time: Fraction) -> Vector:
-        """A point in the world."""
+        """Returns a point in the world."""
         x, y, z = (
             self.foot(e, time) + self.one(k, e, time)
             for e in (
@@ -1966,20 +1981,20 @@ class Spin:
         return dot(u, plus(self.arm, minus(self.body.at(k), self.body.offset)))
 
     def off(self, n: Vector) -> Fraction:
-        """How far ``n . E y`` may be from what is computed, for sine, cosine and root."""
+        """Returns a bound of the error of ``n . E y`` from sine, cosine and root."""
         return 16 * _TINY * root_above(dot(n, n)) * self.reach if self.rate else Fraction()
 
     def across(self, n: Vector) -> Vector:
-        """What of it is across the axis."""
+        """Returns the part of a vector across the axis."""
         return minus(n, scaled(self.axis, dot(n, self.axis) / self.square))
 
     def bend(self, ends: Sequence[Plane], sign: int, tightly: bool) -> Fraction:
-        """At most ``W . E y`` between two planes.
+        """Returns an upper bound of ``W . E y`` between two planes.
 
-        ``W = sign (alpha^2 n_across + 2 alpha k x dn)`` is affine in the time, and ``E y`` across
-        the axis a combination of those at both ends, with weights whose sum is at least 1, and at
-        most one over the cosine of half the angle ``alpha``. Loosely it is the longer ``W`` times
-        the distance of the farthest point from the axis.
+        ``W = sign (alpha^2 n_across + 2 alpha k x dn)`` is affine in the time. ``E y`` across the
+        axis is a combination of its values at both ends. The sum of the weights is at least 1, and
+        at most the inverse cosine of half the angle ``alpha``. The loose bound is the longer ``W``
+        times the largest distance of a point from the axis.
         """
         a, b = ends
         alpha = self.rate * (b.time - a.time)
@@ -2000,7 +2015,7 @@ class Spin:
         return most / least if most > 0 else most
 
     def rise(self, n: Vector, begin: Fraction, end: Fraction) -> Fraction:
-        """By how much the highest point along a normal rises between two times, at most."""
+        """Returns an upper bound of the rise of the highest point between two times."""
         angle = abs(self.rate * (end - begin))
         if angle == 0:
             return Fraction()
@@ -2023,13 +2038,13 @@ class Spin:
         return highest - before + 8 * off
 
 
-#: The largest angle of a motion.
+#: Maximum angle of a motion, in radians.
 _MOST_TURN = 10**5
 
 
 @dataclass(frozen=True)
 class Plane:
-    """A normal at a time, and the gap that is claimed beyond what is to be kept."""
+    """A normal at a time, and the claimed gap beyond the minimum gap."""
 
     time: Fraction
     normal: Vector
@@ -2044,13 +2059,13 @@ class Plane:
 
     @property
     def along(self) -> Fraction:
-        """The gap in multiples of the normal, at least: that is a unit vector to rounding."""
+        """Returns a lower bound of the gap in multiples of the normal, a rounded unit vector."""
         return self.gap * (1 - _UNIT_VECTOR)
 
     def is_left(self, along: Fraction, keep: Fraction) -> bool:
-        """Whether what is left in multiples of the normal is the claimed gap beyond one to be kept.
+        """Checks whether the remaining gap is at least the claimed gap plus ``keep``.
 
-        A depth that is tolerated, a gap less than 0, may leave less than nothing.
+        With a tolerated depth the sum, and the remaining gap, may be negative.
         """
         gap, square = self.gap + keep, dot(self.normal, self.normal)
         if gap > 0:
@@ -2060,35 +2075,36 @@ class Plane:
 
 @dataclass
 class Span:
-    """Two spins at once."""
+    """A period in which both bodies spin evenly."""
 
     moving: Spin
     fixed: Spin
     begin: Fraction
     end: Fraction
-    #: A gap to be kept; negative a depth that is tolerated.
+    #: The minimum gap; a negative value is a tolerated depth.
     keep: Fraction
 
     def gap(self, n: Vector, time: Fraction) -> Fraction:
-        """``min_Q n.q - max_P n.p``, at least."""
+        """Returns a lower bound of ``min_Q n.q - max_P n.p``."""
         p, q = self.moving, self.fixed
         highest, lowest = max(p.along(n, time)), min(q.along(n, time))
         between = q.foot(n, time) - p.foot(n, time)
         return between + lowest - highest - p.off(n) - q.off(n)
 
     def has(self, plane: Plane) -> bool:
-        """Whether it leaves the gap that is claimed, beyond the one to be kept."""
+        """Checks whether a plane leaves its claimed gap beyond the minimum gap."""
         return plane.is_left(self.gap(plane.normal, plane.time), self.keep)
 
     def joins(self, a: Plane, b: Plane) -> bool:
-        """Whether planes prove all times between them.
+        """Checks whether two planes prove all times between them.
 
-        With ``n = (1 - x) n_a + x n_b`` a point ``y`` of a body is at the height ``n . E y``, whose
-        second derivative by ``x`` is ``-W . E y``: above its chord by at most ``C x (1 - x) / 2``,
-        and so is the highest. Together with ``Q``, turned round, and with ``n`` times the way
-        between the axes, the gap is at least ``(1 - x) a + x b - C x (1 - x) / 2``. The gap to be
-        kept times the length of ``n`` is below its chord; a depth that is tolerated times it is
-        above its chord less the depth times ``|dn|^2 x (1 - x)``.
+        With ``n = (1 - x) n_a + x n_b`` a point ``y`` of a body has the height ``n . E y``, whose
+        second derivative by ``x`` is ``-W . E y``. It exceeds its chord by at most ``C x (1 - x) /
+        2``, and so does the maximum over all points. Together with the fixed body, with the
+        opposite sign, and with ``n`` times the motion between the axes, the gap is at least ``(1 -
+        x) a + x b - C x (1 - x) / 2``. The minimum gap times the length of ``n`` is below its
+        chord. For a tolerated depth this product exceeds its chord by at most the depth times
+        ``|dn|^2 x (1 - x)``.
         """
         if a.time == b.time:
             return True
@@ -2111,20 +2127,21 @@ class Span:
         )
 
     def lost(self, a: Plane, b: Plane) -> Fraction:
-        """How much of the gap of one plane, along its normal, is lost until another."""
+        """Returns a bound of the loss of a plane's gap, along its normal, until another plane."""
         drift = dot(a.normal, minus(self.fixed.way, self.moving.way)) * (b.time - a.time)
         risen = self.moving.rise(a.normal, a.time, b.time)
         sunk = self.fixed.rise(scaled(a.normal, Fraction(-1)), a.time, b.time)
         return risen + sunk - min(drift, Fraction())
 
     def carried(self, a: Plane, until: Fraction) -> Fraction:
-        """The same of a plane that the moving body carries along: little, where both spin as one.
+        """Returns a bound of the loss of the gap of a plane that the moving body carries along.
 
-        Its normal is ``E n`` then. In the frame that turns by ``E`` the moving body rests, and the
-        fixed one only translates: the way between points of both axes and their drift turn by
-        ``E'``, which leaves their parts along the axis as they are, and sees those across it along
-        the part of ``n`` across it. With another angular velocity the fixed body's points are
-        elsewhere by the difference times their distance from the point of the axis.
+        The bound is small if both bodies spin alike. The normal becomes ``E n``. In the frame that
+        turns by ``E`` the moving body rests and the fixed one only translates: the vector between
+        points of both axes and their drift turn by ``E'``. This leaves their parts along the axis
+        unchanged, and their parts across it count along the part of ``n`` across it. With another
+        angular velocity the points of the fixed body are displaced by the difference times their
+        distance from the point of the axis.
         """
         p, q = self.moving, self.fixed
         h = until - a.time
@@ -2144,7 +2161,7 @@ class Span:
         return lost + 8 * p.off(a.normal)
 
     def ends(self, pairs: Any, time: Fraction) -> list[tuple[Vector, Vector]]:
-        """The points that pairs of vertices name, at a time."""
+        """Returns the points of pairs of vertices at a time."""
         p, q = self.moving, self.fixed
         return [
             (
@@ -2155,7 +2172,7 @@ class Span:
         ]
 
     def meets(self, met: Any, time: Fraction) -> None:
-        """That the bodies overlap deeper than is tolerated, or are as near as is to be kept."""
+        """Checks that the bodies overlap by more than tolerated, or are within the minimum gap."""
         off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
         kind, claim = one_of(met, "deep", "near")
         if kind == "deep":
@@ -2171,10 +2188,10 @@ class Span:
                 claim, self.ends(near_claim(claim)["pairs"], time), (off, self.rounded()), self.keep
             )
         else:
-            raise RefusedError(f"{kind!r} does not say that the bodies meet")
+            raise RefusedError(f"{kind!r} does not prove that the bodies meet")
 
     def rounded(self) -> Fraction:
-        """How far points may be off in the poses of which depths and distances are told."""
+        """Returns a bound of the error of points in poses to which depths and distances refer."""
         spins = (self.moving, self.fixed)
         sizes = (s.reach + 2 * root_above(dot(s.arm, s.arm)) for s in spins)
         ways = (root_above(dot(s.way, s.way)) for s in spins)
@@ -2184,23 +2201,23 @@ class Span:
 
 
 _ONES: Vector = (Fraction(1), Fraction(1), Fraction(1))
-#: What a computed place may be off, in parts of the size: what is told of depths is of such places.
+#: Relative error of a computed position. Claimed depths refer to such positions.
 _POSE = 256 * _U
 
 
 def check_steps(steps: Any) -> None:
-    """Checks that counts of work, which claim nothing, have their form."""
+    """Checks the form of step counts, which prove nothing."""
     if not isinstance(steps, dict):
-        raise NoProofError(f"there has to be an object with counts of work, not {steps!r:.40}")
+        raise NoProofError(f"steps is {steps!r:.40}, not an object with counts")
     for name in ("planar_problems", "supports", "pivots", "iterations"):
         whole(steps.get(name), 2**32)
     whole(steps.get("region_sides", 0), 2**32)
     if steps.get("started_from", "scratch") not in ("difference", "features", "region", "scratch"):
-        raise NoProofError(f"{steps['started_from']!r} is nothing that a search starts from")
+        raise NoProofError(f"unknown start of a search {steps['started_from']!r}")
 
 
 def deep_claim(claim: Any) -> Any:
-    """Returns the claim that bodies overlap, which has all of its fields."""
+    """Returns a claim that bodies overlap, after a check of its fields."""
     fields(claim, "lower upper direction enclosure", "steps")
     if "steps" in claim:
         check_steps(claim["steps"])
@@ -2209,7 +2226,7 @@ def deep_claim(claim: Any) -> Any:
 
 
 def near_claim(claim: Any) -> Any:
-    """Returns the claim that two points are near each other, which has all of its fields."""
+    """Returns a claim that two points are near each other, after a check of its fields."""
     for weight in listed(fields(claim, "pairs weights distance")["weights"], 4):
         number(weight)
     return claim
@@ -2222,10 +2239,10 @@ def is_deep(
     off: tuple[Fraction, Fraction],
     tolerated: Fraction,
 ) -> None:
-    """That bodies overlap by more than is tolerated; the depth that is told holds to rounding.
+    """Checks that bodies overlap by more than the tolerated depth; the depth holds up to rounding.
 
-    ``gap`` is the least one along a normal, and ``off`` how far corners may be off here, and in the
-    poses of which the depth is told.
+    ``gap`` returns the least gap along a normal. ``off`` has the errors of corners here, and in the
+    poses to which the depth refers.
     """
     lower, upper, d = number(claim["lower"]), number(claim["upper"]), vector(claim["direction"])
     unit(d, "the direction of the depth")
@@ -2233,15 +2250,18 @@ def is_deep(
         unit(vector(normal))
     if not tolerated < lower <= upper:
         raise RefusedError(
-            "the bounds of the depth are in the wrong order, or no depth that counts"
+            "the bounds of the depth are in the wrong order, or the depth is tolerated"
         )
-    # Points that are moved by less than they are away go round the origin as before.
+    # A surface still winds around the origin if its points move by less than their distance from
+    # it.
     more = off[0] + tolerated * (1 + _TINY)
     enclosure(corners, claim["enclosure"], max(more, lower - off[1]))
-    # The translation along the direction leaves no more than that.
+    # The translation along the direction must separate the bodies up to rounding.
     reach = -gap((-d[0], -d[1], -d[2]))
     if reach > upper + off[1]:
-        raise RefusedError(f"it takes {float(reach)!r} to part the bodies, not {float(upper)!r}")
+        raise RefusedError(
+            f"a translation by {float(reach)!r} separates the bodies, not {float(upper)!r}"
+        )
 
 
 def is_near(
@@ -2250,10 +2270,10 @@ def is_near(
     off: tuple[Fraction, Fraction],
     keep: Fraction,
 ) -> None:
-    """That points of both bodies are as near as a gap; the distance told holds to rounding."""
+    """Checks that points of both bodies are within a gap; the distance holds up to rounding."""
     told = number(claim["distance"])
     if len(ends) != 4:
-        raise NoProofError("there are four pairs")
+        raise NoProofError("the claim does not have four pairs")
     if not 0 <= told <= keep:
         raise RefusedError(f"{float(told)!r} is not as near as {float(keep)!r}")
     if told == 0 and keep >= off[0] and encloses([minus(q, p) for p, q in ends]):
@@ -2268,22 +2288,22 @@ def is_near(
 
 
 def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
-    """Whether ``(1 - x) a + x b - c x (1 - x) / 2`` is positive from 0 to 1.
+    """Checks whether ``(1 - x) a + x b - c x (1 - x) / 2`` is positive for ``x`` from 0 to 1.
 
-    It is if ``sqrt a + sqrt b > sqrt(c / 2)``.
+    This holds if ``sqrt a + sqrt b > sqrt(c / 2)``.
     """
     over = c / 2 - a - b
     return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
 
 
 def spans(movers: list[Any], points: Sequence[list[Vector]], keep: Fraction) -> list[Span]:
-    """The times in which both bodies spin evenly, one after the other."""
+    """Returns the periods in which both bodies spin evenly, in order."""
     sides = []
     for of, own in zip(movers, points, strict=True):
         spins = [Spin.read(own, piece) for piece in listed(of["motion"])]
         times = [spin.since for spin in spins]
         if not times or times[0] != 0 or times[-1] >= 1 or sorted(set(times)) != times:
-            raise NoProofError("the pieces of a motion do not begin one after the other, before 1")
+            raise NoProofError("the pieces of a motion are not in order, or do not start at 0")
         sides.append(spins)
     borders = [*sorted({spin.since for side in sides for spin in side}), Fraction(1)]
     found = []
@@ -2294,10 +2314,10 @@ def spans(movers: list[Any], points: Sequence[list[Vector]], keep: Fraction) -> 
 
 
 def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report) -> None:
-    """When two convex bodies that move first meet."""
+    """Checks the first contact of two moving convex bodies."""
     shapes = [file.shapes[of["body"]] for of in movers]
     if any(facets for _, facets in shapes) or asked["tolerance"] is not None:
-        raise NoProofError("this is claimed of convex bodies, which have no tolerance but a gap")
+        raise NoProofError("this claim needs convex bodies without a tolerance")
     keep = asked["keep"]
     all_spans = spans(movers, [points for points, _ in shapes], keep)
     fields(proof, "spans meeting")
@@ -2308,7 +2328,7 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
     for span, planes in zip(all_spans, claimed, strict=False):
         read = [Plane.read(plane) for plane in listed(planes)]
         if reached != span.begin or (read and read[0].time != span.begin):
-            raise RefusedError("a span does not begin where the one before it ended")
+            raise RefusedError("a span does not begin where the previous one ends")
         reached = chain(span, read)
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
     if keep < 0:
@@ -2320,19 +2340,21 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
     if meeting is not None:
         time = number(fields(meeting, "time met")["time"])
         if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
-            raise RefusedError(f"that the bodies {meet} is said of another time")
+            raise RefusedError(
+                f"the time at which the bodies {meet} does not follow the proven span"
+            )
         all_spans[len(claimed) - 1].meets(meeting["met"], time)
         report.holds.append(f"the bodies {meet} at the time {float(time)!r}")
 
 
 def chain(span: Span, planes: list[Plane]) -> Fraction:
-    """Planes each of which has its gap and is joined to the next; up to which time."""
+    """Checks that each plane has its gap and joins the next one; returns the proven end time."""
     before = None
     for plane in planes:
         unit(plane.normal)
         at = float(plane.time)
         if not span.begin <= plane.time <= span.end or (before and plane.time < before.time):
-            raise RefusedError(f"the plane at {at!r} is not in the order of times")
+            raise RefusedError(f"the plane at {at!r} is out of order")
         if plane.gap <= 0 or not span.has(plane):
             raise RefusedError(f"the plane at {at!r} does not leave a gap of {float(plane.gap)!r}")
         if before is not None and not span.joins(before, plane):
@@ -2341,7 +2363,7 @@ def chain(span: Span, planes: list[Plane]) -> Fraction:
     return span.begin if before is None else before.time
 
 
-#: What points of facets may be off in the world, for a sign that is certain, in parts of the size.
+#: Error of facet points in the world, relative to the size, up to which signs are certain.
 _SURE = Fraction(1, 2**96)
 _UNITS: tuple[Vector, Vector, Vector] = (
     (Fraction(1), Fraction(), Fraction()),
@@ -2357,20 +2379,20 @@ def _box(points: Sequence[Vector]) -> tuple[Vector, Vector]:
 
 @dataclass
 class Parts:
-    """The facets of a solid, moved inwards as the file says, and how a proof splits them.
+    """The facets of a solid, moved inwards as stored in the file, and their tree.
 
-    Nodes are numbered in preorder: the first part of one that is split is the next.
+    Nodes are numbered in preorder: the first child of an inner node follows it.
     """
 
     corners: list[Triangle]
-    #: The facet that a node is, or -1.
+    #: The facet of a leaf, or -1 for an inner node.
     facet: list[int]
-    #: Where the second part of a node that is split stands.
+    #: The second child of an inner node.
     second: list[int]
     bounds: list[tuple[Vector, Vector]]
-    #: How far a corner was moved, at most.
+    #: Upper bound of the displacement of a corner.
     moved: Fraction
-    #: The facets that are not part of an open surface: those that something can be inside of.
+    #: The facets of closed surfaces, which have an interior.
     closed: list[Triangle]
     known: dict[tuple[int, Fraction], Spin] = field(default_factory=dict)
 
@@ -2392,7 +2414,7 @@ class Parts:
             a, b, c = (vector(v) for v in triangle)
             corners.append((a, b, c))
             x, y, z = (points[k] for k in facets[at])
-            # In their order, from whichever it begins.
+            # The corners are in cyclic order, with any first corner.
             square = max(
                 square,
                 min(
@@ -2414,20 +2436,20 @@ class Parts:
                 low, high = _box(corners[facet[at]])
             else:
                 if len(open_) < 2:
-                    raise RefusedError("the parts of the body are no tree")
+                    raise RefusedError("the nodes do not form a tree")
                 (a, b), second[at] = boxes[open_.pop()], open_[-1]
                 c, d = boxes[open_.pop()]
                 low, high = _box((a, b, c, d))
             boxes[at] = (low, high)
             open_.append(at)
         if open_ != [0]:
-            raise RefusedError("the parts of the body are no tree")
+            raise RefusedError("the nodes do not form a tree")
         bounds = [boxes[k] for k in range(len(facet))]
         closed = [c for k, c in zip(numbers, corners, strict=True) if not (is_open and is_open[k])]
         return cls(corners, facet, second, bounds, root_above(square), closed)
 
     def points(self, node: int) -> list[Vector]:
-        """The corners of a facet, or of the box around several."""
+        """Returns the corners of a facet, or of the box of an inner node."""
         if self.facet[node] >= 0:
             return list(self.corners[self.facet[node]])
         return [(x[0], y[1], z[2]) for x, y, z in product(self.bounds[node], repeat=3)]
@@ -2448,7 +2470,7 @@ class Parts:
 
 @dataclass
 class Cover:
-    """All pairs of facets of two solids during a span, pair by pair as the letters say."""
+    """A check of all pairs of facets of two solids during a span, along the letters of a cover."""
 
     span: Span
     parts: tuple[Parts, Parts]
@@ -2459,9 +2481,9 @@ class Cover:
         return replace(self.span, moving=moving, fixed=fixed)
 
     def check(self, letters: str, lists: list[Any], until: Fraction) -> None:
-        """Every entry, and that they are all of them."""
+        """Checks every entry of the cover, and that the entries cover all pairs."""
         if not isinstance(letters, str):
-            raise NoProofError("a cover is a text of letters")
+            raise NoProofError("a cover is not a text of letters")
         stack = [((0, 0), self.span.begin, until)]
         rest = iter(listed(lists))
         for number_, letter in enumerate(letters):
@@ -2471,7 +2493,7 @@ class Cover:
             if letter == "T":
                 half = Fraction(float(a) + 0.5 * (float(b) - float(a)))
                 if not a <= half <= b:
-                    raise RefusedError(f"entry {number_} halves no time")
+                    raise RefusedError(f"entry {number_} cannot halve its time")
                 stack += [(nodes, half, b), (nodes, a, half)]
             elif letter in "PQ":
                 which = "PQ".index(letter)
@@ -2489,12 +2511,14 @@ class Cover:
                     raise RefusedError(f"entry {number_} has no planes for its time")
                 chain(replace(self.at(nodes), begin=a, end=b), planes)
             elif not self.parted(letter, nodes, a, b):
-                raise RefusedError(f"entry {number_}: no plane {letter!r} parts them throughout")
+                raise RefusedError(
+                    f"entry {number_}: no plane {letter!r} separates the parts throughout"
+                )
         if stack or next(rest, None) is not None:
             raise RefusedError("the cover does not end with all pairs")
 
     def parted(self, letter: str, nodes: tuple[int, int], a: Fraction, b: Fraction) -> bool:
-        """Whether one normal of any length parts two parts from one time to another."""
+        """Checks whether one normal, of any length, separates two nodes between two times."""
         span = self.at(nodes)
         n = self.normal(letter, nodes, span, (a, b))
         if not any(n):
@@ -2503,7 +2527,7 @@ class Cover:
         ends = [Plane(time, n, span.gap(n, time) - kept, False) for time in (a, b)]
         if min(end.gap for end in ends) > 0 and span.joins(ends[0], ends[1]):
             return True
-        # One that both carry along.
+        # Try a normal that both bodies carry along.
         n = self.normal(letter, nodes, span, (a, a))
         gap = span.gap(n, a) - span.keep * root_above(dot(n, n))
         return gap > span.carried(Plane(a, n, gap, False), b)
@@ -2511,7 +2535,7 @@ class Cover:
     def normal(
         self, letter: str, nodes: tuple[int, int], span: Span, times: tuple[Fraction, Fraction]
     ) -> Vector:
-        """What a letter stands for, nearly: any other direction would do as well."""
+        """Returns the normal of a letter, rounded; the proof is valid for any vector."""
         spins = (span.moving, span.fixed)
 
         def both(of: Callable[[Fraction], Vector]) -> Vector:
@@ -2523,7 +2547,7 @@ class Cover:
         def edge(k: int, j: int) -> Vector:
             facet = self.parts[k].facet[nodes[k]]
             if facet < 0:
-                raise RefusedError("a box has no edges of its own")
+                raise RefusedError("an inner node has no edges")
             corners = self.parts[k].corners[facet]
             return way(k, minus(corners[(j + 1) % 3], corners[j]))
 
@@ -2541,13 +2565,13 @@ class Cover:
             i, j = divmod("123456789".index(letter), 3)
             n = cross(edge(0, i), edge(1, j))
         else:
-            raise NoProofError(f"no entry is written {letter!r}")
+            raise NoProofError(f"unknown letter {letter!r} of a cover")
         x, y, z = (Fraction(float(v)) for v in n)
         return (-x, -y, -z) if dot((x, y, z), apart) < 0 else (x, y, z)
 
 
 def certain(x: Vector, y: Vector, z: Vector, off: Fraction) -> int:
-    """The sign of a volume of vectors whose parts are off by less; 0 if it is not certain."""
+    """Returns the sign of a volume of vectors with errors below ``off``; 0 if it is not certain."""
     value = dot(cross(x, y), z)
     k, m, n = (max(abs(part) for part in v) + off for v in (x, y, z))
     error = 6 * off * (k * m + m * n + n * k)
@@ -2555,7 +2579,7 @@ def certain(x: Vector, y: Vector, z: Vector, off: Fraction) -> int:
 
 
 def pierces(p: Vector, q: Vector, triangle: Triangle, off: Fraction) -> bool:
-    """Whether a segment passes through a triangle, wherever their points are to within so much."""
+    """Checks whether a segment passes through a triangle, for all points within an error."""
     a, b, c = triangle
     below, above_ = (certain(minus(b, a), minus(c, a), minus(end, a), 2 * off) for end in (p, q))
     around = {
@@ -2565,7 +2589,7 @@ def pierces(p: Vector, q: Vector, triangle: Triangle, off: Fraction) -> bool:
 
 
 def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
-    """That two facets do at a time."""
+    """Checks that two facets meet at a time."""
     time = number(fields(meeting, "time triangles met")["time"])
     numbers = [
         whole(k, len(side.corners))
@@ -2597,7 +2621,7 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
     elif kind == "inside" and span.keep == 0:
         at = bounded_vector(fields(claim, "point")["point"], "the point")
         if not (parts[0].closed and parts[1].closed):
-            raise RefusedError("nothing is inside of open surfaces")
+            raise RefusedError("open surfaces have no interior")
         moving = span.moving.of([v for triangle in parts[0].closed for v in triangle])
         there = span.fixed.of([at]).at(0, time)
         corners = iter([moving.at(k, time) for k in range(3 * len(parts[0].closed))])
@@ -2610,7 +2634,7 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
         which = 1 if truth(claim["moving"]) else 0
         closed = parts[which].closed
         if not closed:
-            raise RefusedError("nothing is inside of open surfaces")
+            raise RefusedError("open surfaces have no interior")
         turning = (span.moving, span.fixed)[which]
         turned = turning.of([v for triangle in closed for v in triangle])
         corners = iter([turned.at(k, time) for k in range(3 * len(closed))])
@@ -2618,18 +2642,18 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
         if not is_around(around, mean((f, g)[1 - which], claim["weights"]), 4 * off):
             raise RefusedError("the point of the facet is not inside the other solid")
     else:
-        raise RefusedError(f"{kind!r} does not say that the solids meet")
+        raise RefusedError(f"{kind!r} does not prove that the solids meet")
 
 
 def is_around(facets: list[Triangle], at: Vector, off: Fraction) -> bool:
-    """Whether a closed surface goes round a point, and all of it is farther away."""
+    """Checks whether a closed surface surrounds a point at more than a distance."""
 
     def edge(u: Vector, v: Vector) -> Vector:
         way = minus(v, u)
         return minus(u, scaled(way, dot(u, way) / dot(way, way)))
 
     def is_away(triangle: Triangle) -> bool:
-        """By a plane across the way to the nearest point."""
+        """Checks the distance with a plane across the vector to the nearest point."""
         a, b, c = corners = [minus(v, at) for v in triangle]
         across_ = cross(minus(b, a), minus(c, a))
         if not any(across_):
@@ -2642,7 +2666,7 @@ def is_around(facets: list[Triangle], at: Vector, off: Fraction) -> bool:
 
 
 def winds(at: Vector, facets: list[Triangle]) -> int:
-    """How often a surface goes round a point that is not on it."""
+    """Returns the winding number of a surface around a point that is not on it."""
     for k in range(1, 60):
         way = (Fraction(1), Fraction(k, 61), Fraction(k * k, 3721))
         count, sure = 0, True
@@ -2650,7 +2674,7 @@ def winds(at: Vector, facets: list[Triangle]) -> int:
             a, b, c = (minus(v, at) for v in triangle)
             volume = dot(cross(a, b), c)
             if volume == 0:
-                # A ray that leaves the plane at the point does not come back to it.
+                # A ray that leaves the plane at the point does not meet it again.
                 normal = cross(minus(b, a), minus(c, a))
                 if any(normal) and dot(normal, way) == 0:
                     sure = False
@@ -2666,11 +2690,11 @@ def winds(at: Vector, facets: list[Triangle]) -> int:
                 count += 1 if sides[0] > 0 else -1
         if sure:
             return count
-    raise RefusedError("whether a point is inside is not told by any ray")
+    raise RefusedError("no ray decides whether a point is inside")
 
 
 def start(span: Span, parts: tuple[Parts, Parts]) -> None:
-    """That no shell is inside the other solid when the motion begins; surfaces do not meet then."""
+    """Checks that no shell is inside the other solid at the start, where surfaces do not meet."""
     spins = (span.moving, span.fixed)
     placed = []
     for spin, side in zip(spins, parts, strict=True):
@@ -2679,16 +2703,16 @@ def start(span: Span, parts: tuple[Parts, Parts]) -> None:
         placed.append([(world[k], world[k + 1], world[k + 2]) for k in range(0, len(world), 3)])
     for own, other in ((0, 1), (1, 0)):
         if any(winds(v, placed[other]) > 0 for v in shells(placed[own])):
-            raise RefusedError("a shell lies inside the other solid when the motion begins")
+            raise RefusedError("a shell is inside the other solid at the start of the motion")
 
 
 def shells(facets: list[Triangle]) -> list[Vector]:
-    """A point of each part of a surface that hangs together."""
+    """Returns a point of each connected part of a surface."""
     leads: dict[Vector, Vector] = {}
 
     def root(v: Vector) -> Vector:
         while leads.setdefault(v, v) != v:
-            # Every other one on the way is led on, so that ways stay short.
+            # Path halving keeps the paths short.
             leads[v] = leads[leads[v]]
             v = leads[v]
         return v
@@ -2700,18 +2724,18 @@ def shells(facets: list[Triangle]) -> list[Vector]:
 
 
 def open_facets(shape: Any) -> list[bool]:
-    """Returns for each facet of a body whether it is part of a surface that is open."""
+    """Returns for each facet of a body whether it belongs to an open surface."""
     pieces = shape.get("pieces", [])
     return [piece.get("open", False) for piece in pieces for _ in listed(piece["triangles"])]
 
 
 def has_open(shape: Any) -> bool:
-    """Whether a body has a surface that is open."""
+    """Checks whether a body has an open surface."""
     return any(open_facets(shape))
 
 
 def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: Report) -> None:
-    """When two solids that move first meet, as they are moved inwards in the file."""
+    """Checks the first contact of two moving solids, with facets moved inwards as in the file."""
     fields(claim, "parts proof")
     proof = fields(claim["proof"], "tolerance start spans meeting")
     shapes = [file.shapes[of["body"]] for of in movers]
@@ -2726,19 +2750,19 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
     check_tolerance(asked["tolerance"], number(proof["tolerance"]), parts)
     keep = asked["keep"]
     if keep < 0:
-        raise NoProofError("the gap to be kept is negative")
+        raise NoProofError("the minimum gap is negative")
     all_spans = spans(movers, [[_ZERO], [_ZERO]], keep)
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
     claimed = listed(proof["spans"])
     if proof["start"] == "assumed":
-        raise RefusedError("whether the solids overlap when the motion begins is not proven")
+        raise RefusedError("it is not proven whether the solids overlap at the start of the motion")
     begin = overlap_of(proof["start"], (len(shapes[0][1]), len(shapes[1][1])), "apart")
     if begin != "apart":
         if claimed or proof["meeting"] is not None:
-            raise RefusedError("of solids that overlap when the motion begins nothing else is said")
-        report.unchecked.append("that they overlap when the motion begins")
+            raise RefusedError("the solids overlap at the start, but the file has other claims")
+        report.unchecked.append("that they overlap at the start of the motion")
         report.partly = True
         return
     if len(claimed) > len(all_spans):
@@ -2747,30 +2771,32 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
     for span, claim in zip(all_spans, claimed, strict=False):
         until = number(fields(claim, "until cover lists")["until"])
         if reached != span.begin or not span.begin <= until <= span.end:
-            raise RefusedError("a span does not begin where the one before it ended")
+            raise RefusedError("a span does not begin where the previous one ends")
         if until > span.begin:
             Cover(span, parts).check(claim["cover"], claim["lists"], until)
         elif claim["cover"] != "" or listed(claim["lists"]):
-            raise RefusedError("a span without a time has entries")
+            raise RefusedError("a span of length 0 has entries")
         reached = until
     open_ = any(any(of) for of in opens)
     if reached == 0:
-        report.unchecked.append("that they do not overlap when the motion begins")
+        report.unchecked.append("that they do not overlap at the start of the motion")
         report.partly = True
     else:
         told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
         report.holds.append(f"{of} never {meet} {told}")
         if open_:
-            report.unchecked.append("what open surfaces are inside of when the motion begins")
+            report.unchecked.append(
+                "whether one is inside the other at the start: surfaces are open"
+            )
             report.partly = True
         else:
             start(all_spans[0], parts)
-            report.holds.append("none of them lies inside the other when the motion begins")
+            report.holds.append("neither of them is inside the other at the start of the motion")
     meeting = proof["meeting"]
     if meeting is not None:
         time = number(meeting["time"])
         if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
-            raise RefusedError(f"that they {meet} is said of another time")
+            raise RefusedError(f"the time at which they {meet} does not follow the proven span")
         solids_meet(all_spans[len(claimed) - 1], parts, meeting)
         report.holds.append(f"{of} {meet} at the time {float(time)!r}")
     if moved:
@@ -2779,17 +2805,19 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
 
 
 def check_tolerance(asked: Any, told: Fraction, parts: tuple[Parts, Parts]) -> None:
-    """The tolerance of a proof is the one that was asked for; without one no facet is moved."""
+    """Checks that the proof has the tolerance of the query, and without one moves no facet."""
     if bounded(told, MOST, "the tolerance") < 0:
         raise NoProofError(f"a tolerance of {float(told)!r} is negative")
     if asked is not None and number(asked) != told:
-        raise RefusedError(f"the proof is of another tolerance than {float(number(asked))!r}")
+        raise RefusedError(
+            f"the tolerance of the proof is not the query's, {float(number(asked))!r}"
+        )
     if told == 0 and any(side.moved for side in parts):
-        raise RefusedError("facets are moved, and the tolerance is 0")
+        raise RefusedError("facets are moved although the tolerance is 0")
 
 
 def motions(file: File, claims: Any, report: Report) -> None:
-    """Checks which two of several pairs of bodies, convex or as solids, first meet."""
+    """Checks the first contact among several pairs of bodies, convex or solid."""
     placed, asked = listed(file.placement), []
     for of in listed(file.query):
         fields(of, "keep", "tolerance")
@@ -2803,28 +2831,28 @@ def motions(file: File, claims: Any, report: Report) -> None:
         for mover in listed(movers, 2):
             file.number(fields(mover, "body motion")["body"])
         kind, proof = one_of(claim, "convex", "solids")
-        # What is apart by a larger gap, as solids may be, is apart by this one, too.
+        # Solids that are apart by a larger gap are also apart by the smallest one.
         if kind == "convex" and of["keep"] != least:
-            raise NoProofError("the proofs are of several gaps to be kept")
+            raise NoProofError("convex pairs have different minimum gaps")
         found = Report()
         if kind == "convex":
             motion(file, movers, of, proof, found)
         else:
             solid_motion(file, movers, of, proof, found)
             if len(pairs) > 1 and number(proof["proof"]["tolerance"]) != 0:
-                raise NoProofError("a pair as solids is one of solids as they are, of tolerance 0")
+                raise NoProofError("one of several pairs of solids has a tolerance other than 0")
         pair = f"pair {number_}: " if len(pairs) > 1 else ""
         report.holds += [f"{pair}{line}" for line in found.holds]
         report.unchecked += [f"{pair}{line}" for line in found.unchecked]
         report.partly = report.partly or found.partly
         if pair and not found.holds:
-            report.unchecked.append(f"{pair}nothing is proven of it")
+            report.unchecked.append(f"{pair}nothing is proven about it")
             report.partly = True
 
 
-#: So many pairs of bodies are named in a line.
+#: Maximum number of pairs of bodies named in a line.
 NAMED = 12
-#: Binary digits that rotations are kept with; what that leaves out is nothing beside `_SURE`.
+#: Binary digits to which rotations are rounded; the error is negligible compared with `_SURE`.
 _KEPT = 256
 
 
@@ -2835,7 +2863,7 @@ def kept(v: Vector) -> Vector:
 
 @dataclass(frozen=True)
 class Stage:
-    """A frame in the one before it, and what its joint does, by the values of a column."""
+    """A frame in its parent, and the joint that moves it by the values of a column."""
 
     origin: Body
     kind: str
@@ -2845,9 +2873,9 @@ class Stage:
 
 @dataclass
 class Field:
-    """Where a body is, and how its points move: ``p' = v + w x p`` and ``p'' = a + A p``."""
+    """The pose of a body and the motion of its points: ``p' = v + w x p`` and ``p'' = a + A p``."""
 
-    #: The axes of the body, and its origin.
+    #: The axes of the body frame, and its origin.
     columns: tuple[Vector, Vector, Vector]
     origin: Vector
     v: Vector
@@ -2861,7 +2889,7 @@ class Field:
         return plus(self.origin, plus(scaled(x, p[0]), plus(scaled(y, p[1]), scaled(z, p[2]))))
 
     def bends(self, p: Vector, n: Vector, dn: Vector) -> Fraction:
-        """``n . p'' + 2 dn . p'`` of a point where it is."""
+        """Returns ``n . p'' + 2 dn . p'`` for a point at its current position."""
         x, y, z = self.matrix
         second = plus(self.a, plus(scaled(x, p[0]), plus(scaled(y, p[1]), scaled(z, p[2]))))
         return dot(n, second) + 2 * dot(dn, plus(self.v, cross(self.w, p)))
@@ -2869,31 +2897,31 @@ class Field:
 
 @dataclass
 class Pieces:
-    """What a body is taken apart into: itself, boxes of its tree, and its facets.
+    """The pieces of a body: itself, the boxes of its tree, and its facets.
 
-    A convex one is whole: it is its only piece.
+    A convex body is its only piece.
     """
 
-    #: Of each piece the points, or the corners of its box.
+    #: For each piece its points, or the corners of its box.
     points: list[list[Vector]]
-    #: The pieces that one is made of.
+    #: The children of each piece.
     below: list[list[int]]
-    #: Of a solid.
+    #: The facets of a solid.
     facets: list[Triangle] = field(default_factory=list)
-    #: The facets that are not part of an open surface: those that something can be inside of.
+    #: The facets of closed surfaces, which have an interior.
     closed: list[Triangle] = field(default_factory=list)
-    #: Of a convex body: corners that are ones of a tetrahedron with its first point each.
+    #: For a convex body triples of corners that form tetrahedra with its first point.
     fans: list[tuple[int, int, int]] = field(default_factory=list)
 
     @property
     def is_open(self) -> bool:
-        """Whether it has a surface that is open."""
+        """Checks whether the body has an open surface."""
         return len(self.closed) < len(self.facets)
 
     @classmethod
     def read(cls, body: Body, of: Any, shape: Any) -> Pieces:
         if body.is_convex:
-            # Any corners would do: what is inside of a tetrahedron of them is inside of the body.
+            # Any corners are valid: a point inside a tetrahedron of vertices is inside the body.
             faces = shape["convex"]["faces"]
             fans = [(face[0], a, b) for face in faces for a, b in pairwise(face[1:])]
             return cls([body.points], [[]], fans=fans)
@@ -2920,12 +2948,12 @@ class Pieces:
                 bounds[at] = _box([v for k in range(rest, rest + tree[at]) for v in facets[k]])
             else:
                 if tree[at] == 0 or len(open_) < 2:
-                    raise RefusedError("the parts of the body are no tree")
+                    raise RefusedError("the nodes do not form a tree")
                 below[at] = [open_.pop(), open_.pop()]
                 bounds[at] = _box([v for k in below[at] for v in bounds[k]])
             open_.append(at)
         if open_ != [0] or rest:
-            raise RefusedError("the parts of the body are no tree")
+            raise RefusedError("the nodes do not form a tree")
         boxes = [[(x[0], y[1], z[2]) for x, y, z in product(ends, repeat=3)] for ends in bounds]
         return cls(
             boxes + [list(corners) for corners in facets],
@@ -2937,14 +2965,14 @@ class Pieces:
 
 @dataclass
 class Carried:
-    """A body at the end of joints, seen from the frame that it shares with another one."""
+    """A body at the end of a chain of joints, in a frame that it shares with another body."""
 
     stages: list[Stage]
     body: Body
     rows: list[list[Fraction]]
-    #: Of each turning joint, at least how far a point of the body can be from its axis.
+    #: For each turning joint an upper bound of the distance of the body from its axis.
     levers: list[Fraction] = field(default_factory=list)
-    #: At least how far anything is from where the joints begin.
+    #: Upper bound of the distance of any point from the start of the chain.
     size: Fraction = Fraction(1)
     known: dict[tuple[int, Fraction], Field] = field(default_factory=dict)
 
@@ -2970,18 +2998,18 @@ class Carried:
         self.size = whole_ + 1
 
     def rounded(self) -> Fraction:
-        """How far points may be off in the places of which depths and distances are told."""
+        """Returns a bound of the error of points in poses to which depths and distances refer."""
         values = [abs(row[s.column]) for row in self.rows for s in self.stages if s.kind != "fixed"]
         return _POSE * self.size * (1 + len(self.stages)) * (1 + max(values, default=Fraction()))
 
     def rate(self, row: int, stage: Stage) -> Fraction:
-        """How much a joint's value grows from a row to the next one."""
+        """Returns the increase of a joint's value from a row to the next one."""
         if row + 1 >= len(self.rows):
             return Fraction()
         return self.rows[row + 1][stage.column] - self.rows[row][stage.column]
 
     def at(self, row: int, share: Fraction) -> Field:
-        """At a share of the way from a row to the next one."""
+        """Returns the pose and the motion of the body at a fraction of a step."""
         if (row, share) in self.known:
             return self.known[row, share]
         axes, origin = _UNITS, _ZERO
@@ -3008,7 +3036,7 @@ class Carried:
                 a = plus(a, scaled(cross(w, spin), Fraction(2)))
                 origin = kept(plus(origin, scaled(along, value)))
                 continue
-            # The joint moves p by spin x (p - origin), which what comes before it turns: B x that.
+            # The joint moves p by spin x (p - origin); earlier joints turn this by B.
             before = plus(scaled(w, Fraction(2)), spin)
             v = minus(v, cross(spin, origin))
             a = minus(a, cross(before, cross(spin, origin)))
@@ -3035,7 +3063,7 @@ class Carried:
         return found
 
     def most(self, row: int) -> tuple[Fraction, Fraction, Fraction]:
-        """At least the lengths of the first three derivatives of all points, within a row."""
+        """Returns upper bounds of the first three derivatives of points, within a row."""
         before, most = Fraction(), [Fraction()] * 3
         for stage, lever in zip(self.stages, self.levers, strict=True):
             if stage.kind == "fixed":
@@ -3048,16 +3076,16 @@ class Carried:
                 else:
                     most[k] += (k + 1) * before**k * rate
             before = after if stage.kind == "turning" else before
-        # Rotations are that to rounding: poses are checked to be off by less.
+        # Rotations are exact up to rounding; larger deviations are rejected when poses are read.
         first, second, third = (x * (1 + 4 * len(self.stages) * _TURN) for x in most)
         return first, second, third
 
     def third_along(self, row: int, normals: Sequence[Vector]) -> Fraction:
-        """At least the third derivative of all points along normals between two, within a row.
+        """Returns an upper bound of the third derivative of heights along normals between two.
 
         Each of its terms begins with the angular velocity of its first joint, so along ``n`` it has
-        the part of ``n`` across that axis as a factor. Two turning joints one after the other keep
-        the angle between their axes, and the sine of a sum of angles is at most the sum of sines.
+        the part of ``n`` across that axis as a factor. Two consecutive turning joints keep the
+        angle between their axes, and the sine of a sum of angles is at most the sum of the sines.
         """
         if not self.stages:
             return Fraction()
@@ -3096,22 +3124,22 @@ class Carried:
 
 @dataclass
 class Couple:
-    """Two convex pieces of bodies that joints carry, from row to row."""
+    """Two convex pieces of bodies on chains of joints."""
 
     moving: Carried
     fixed: Carried
     keep: Fraction
     own: Sequence[Vector]
     other: Sequence[Vector]
-    #: How far the input of both bodies may be beyond their vertices.
+    #: Upper bound of the distance of the input of both bodies beyond their vertices.
     left_out: Fraction
 
     def off(self) -> Fraction:
-        """How far heights may be off for what sines, roots and rotations leave out."""
+        """Returns a bound of the error of heights from sines, roots and rotations."""
         return (self.moving.size + self.fixed.size) * 64 * _SURE
 
     def rounded(self) -> Fraction:
-        """How far points may be off in the places of which depths and distances are told."""
+        """Returns a bound of the error of points in poses to which depths and distances refer."""
         return self.moving.rounded() + self.fixed.rounded()
 
     def gap(self, n: Vector, row: int, share: Fraction) -> Fraction:
@@ -3125,11 +3153,12 @@ class Couple:
         return plane.gap > 0 and plane.is_left(self.gap(plane.normal, row, plane.time), self.keep)
 
     def joins(self, row: int, a: Plane, b: Plane) -> bool:
-        """Whether two planes of a row prove all between them.
+        """Checks whether two planes of a row prove everything between them.
 
-        Along ``n(x)`` a point's height has the second derivative ``h^2 n . p'' + 2 h dn . p'``.
-        Its own one is at most ``h^3`` times the third one of ``n . p``, and ``3 h^2 |dn| |p''|``.
-        So it is nowhere more than the mean of what it is at both ends and half of that.
+        Along ``n(x)`` the height of a point has the second derivative ``h^2 n . p'' + 2 h dn .
+        p'``. The derivative of this is at most ``h^3`` times the third derivative of ``n . p``,
+        plus ``3 h^2 |dn| |p''|``. Therefore it never exceeds the mean of its values at both ends
+        plus half of that bound.
         """
         h = b.time - a.time
         if h == 0:
@@ -3156,7 +3185,7 @@ class Couple:
         return self.moving.most(row)[0] + self.fixed.most(row)[0]
 
     def between(self, a: tuple[int, Fraction], b: tuple[int, Fraction]) -> Fraction:
-        """How far points of both move together from one place to another."""
+        """Returns a bound of the motion of points of both bodies from one place to another."""
         if a[0] == b[0]:
             return (b[1] - a[1]) * self.way(a[0])
         rows = sum((self.way(row) for row in range(a[0] + 1, b[0])), Fraction())
@@ -3175,19 +3204,19 @@ class Couple:
 
 
 def settled(row: int, share: Fraction) -> tuple[int, Fraction]:
-    """A place, of which the end of a row is the next one."""
+    """Returns a place in normal form: the end of a row is the beginning of the next one."""
     return (row + 1, Fraction()) if share == 1 else (row, share)
 
 
 @dataclass
 class Walk:
-    """Two bodies along a path, taken apart as their cover says."""
+    """Two bodies along a path, with the tree of pieces of their cover."""
 
     moving: Carried
     fixed: Carried
     keep: Fraction
     pieces: tuple[Pieces, Pieces]
-    #: How far the input of both bodies may be beyond their vertices.
+    #: Upper bound of the distance of the input of both bodies beyond their vertices.
     left_out: Fraction
     #: The last row.
     last: int
@@ -3203,7 +3232,7 @@ class Walk:
         here: tuple[int, Fraction],
         until: tuple[int, Fraction],
     ) -> tuple[int, Fraction]:
-        """Up to where a cover proves that two pieces do not meet, and at most so far."""
+        """Returns the place, at most ``until``, up to which a cover proves no contact."""
         couple = self.of(numbers)
         for step in listed(steps):
             kind, claim = one_of(step, "planes", "parts")
@@ -3214,7 +3243,7 @@ class Walk:
             place = settled(*place_of(claim["until"], self.last))
             below, covers = self.pieces[which].below[numbers[which]], listed(claim["covers"])
             if not below or len(below) != len(covers) or place < here:
-                raise RefusedError("what is taken apart has not all its parts")
+                raise RefusedError("a piece is divided without all of its parts")
             reached = place
             for part, cover in zip(below, covers, strict=True):
                 pair = (part, numbers[1]) if which == 0 else (numbers[0], part)
@@ -3226,11 +3255,10 @@ class Walk:
         return min(here, until)
 
     def is_nested(self, everywhere: bool = False) -> bool:
-        """Whether one body has a corner inside the other where the path begins.
+        """Checks whether one body has a corner inside the other at the start of the path.
 
-        One corner of each shell is looked at. That is enough where no surfaces meet, because then
-        a shell is inside with all of its corners or with none. With ``everywhere``, all corners are
-        looked at.
+        One corner of each shell is tested. This suffices if no surfaces meet, because then either
+        all corners of a shell are inside or none. With ``everywhere`` all corners are tested.
         """
         fields_ = [of.at(0, Fraction()) for of in (self.moving, self.fixed)]
 
@@ -3257,22 +3285,22 @@ class Walk:
 
 
 def is_within(at: Vector, corners: list[Vector], fans: list[tuple[int, int, int]]) -> bool:
-    """Whether a point is inside of a tetrahedron of the first corner and three others."""
+    """Checks whether a point is inside a tetrahedron of the first corner and three others."""
     ways = [minus(corner, at) for corner in corners]
     return any(encloses([ways[0], ways[a], ways[b], ways[c]]) for a, b, c in fans)
 
 
 def place_of(of: Any, last: int) -> tuple[int, Fraction]:
-    """Returns a place on a path: a row, and a share from 0 to 1 of the way to the next one."""
+    """Returns a place on a path: a row, and a fraction from 0 to 1 of the step to the next row."""
     fields(of, "row share")
     row, share = whole(of["row"], last + 1), number(of["share"])
     if not 0 <= share <= 1 or (row == last and share):
-        raise RefusedError(f"{float(share)!r} of the way from row {row} on is not on the path")
+        raise RefusedError(f"a fraction of {float(share)!r} after row {row} is not on the path")
     return row, share
 
 
 def has_planes(steps: Any) -> bool:
-    """Whether a cover that holds proves that two pieces do not meet where it begins."""
+    """Checks whether a valid cover proves that two pieces do not meet where it begins."""
     kinds = [one_of(step, "planes", "parts") for step in listed(steps)]
     return any(
         bool(claim)
@@ -3285,16 +3313,16 @@ def has_planes(steps: Any) -> bool:
 def planes_of_path(
     couple: Couple, stretches: Any, here: tuple[int, Fraction], last: int
 ) -> tuple[int, Fraction]:
-    """Up to where planes between two pieces prove that they do not meet, from some place on."""
+    """Returns up to which place planes prove that two pieces do not meet, starting from a place."""
     before = None
     for stretch in stretches:
         row = whole(fields(stretch, "row planes")["row"], last + 1)
         planes = [Plane.read(plane) for plane in listed(stretch["planes"])]
         if not planes or any(plane.alone for plane in planes):
-            raise RefusedError(f"the planes of row {row} are not in order")
+            raise RefusedError(f"the planes of row {row} are out of order")
         times = [plane.time for plane in planes]
         if sorted(times) != times or times[0] < 0 or times[-1] > 1:
-            raise RefusedError(f"the planes of row {row} are not in order")
+            raise RefusedError(f"the planes of row {row} are out of order")
         if settled(row, times[-1]) > (last, Fraction()):
             raise RefusedError("a plane is beyond the end of the path")
         if before is None:
@@ -3304,13 +3332,13 @@ def planes_of_path(
             (place, gap), next_ = before, (row, times[0])
             far = place <= next_ and couple.between(place, next_) < gap + planes[0].along
             if place > next_ or (settled(*place) != settled(*next_) and not far):
-                raise RefusedError(f"what is before row {row} is not proven")
+                raise RefusedError(f"the path before row {row} is not proven")
         for k, plane in enumerate(planes):
             if not couple.has(plane, row):
                 gap_ = float(plane.gap)
                 raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
             if k and not couple.joins(row, planes[k - 1], plane):
-                raise RefusedError(f"two planes of row {row} do not prove what is between them")
+                raise RefusedError(f"two planes of row {row} do not prove the path between them")
         before = ((row, times[-1]), planes[-1].along)
     if before is not None:
         here = settled(*before[0])
@@ -3318,7 +3346,7 @@ def planes_of_path(
 
 
 def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
-    """That two pieces of bodies do at a place: whole bodies, or facets."""
+    """Checks that two pieces, whole bodies or facets, meet at a place."""
     kind, claim = one_of(how, "pieces", "point")
     fields(claim, "pieces met" if kind == "pieces" else "pieces point")
     i, j = (
@@ -3326,12 +3354,12 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
         for k, side in zip(listed(claim["pieces"]), walk.pieces, strict=True)
     )
     if walk.pieces[0].below[i] or walk.pieces[1].below[j]:
-        raise RefusedError("what holds other pieces is none of a body's own")
+        raise RefusedError("a piece in contact has parts of its own")
     if kind == "point":
         is_in_both(walk, bounded_vector(claim["point"], "the point"), row, share)
         return
     couple, refused = walk.of((i, j)), RefusedError("the pieces have no points")
-    # Which corner of a facet is the first one is not told.
+    # The file does not say which corner of a facet is the first one.
     own = begun(couple.own, walk.pieces[0])
     for first, second in product(own, begun(couple.other, walk.pieces[1])):
         try:
@@ -3344,11 +3372,11 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
 
 
 def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
-    """That a point in the second one's frame is inside both solids at a place."""
+    """Checks that a point in the second body's frame is inside both solids at a place."""
     own, other = walk.pieces
     if walk.keep or not (own.closed and other.closed):
         raise RefusedError(
-            "a point says nothing of open surfaces, convex bodies, or a gap to be kept"
+            "a point proves nothing for open surfaces, convex bodies, or a minimum gap"
         )
     p, q = (of.at(row, share) for of in (walk.moving, walk.fixed))
     placed = [(p.place(a), p.place(b), p.place(c)) for a, b, c in own.closed]
@@ -3359,7 +3387,7 @@ def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
 
 
 def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
-    """That two convex pieces overlap at a place, or are as near as the gap to be kept."""
+    """Checks that two convex pieces overlap at a place, or are within the minimum gap."""
     kind, claim = one_of(met, "deep", "near")
     keep, off = couple.keep, (couple.off(), couple.rounded())
     if kind == "deep":
@@ -3369,26 +3397,26 @@ def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
     elif kind == "near" and keep > 0:
         is_near(claim, couple.ends(near_claim(claim)["pairs"], row, share), off, keep)
     else:
-        raise RefusedError(f"{kind!r} does not say that the bodies meet")
+        raise RefusedError(f"{kind!r} does not prove that the bodies meet")
 
 
 def begun(points: Sequence[Vector], side: Pieces) -> list[Sequence[Vector]]:
-    """The corners of a facet from each of them on; those of a convex body as they are."""
+    """Returns the cyclic orders of a facet's corners; a convex body keeps its order."""
     return [[*points[k:], *points[:k]] for k in range(3)] if side.facets else [points]
 
 
 @dataclass
 class Robot:
-    """Frames in frames, the bodies that they carry, and which pairs of these a proof is about."""
+    """A tree of frames, the bodies that they carry, and the pairs of bodies of a proof."""
 
     frames: list[Stage]
     parents: list[int | None]
     rows: list[list[Fraction]]
     times: list[Fraction]
-    #: Of each body the frames that carry it, and where it is in the last one.
+    #: For each body the frames that carry it, and the body in the last one.
     bodies: list[tuple[list[int], Body]]
     pieces: list[Pieces]
-    #: How far the input of each body may be beyond its vertices.
+    #: For each body an upper bound of the distance of its input beyond its vertices.
     left_out_of: list[Fraction]
     names: list[str]
     pairs: list[tuple[int, int]]
@@ -3400,7 +3428,7 @@ class Robot:
         rows = [[number(x) for x in row] for row in listed(joints["rows"])]
         times = [bounded(number(x), MOST, "a time") for x in listed(joints["times"])]
         if not rows or len(times) != len(rows) or any(b <= a for a, b in pairwise(times)):
-            raise NoProofError("the times of the rows do not grow")
+            raise NoProofError("the times of the rows do not increase")
         frames: list[Stage] = []
         parents: list[int | None] = []
         column = 0
@@ -3427,7 +3455,9 @@ class Robot:
         parts = listed(claim["parts"], len(file.bodies))
         for k, (shape, own) in enumerate(zip(file.bodies, parts, strict=True)):
             if ("convex" in shape) == (own is not None):
-                raise NoProofError(f"body {k}: a solid has parts, a convex body has none")
+                raise NoProofError(
+                    f"body {k}: parts are given for a convex body, or missing for a solid"
+                )
         for of in listed(placement["bodies"]):
             robot.add(file, fields(of, "body name frame pose"), parts)
         numbers = {name: k for k, name in enumerate(robot.names)}
@@ -3441,21 +3471,21 @@ class Robot:
         """Adds a body of the file."""
         name, body = of["name"], file.placed(of)
         if not is_text(name) or not name or name in self.names:
-            raise NoProofError(f"{name!r} is not a name, or the name of several bodies")
+            raise NoProofError(f"{name!r} is not a name, or names several bodies")
         way = [] if of["frame"] is None else [whole(of["frame"], len(self.frames))]
         while way and (parent := self.parents[way[-1]]) is not None:
             way.append(parent)
         self.names.append(name)
         self.bodies.append((way[::-1], body))
         if self.reach(len(self.bodies) - 1) > MOST:
-            raise NoProofError(f"{name!r} can be farther than 2^200 from where its frames begin")
+            raise NoProofError(f"{name!r} can be farther than 2^200 from the root of its frames")
         shape = file.bodies[of["body"]]
         self.pieces.append(Pieces.read(body, parts[of["body"]], shape))
         error = shape["convex"]["hull_error"] if body.is_convex else 0
         self.left_out_of.append(number(error))
 
     def reach(self, k: int) -> float:
-        """Returns how far a body can be from where its frames begin, rounded."""
+        """Returns an upper bound of the distance of a body from the root of its frames, rounded."""
         way, body = self.bodies[k]
         rows, offset = (
             [[float(x) for x in row] for row in body.rows],
@@ -3474,7 +3504,7 @@ class Robot:
         return reach
 
     def walk(self, pair: tuple[int, int], keep: Fraction) -> Walk:
-        """Two bodies, seen from the frame that both stand in."""
+        """Returns two bodies relative to the last frame that carries both."""
         (way_p, p), (way_q, q) = (self.bodies[k] for k in pair)
         while way_p and way_q and way_p[0] == way_q[0]:
             way_p, way_q = way_p[1:], way_q[1:]
@@ -3491,11 +3521,11 @@ class Robot:
         return times[row] + (share * (times[row + 1] - times[row]) if share else 0)
 
     def told(self, pair: tuple[int, int]) -> str:
-        """The names of two bodies."""
+        """Returns the names of two bodies."""
         return " and ".join(repr(self.names[k]) for k in pair)
 
     def left_out(self) -> list[str]:
-        """Two bodies each that no pair is about, though joints may move one against the other."""
+        """Returns pairs of bodies that joints move against each other but the proof leaves out."""
         pairs = {frozenset(pair) for pair in self.pairs}
         moved_by = [[k for k in way if self.frames[k].kind != "fixed"] for way, _ in self.bodies]
         return [
@@ -3506,7 +3536,7 @@ class Robot:
 
 
 def path(file: File, statement: Any, report: Report) -> None:
-    """Which two bodies that joints carry first meet, of the pairs that are named."""
+    """Checks the first contact among pairs of bodies on chains of joints."""
     fields(file.query, "path", "keep")
     keep = bounded(gap_to_keep(file.query), MOST, "the gap to be kept")
     fields(statement, "pairs lower upper parts proof")
@@ -3515,7 +3545,7 @@ def path(file: File, statement: Any, report: Report) -> None:
     if not pairs:
         raise NoProofError("there is no pair of bodies")
     if len(covers) != len(pairs):
-        raise RefusedError("there is not a cover for each pair")
+        raise RefusedError("the number of covers differs from the number of pairs")
     begin, reached, open_, begins = (0, Fraction()), (last, Fraction()), 0, True
     for pair, cover in zip(pairs, covers, strict=True):
         walk, steps = robot.walk(pair, keep), fields(cover, "steps")["steps"]
@@ -3524,38 +3554,40 @@ def path(file: File, statement: Any, report: Report) -> None:
             if walk.pieces[0].is_open or walk.pieces[1].is_open:
                 open_ += 1
             elif walk.is_nested():
-                raise RefusedError("one of two bodies is inside the other where the path begins")
+                raise RefusedError("one of two bodies is inside the other at the start of the path")
         else:
             begins = False
         reached = min(reached, up_to)
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
     lower, meeting = number(statement["lower"]), proof["meeting"]
     if lower > robot.time(*reached):
-        raise RefusedError(f"up to {float(lower)!r} it is not proven")
+        raise RefusedError(f"the path up to {float(lower)!r} is not proven")
     if left_out := robot.left_out():
-        report.unchecked.append(f"what is left out of the question: {', '.join(left_out)}")
-    # Of a path of one row it is its only place that planes are at.
+        report.unchecked.append(f"pairs that the query leaves out: {', '.join(left_out)}")
+    # On a path with one row the planes are at its only place.
     if lower > robot.times[0] or (lower == robot.times[-1] and begins):
         told = ", ".join(map(robot.told, pairs[:NAMED])) + (", ..." if len(pairs) > NAMED else "")
         report.holds.append(
             f"of {len(pairs)} pairs of bodies none {meet} up to the time {float(lower)!r}: {told}"
         )
     if open_:
-        report.unchecked.append(f"what open surfaces are inside of at first, in {open_} pairs")
+        report.unchecked.append(
+            f"whether a body is inside another at the start: {open_} pairs have open surfaces"
+        )
         report.partly = True
     upper = None if statement["upper"] is None else number(statement["upper"])
     if meeting is None:
         if upper is not None:
-            raise RefusedError("that two bodies meet is said, and not proven")
+            raise RefusedError("a contact is claimed without a proof")
         return
     which = whole(fields(meeting, "pair place how")["pair"], len(pairs))
     place = place_of(meeting["place"], last)
     if place < reached or (upper is not None and robot.time(*place) > upper):
-        raise RefusedError(f"that two bodies {meet} is said of another time")
+        raise RefusedError(f"the place at which two bodies {meet} is before the proven part ends")
     found, how = robot.walk(pairs[which], keep), meeting["how"]
     if how == "inside":
         if place != begin or not (found.is_nested() or found.is_nested(everywhere=True)):
-            raise RefusedError("neither body is inside the other where the path begins")
+            raise RefusedError("neither body is inside the other at the start of the path")
     else:
         pieces_meet(found, how, *place)
     by = f"by the time {float(upper)!r}" if upper is not None else "on the path"
@@ -3563,14 +3595,14 @@ def path(file: File, statement: Any, report: Report) -> None:
 
 
 def check(text: str) -> Report:
-    """Checks a proof as it was written.
+    """Checks the text of a proof file.
 
     Raises
     ------
     NoProofError
-        It is no saved proof.
+        The text is not a saved proof.
     RefusedError
-        Something that it claims does not hold.
+        A claim does not hold.
     """
     try:
         content = json.loads(
@@ -3590,7 +3622,7 @@ def check(text: str) -> Report:
             check_faces(report, k, body.get("convex"))
         kind, claim = one_of(content["statement"], *CLAIMS)
         if CLAIMS[kind] != file.asked:
-            raise NoProofError(f"{kind!r} is not what is asked: {file.asked!r}")
+            raise NoProofError(f"the claim {kind!r} does not belong to the query {file.asked!r}")
         if file.asked == "cast":
             along(file, kind, claim, report)
         elif file.asked == "pair":
@@ -3609,7 +3641,7 @@ def check(text: str) -> Report:
 
 
 def check_faces(report: Report, body: int, content: Any) -> None:
-    """Says that faces of a body are not checked, if they are not clearly those of its hull."""
+    """Reports the faces of a body as unchecked, unless they are clearly those of its hull."""
     if content is None or are_own_faces([vector(v) for v in listed(content["vertices"])], content):
         return
     report.partly = True
@@ -3617,21 +3649,21 @@ def check_faces(report: Report, body: int, content: Any) -> None:
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object none of whose names comes twice."""
+    """Builds an object, and rejects repeated names."""
     fields = dict(pairs)
     if len(fields) < len(pairs):
-        raise NoProofError("a name comes twice in an object")
+        raise NoProofError("a name occurs twice in an object")
     return fields
 
 
-#: What is claimed of bodies where they are.
+#: The checks of claims about two bodies at fixed poses.
 PLACED = {
     "distance": distance,
     "depth": depth,
     "solid_distance": solid_distance,
     "free_directions": free_directions,
 }
-#: What is asked, by what is claimed.
+#: The kind of query of each kind of claim.
 CLAIMS = {
     **dict.fromkeys(("contacts", "separation", "clearance"), "cast"),
     **dict.fromkeys(PLACED, "pair"),
@@ -3642,12 +3674,12 @@ CLAIMS = {
 
 
 def _integer(text: str) -> int | float:
-    """An integer; -0 is a number that is none."""
+    """Converts an integer; -0 becomes a floating-point number."""
     return -0.0 if text == "-0" else int(text)
 
 
 def _finite(text: str) -> float:
-    """A number that is not larger than any double."""
+    """Converts a number, and rejects numbers that exceed any double."""
     value = float(text)
     if math.isinf(value):
         raise NoProofError(f"{text:.40} is larger than any double")
@@ -3659,27 +3691,27 @@ def _no_number(text: str) -> Any:
 
 
 def gap_to_keep(of: Any) -> Fraction:
-    """The gap that the bodies are to keep, 0 for none."""
+    """Returns the minimum gap of a query; 0 if there is none."""
     keep = number(of.get("keep", 0.0))
     if not 0 <= keep <= _RANGE[1]:
         raise NoProofError(
-            f"the gap to be kept, {float(keep)!r}, is negative, or larger than any body"
+            f"a minimum gap of {float(keep)!r} is out of range; accepted: 0 to 2^200"
         )
     return keep
 
 
 def pair(file: File, kind: str, claim: Any, report: Report) -> None:
-    """What is claimed of two bodies where they are."""
+    """Checks a claim about two bodies at fixed poses."""
     moving, fixed = file.two(solids=kind in ("solid_distance", "free_directions"))
     if kind == "free_directions" and any(
         has_open(file.bodies[of["body"]]) for of in file.placement
     ):
-        raise NoProofError("of open surfaces free directions are not claimed")
+        raise NoProofError("free directions are not claimed for open surfaces")
     PLACED[kind](moving, fixed, claim, report)
 
 
 def along(file: File, kind: str, claim: Any, report: Report) -> None:
-    """What is claimed of two bodies along a direction."""
+    """Checks a claim about two bodies along a direction."""
     moving, fixed = file.two(solids=kind == "clearance")
     fields(file.query, "direction", "keep")
     d, keep = place(file.query["direction"]), gap_to_keep(file.query)
@@ -3696,7 +3728,7 @@ def along(file: File, kind: str, claim: Any, report: Report) -> None:
 def contacts(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction
 ) -> None:
-    """The ends of the translations at which two convex bodies meet."""
+    """Checks both ends of the range of translations at which two convex bodies meet."""
     claim = fields(claim, "", "slide first last")
     claim = {name: part for name, part in claim.items() if part is not None}
     if not {"first", "last"} & set(claim):
@@ -3708,7 +3740,7 @@ def contacts(
     if "last" in claim:
         back = scaled(d, Fraction(-1))
         contact(moving, fixed, back, claim["last"], report, "against the direction", keep)
-    report.unchecked.append("what is said of rounding, which proves nothing")
+    report.unchecked.append("the stated rounding, which proves nothing")
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -3719,7 +3751,7 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         report = check(Path(words[0]).read_text(encoding="utf-8"))
     except (OSError, NoProofError, UnicodeDecodeError) as error:
-        print(f"{words[0]}: no proof: {error}", file=sys.stderr)
+        print(f"{words[0]}: not a proof: {error}", file=sys.stderr)
         return 3
     except RefusedError as error:
         print(f"{words[0]}: the proof does not hold: {error}", file=sys.stderr)

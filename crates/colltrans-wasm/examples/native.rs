@@ -1,7 +1,8 @@
-//! Answers the questions of a page without a browser: one question a line in, one answer a line out.
+//! Answers the page's questions without a browser: reads one question per line and writes one answer per
+//! line.
 //!
-//! A line is `FILE<tab>QUESTION` for a question that comes with a file, else the question alone. The argument names
-//! the module that answers; without it, that is `page`.
+//! A line is `FILE<tab>QUESTION` for a question with a file, otherwise just the question. The argument names
+//! the module that answers; the default is `page`.
 //!
 //! `cargo run --profile native --all-features --example native -- distance < questions > answers`
 
@@ -21,12 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         "assembly" => answer(colltrans_wasm::assembly::State::default()),
         #[cfg(feature = "motion")]
         "motion" => answer(colltrans_wasm::motion::State::default()),
-        _ => return Err(format!("{module}: no module has this name, or its feature is off").into()),
+        _ => return Err(format!("{module}: unknown module, or its feature is off").into()),
     }?;
     Ok(())
 }
 
-/// Writes the text of the answer to each line.
+/// Writes the text of the answer to each input line.
 fn answer(mut state: impl Answers) -> io::Result<()> {
     let mut out = io::BufWriter::new(io::stdout());
     for line in io::stdin().lock().lines() {

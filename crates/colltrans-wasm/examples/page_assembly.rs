@@ -1,5 +1,5 @@
-//! The module `assembly` as a page loads it.
+//! The module `assembly` as the page loads it.
 //!
-//! It is linked alone, not beside a Rust library, so that all of it is optimised at once.
+//! It is linked by itself, not together with a Rust library, so that all of it is optimised at once.
 
 colltrans_wasm::export!(colltrans_wasm::assembly::State);

@@ -1,8 +1,10 @@
-//! The report of an assembly as the command writes it with `-o`, for the test of its viewer: parts in a
-//! tolerance, and where to write. One file may be a manifest, whose first part is mapped too.
+//! Writes the report of an assembly as the command `assembly -o` does, for the test of its viewer.
 //!
-//! In `crates/colltrans-wasm`: `cargo run --release --features report --example report -- 0.1
-//! report.html *.off`
+//! The arguments are a tolerance, the output file, and the parts. A single file may be a manifest; its first
+//! part is then mapped too.
+//!
+//! In `crates/colltrans-wasm`:
+//! `cargo run --release --features report --example report -- 0.1 report.html *.off`
 
 use std::error::Error;
 use std::path::Path;
@@ -16,7 +18,7 @@ use glam::DAffine3;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [tolerance, target, files @ ..] = &arguments[..] else {
-        return Err("give a tolerance, where to write, and files".into());
+        return Err("missing arguments; expected TOLERANCE OUTPUT FILES...".into());
     };
     let watch = Watch::default();
     let (assembly, is_manifest) = match files {

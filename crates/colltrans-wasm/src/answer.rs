@@ -1,25 +1,25 @@
-//! What comes back for a question.
+//! The answer to a question.
 
 use serde::Serialize;
 use serde_json::json;
 
-/// An answer: JSON, and numbers in binary (little-endian) whose layout the JSON tells.
+/// An answer: JSON, and binary numbers (little-endian) whose layout the JSON describes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Answer {
-    /// JSON: an object, with a field `error` where there is no answer.
+    /// A JSON object; it has a field `error` if there is no answer.
     pub text: Vec<u8>,
     /// Numbers that would be long as text.
     pub numbers: Vec<u8>,
 }
 
-/// Why there is no answer.
+/// The reason why there is no answer.
 #[derive(Debug)]
 pub(crate) struct Refusal {
-    /// For people.
+    /// A message for the user.
     pub(crate) error: String,
-    /// What the same file could be taken as instead.
+    /// Other ways to use this file.
     pub(crate) instead: Vec<&'static str>,
-    /// Whether the body that was there before the file is no more.
+    /// Whether the previous body of this slot was dropped.
     pub(crate) gone: bool,
 }
 
@@ -30,14 +30,17 @@ impl From<String> for Refusal {
 }
 
 impl Answer {
-    /// Facts whose keys are texts.
-    pub(crate) fn of<T: Serialize>(facts: &T) -> Self {
+    /// Serialises an answer without binary numbers.
+    pub(crate) fn from_facts<T: Serialize>(facts: &T) -> Self {
         Self { text: serde_json::to_vec(facts).unwrap_or_default(), numbers: Vec::new() }
     }
 }
 
 impl Refusal {
-    pub(crate) fn answer(self) -> Answer {
-        Answer::of(&json!({ "error": self.error, "instead": self.instead, "gone": self.gone }))
+    /// Returns the refusal as an answer with the field `error`.
+    pub(crate) fn into_answer(self) -> Answer {
+        Answer::from_facts(
+            &json!({ "error": self.error, "instead": self.instead, "gone": self.gone }),
+        )
     }
 }

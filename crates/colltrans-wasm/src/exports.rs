@@ -1,21 +1,19 @@
-//! What the page calls: eight exported names.
+//! The interface between the page and a module: eight exported functions.
 //!
-//! A question is written to the memory that `question_buffer` returns: first its text (JSON), then
-//! the bytes of a file if there is one. `ask` answers it; text and numbers of the answer are read
-//! where `text` and `numbers` say, until the next question. Each of these places is returned as
-//! an address, and its length by `text_length` and `numbers_length`.
+//! The page writes a question to the memory that `question_buffer` returns: its text (JSON), then the bytes
+//! of a file if there is one. `ask` answers it. The answer stays valid until the next question; `text` and
+//! `numbers` return the addresses of its parts, `text_length` and `numbers_length` their lengths. If the
+//! library panics, which is a bug, `last_words` has the message.
 //!
-//! If the library panics, which it never should, the page reads the reason at `last_words`.
-//!
-//! There is no unsafe block: exporting a name is what the compiler counts as unsafe, because two
-//! libraries could export the same one. Addresses only leave, they never come in.
+//! There is no unsafe block. The compiler counts the export of a name as unsafe, because two libraries could
+//! export the same name. Addresses are only returned, never accepted.
 
 use std::sync::{Mutex, Once, PoisonError};
 
 use crate::Answers;
 use crate::answer::Answer;
 
-/// The memory that a page and a module share.
+/// The memory that the page and a module share.
 #[derive(Debug, Default)]
 pub struct Exchange<S> {
     buffer: Vec<u8>,
@@ -27,14 +25,14 @@ static LAST_WORDS: Mutex<String> = Mutex::new(String::new());
 static LISTENING: Once = Once::new();
 
 impl<S: Answers> Exchange<S> {
-    /// Returns a buffer for a question of this many bytes.
+    /// Returns a buffer for a question with this number of bytes.
     pub fn question_buffer(&mut self, bytes: usize) -> *mut u8 {
         self.buffer.clear();
         self.buffer.resize(bytes, 0);
         self.buffer.as_mut_ptr()
     }
 
-    /// Answers the question in the buffer: its first `text` bytes are JSON, the rest is a file.
+    /// Answers the question in the buffer. Its first `text` bytes are JSON, the rest is a file.
     pub fn ask(&mut self, text: usize) {
         LISTENING.call_once(|| {
             std::panic::set_hook(Box::new(|panic| {
@@ -43,7 +41,7 @@ impl<S: Answers> Exchange<S> {
         });
         let mut buffer = std::mem::take(&mut self.buffer);
         let file = buffer.split_off(text.min(buffer.len()));
-        // The memory of the last answer is given back before the next one is made.
+        // Free the memory of the last answer before the next one is built.
         self.answer = Answer::default();
         self.answer = self.state.ask(&buffer, file);
     }
@@ -54,13 +52,13 @@ impl<S: Answers> Exchange<S> {
     }
 }
 
-/// Returns where the reason of a panic begins, and its length.
+/// Returns the address and the length of the message of a panic.
 pub fn last_words() -> (*const u8, usize) {
     let words = LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner);
     (words.as_ptr(), words.len())
 }
 
-/// Exports the names that a page calls; a question goes to the state of the type that is given.
+/// Exports the functions that the page calls. Questions go to a state of the given type.
 #[macro_export]
 macro_rules! export {
     ($state:ty) => {

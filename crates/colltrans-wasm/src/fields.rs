@@ -1,4 +1,4 @@
-//! Fields of objects in JSON, by hand: what derived readers add would be a third of the download.
+//! Fields of JSON objects, read by hand, because derived readers would add a third to the download.
 
 use serde_json::{Map, Value};
 
@@ -6,21 +6,23 @@ use serde_json::{Map, Value};
 pub(crate) struct Fields<'a>(&'a Map<String, Value>);
 
 impl<'a> Fields<'a> {
-    pub(crate) fn of(value: &'a Value) -> Result<Self, String> {
+    /// Returns the fields of a JSON value, or an error if it is not an object.
+    pub(crate) fn from_value(value: &'a Value) -> Result<Self, String> {
         value.as_object().map(Self).ok_or_else(|| "it is not an object".into())
     }
 
-    /// `None` for what is missing or null.
+    /// Returns a field; `None` if it is missing or null.
     pub(crate) fn get(&self, key: &str) -> Option<&'a Value> {
         self.0.get(key).filter(|value| !value.is_null())
     }
 
-    pub(crate) fn need(&self, key: &str) -> Result<&'a Value, String> {
+    /// Returns a field, or an error if it is missing or null.
+    pub(crate) fn required(&self, key: &str) -> Result<&'a Value, String> {
         self.get(key).ok_or_else(|| format!("{key} is missing"))
     }
 
     pub(crate) fn text(&self, key: &str) -> Result<&'a str, String> {
-        self.need(key)?.as_str().ok_or_else(|| format!("{key} is not text"))
+        self.required(key)?.as_str().ok_or_else(|| format!("{key} is not text"))
     }
 
     pub(crate) fn flag(&self, key: &str) -> bool {
@@ -33,7 +35,7 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn list(&self, key: &str) -> Result<Vec<f64>, String> {
-        numbers(self.need(key)?).ok_or_else(|| format!("{key} is not a list of numbers"))
+        numbers(self.required(key)?).ok_or_else(|| format!("{key} is not a list of numbers"))
     }
 
     pub(crate) fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], String> {

@@ -1,18 +1,20 @@
 //! The library in a browser.
 //!
-//! Each module answers the questions of a part of the page, and is linked as a WebAssembly module of its own that the
-//! page loads when it needs it: [`page`] answers the first question of every visitor, so it is the smallest one. All
-//! of them export the same names ([`export`]).
+//! Each module answers the questions of a part of the page and is linked as a WebAssembly module of its own,
+//! which the page loads on demand. [`page`] answers the first question of every visitor, so it is the
+//! smallest one. All modules export the same names ([`export`]).
 //!
-//! Data flow: a page writes a question, JSON and perhaps the bytes of a file, to a buffer ([`exports`]) -> the
-//! module's state answers it ([`Answers::ask`]) -> an [`Answer`]: JSON, and perhaps numbers in binary for large things.
+//! Data flow: the page writes a question, JSON and optionally the bytes of a file, to a buffer ([`exports`])
+//! -> the state of the module answers it ([`Answers::ask`]) -> an [`Answer`]: JSON, and optionally binary
+//! numbers for large data.
 //!
-//! Nothing here computes geometry. The same code runs natively (`examples/native.rs`), so the tests compare what a
-//! browser answers with it, byte for byte: numbers are written with as many digits as it takes to read the same bits.
+//! Nothing here computes geometry. The same code runs natively (`examples/native.rs`). Tests compare its
+//! answers with those of a browser byte for byte, because numbers are written with enough digits to restore
+//! their bits.
 //!
-//! Features: `motion` compiles the module [`motion`], and the library with gaps that a cast keeps; `assembly` compiles
-//! the module [`assembly`], and the library with all that it has. The other modules need neither and are smaller
-//! without them. `report` is for the test of a report's viewer alone.
+//! Features: `motion` compiles the module [`motion`] and the library's minimum gaps; `assembly` compiles the
+//! module [`assembly`] and the whole library. The other modules are smaller without them. `report` is only
+//! for the test of a report's viewer.
 
 mod answer;
 #[cfg(feature = "assembly")]
@@ -21,7 +23,7 @@ pub mod distance;
 pub mod exports;
 mod fields;
 pub mod found;
-mod lit;
+mod highlight;
 #[cfg(feature = "motion")]
 pub mod motion;
 pub mod page;
@@ -31,8 +33,8 @@ mod pose;
 
 pub use answer::Answer;
 
-/// What answers a page's questions.
+/// The state of a module, which answers the page's questions.
 pub trait Answers: Default {
-    /// Answers one question; `file` holds the bytes that come with it, if any.
+    /// Answers one question. `file` has the attached bytes, if any.
     fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer;
 }

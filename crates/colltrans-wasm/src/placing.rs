@@ -1,5 +1,5 @@
-//! Two bodies of files, made as [`colltrans_mesh::body`] makes them for the page's library; motions have the
-//! same.
+//! Two bodies, built from files as [`colltrans_mesh::body`] builds them for the module `page`. The modules
+//! `distance` and `motion` share this code.
 
 use std::path::Path;
 
@@ -19,29 +19,32 @@ pub(crate) enum Slot {
     Fixed,
 }
 
-/// Two bodies, as files made them.
+/// Two bodies, built from files.
 #[derive(Debug, Default)]
 pub(crate) struct Places([Option<Part>; 2]);
 
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "there are two of them")]
+#[expect(clippy::large_enum_variant, reason = "there are two values")]
 pub(crate) enum Part {
     Convex(Loaded<ConvexPolyhedron>),
     Solid(Loaded<Solid>),
 }
 
 impl Part {
-    fn of(mesh: &Mesh, take: &str) -> Result<Self, String> {
+    /// Builds a body from a mesh.
+    fn from_mesh(mesh: &Mesh, take: &str) -> Result<Self, String> {
         let options = BodyOptions::default().with_hull(take == "hull").with_open(take == "open");
         let words = |error: Refused| error.to_string();
         match take {
             "convex" | "hull" => body::convex(mesh, &options).map(Self::Convex).map_err(words),
             "solid" | "open" => body::solid(mesh, &options).map(Self::Solid).map_err(words),
-            other => Err(format!("a mesh cannot be taken as {other}")),
+            other => {
+                Err(format!("unknown kind of body {other}; known kinds: convex, hull, solid, open"))
+            }
         }
     }
 
-    /// As a solid, whatever it was taken as.
+    /// Returns the body as a solid.
     pub(crate) fn solid(&self) -> Result<&Solid, QueryError> {
         Ok(match self {
             Self::Convex(of) => of.body.as_solid()?,
@@ -51,7 +54,7 @@ impl Part {
 }
 
 impl Places {
-    /// A file becomes a body, in the place of the one that was there.
+    /// Replaces a body by the body of a file.
     pub(crate) fn place(
         &mut self,
         slot: Slot,
@@ -64,11 +67,11 @@ impl Places {
         let path = Path::new(name);
         let format = Format::of_path(path).map_err(|error| error.to_string())?;
         let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
-        *body = Some(Part::of(&mesh, take)?);
-        Ok(Answer::of(&json!({ "placed": true })))
+        *body = Some(Part::from_mesh(&mesh, take)?);
+        Ok(Answer::from_facts(&json!({ "placed": true })))
     }
 
-    /// Both of them.
+    /// Returns both bodies.
     pub(crate) fn both(&self) -> Result<[&Part; 2], String> {
         match &self.0 {
             [Some(moving), Some(fixed)] => Ok([moving, fixed]),

@@ -1,4 +1,4 @@
-//! Answers to the page's questions about the small gearbox, against the library itself.
+//! Answers to the page's questions about the small gearbox, compared with the library.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ fn gearbox() -> State {
 }
 
 #[test]
-fn the_gearbox_comes_apart() {
+fn plan_moves_every_part_of_the_gearbox() {
     let mut state = gearbox();
     let (parts, numbers) = ask(&mut state, &json!({ "do": "parts" }), Vec::new());
     let all = parts["parts"].as_array().unwrap();
@@ -55,7 +55,7 @@ fn the_gearbox_comes_apart() {
     for step in plan["plan"].as_array().unwrap().iter().filter(|s| s["within"].is_null()) {
         moved.extend(step["parts"].as_array().unwrap().iter().map(|p| p.as_str().unwrap()));
     }
-    // All but what remains.
+    // Every part except those that remain.
     moved.extend(plan["last"].as_array().unwrap().iter().map(|p| p.as_str().unwrap()));
     moved.sort_unstable();
     assert_eq!(moved, names, "{plan}");
@@ -65,7 +65,7 @@ fn the_gearbox_comes_apart() {
     assert_eq!(page.matches("class=\"sheet step\"").count(), sheets);
     assert!(page.contains("<h1>Gears</h1>"));
     let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [0, 0, 2] }), Vec::new());
-    // Who is free along it comes out alone.
+    // A part is free along the direction exactly if it can be removed alone.
     for (k, room) in along["rooms"].as_array().unwrap().iter().enumerate() {
         let alone = along["removable"].as_array().unwrap().contains(&json!([names[k]]));
         assert_eq!(room["part"], names[k]);
@@ -75,7 +75,7 @@ fn the_gearbox_comes_apart() {
 }
 
 #[test]
-fn a_map_is_the_library_s() {
+fn map_equals_library_map() {
     let mut state = gearbox();
     ask(&mut state, &json!({ "do": "parts" }), Vec::new());
     ask(&mut state, &json!({ "do": "fit", "tolerance": 0.1 }), Vec::new());
@@ -104,7 +104,7 @@ fn a_map_is_the_library_s() {
 }
 
 #[test]
-fn what_cannot_be_answered_is_said() {
+fn invalid_questions_return_errors() {
     let mut state = State::default();
     let mut refused = |question: Value, file: &[u8], part: &str| {
         let (answer, _) = ask(&mut state, &question, file.to_vec());
@@ -132,9 +132,9 @@ fn what_cannot_be_answered_is_said() {
     refused(json!({ "do": "fit", "tolerance": -1 }), "invalid tolerance");
 }
 
-/// The same with parts of a GLB file, which has a unit.
+/// A GLB file adds several parts and sets the unit.
 #[test]
-fn parts_come_from_glb() {
+fn glb_file_adds_parts_and_unit() {
     let positions: [f32; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     let corners: [u16; 12] = [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2];
     let mut binary: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();

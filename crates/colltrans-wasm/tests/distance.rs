@@ -1,4 +1,4 @@
-//! Questions of distances, and ones that do not say what they should.
+//! Questions about distances, and invalid questions.
 
 use colltrans_wasm::Answers as _;
 use colltrans_wasm::distance::State;
@@ -27,7 +27,7 @@ fn distance(state: &mut State, x: f64) -> Value {
 }
 
 #[test]
-fn bodies_of_every_kind_have_a_distance_and_a_depth() {
+fn all_kinds_of_bodies_have_distance_and_depth() {
     for takes in [["convex", "hull"], ["solid", "open"], ["convex", "solid"]] {
         let mut state = loaded(takes);
         let apart = distance(&mut state, 3.0);
@@ -46,7 +46,7 @@ fn bodies_of_every_kind_have_a_distance_and_a_depth() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_questions_return_errors() {
     let mut state = State::default();
     let error = |told: Value| told["error"].as_str().expect("an error").to_owned();
     assert_eq!(error(distance(&mut state, 0.0)), "two bodies are needed");

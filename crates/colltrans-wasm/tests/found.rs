@@ -1,4 +1,4 @@
-//! What is told of searches against the library itself, and the grid of `phi` against the minimisation.
+//! Recordings of searches, compared with the library, and the grid of `phi`, compared with the minimisation.
 
 use colltrans_wasm::found::State;
 use colltrans_wasm::{Answer, Answers as _};
@@ -31,10 +31,10 @@ fn pair(what: &str, direction: [f64; 3]) -> Value {
     json!({ "do": what, "moving_pose": TILTED, "fixed_pose": HOME, "direction": direction })
 }
 
-/// The minimisation's value at a pair of levels is the collision translation of the two sections,
-/// cut out and cast as bodies of their own.
+/// The value of the minimisation at a pair of levels is the collision translation of the two sections, cut
+/// out and cast as bodies of their own.
 #[test]
-fn phi_is_what_the_minimisation_says() {
+fn section_casts_equal_minimisation_values() {
     let settings = [
         ("dodecahedron.off", "bracket.obj", [-0.3, 0.1, -1.0]),
         ("ellipsoid_a.obj", "ellipsoid_b.off", [-0.6, -0.1, -0.9]),
@@ -65,7 +65,7 @@ fn phi_is_what_the_minimisation_says() {
 }
 
 #[test]
-fn a_tracker_starts_from_the_last_answer() {
+fn search_after_a_query_starts_from_features() {
     let mut state = loaded("dodecahedron.off", "bracket.obj");
     let mut question = pair("search", [-0.3, 0.1, -1.0]);
     question["after"] = pair("cast", [-0.3, 0.101, -1.0]);
@@ -73,9 +73,9 @@ fn a_tracker_starts_from_the_last_answer() {
     assert_eq!(answer["tracked"]["started_from"], "features");
 }
 
-/// The square lies around the last solution, and fewer planar problems are solved in it.
+/// The square is centred at the last solution, and fewer planar problems are solved in it.
 #[test]
-fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
+fn neighbourhood_search_solves_fewer_planar_problems() {
     let mut state = loaded("ellipsoid_a.obj", "ellipsoid_b.off");
     let direction = [-0.6, -0.1, -0.9];
     let mut question = pair("search", direction);
@@ -98,10 +98,9 @@ fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
     assert!((times - 3.0_f64.sqrt()).abs() < 1e-9, "{times}");
 }
 
-/// In the cell that is told, at its corners too, `phi` is what the gradient says; its least value is where the shift
-/// goes.
+/// In a reported cell, including its corners, `phi` follows the gradient; the shift goes to its minimum.
 #[test]
-fn phi_is_linear_in_the_cells_that_are_told() {
+fn phi_is_linear_in_reported_cells() {
     let direction = [-0.6, -0.1, -0.9];
     let length = direction.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
     let mut state = loaded("ellipsoid_a.obj", "ellipsoid_b.off");
@@ -119,7 +118,7 @@ fn phi_is_linear_in_the_cells_that_are_told() {
             let mut grid = pair("levels", direction);
             grid["moving_axis"] = sections["sections"][0].clone();
             grid["fixed_axis"] = sections["sections"][1].clone();
-            // A corner itself may be where sections only just touch.
+            // Sections may only just touch at a corner itself.
             let near = |k: usize| {
                 let from = number(&problem["planar"][k]);
                 from + (number(at[k]) - from) * (1.0 - 1e-6)
@@ -146,7 +145,7 @@ fn phi_is_linear_in_the_cells_that_are_told() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_questions_return_errors() {
     let mut state = State::default();
     let error = |told: Value| told["error"].as_str().expect("an error").to_owned();
     let search = pair("search", [0.0, 0.0, -1.0]);

@@ -1,4 +1,4 @@
-//! Questions of motions, and ones that do not say what they should.
+//! Questions about motions, and invalid questions.
 
 use colltrans_wasm::Answers as _;
 use colltrans_wasm::motion::State;
@@ -22,7 +22,7 @@ fn loaded(takes: [&str; 2]) -> State {
     state
 }
 
-/// The moving cube has its edge `x = y = 0` on the z axis, about which it turns; the other one is at a place.
+/// The moving cube turns about the z axis, which contains its edge `x = y = 0`.
 fn asked(question: &str, motion: &Value, x: f64, y: f64) -> Value {
     json!({ "do": question, "moving_motion": motion, "moving_pose": [0, 0, 0, 0, 0, 0, 1],
         "fixed_pose": [x, y, 0.25, 0, 0, 0, 1] })
@@ -33,9 +33,9 @@ fn turn(angle: f64) -> Value {
 }
 
 #[test]
-fn bodies_of_every_kind_turn_until_they_meet() {
-    // The corner (1, 0) comes to the plane y = 1.2 never, and the corner (1, 1) to y = 1.2 where its angle of 45
-    // degrees has become asin(1.2 / sqrt 2); there x is 0.748.
+fn all_kinds_of_bodies_turn_until_contact() {
+    // The corner (1, 0) never reaches the plane y = 1.2. The corner (1, 1) reaches it when its angle of 45
+    // degrees has become asin(1.2 / sqrt 2), at x = 0.748.
     let half = std::f64::consts::FRAC_PI_2;
     let met = ((1.2 / 2.0_f64.sqrt()).asin() - half / 2.0) / half;
     for takes in KINDS {
@@ -59,7 +59,7 @@ fn bodies_of_every_kind_turn_until_they_meet() {
 }
 
 #[test]
-fn free_overlapping_and_grazing_are_told_apart() {
+fn motions_are_free_overlapping_or_grazing() {
     for takes in KINDS {
         let mut state = loaded(takes);
         let free = ask(&mut state, &asked("motion", &turn(9.0), 1.5, 0.0), "");
@@ -70,17 +70,18 @@ fn free_overlapping_and_grazing_are_told_apart() {
         let deep = ask(&mut state, &asked("motion", &turn(1.0), 0.5, 0.5), "");
         assert_eq!(deep["record"]["outcome"], "overlapping");
     }
-    // Face on face at the start, and convex: rounding cannot tell.
+    // The convex bodies touch face on face at the start, which rounding cannot decide.
     let told = ask(&mut loaded(KINDS[0]), &asked("motion", &turn(-1.0), 0.0, 1.0), "");
     assert_eq!(told["record"]["outcome"], "grazing", "{told}");
     assert!(told["record"]["time"].get("upper").is_none());
 }
 
 #[test]
-fn a_screw_rises_and_a_gap_is_kept() {
+fn screws_respect_rise_and_minimum_gap() {
     let mut state = loaded(KINDS[0]);
     let rise = |rise: f64| json!({ "screw": { "point": [0, 0, 0], "axis": [0, 0, 2], "angle": 7.0, "rise": rise } });
-    // The corner (1, 1) passes the other one at 0.0858, a little higher than it began; or far above it.
+    // The corner (1, 1) passes the other body at a distance of 0.0858, slightly above its start, or far above
+    // it.
     let outcome = |told: Value| told["record"]["outcome"].as_str().map(str::to_owned);
     let mut question = asked("motion", &rise(0.5), 1.5, 0.0);
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("free"));
@@ -90,21 +91,24 @@ fn a_screw_rises_and_a_gap_is_kept() {
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("free"));
     question["tolerance"] = json!(0.1);
     let error = ask(&mut state, &question, "");
-    assert_eq!(error["error"], "convex bodies have either a gap or a tolerance");
+    assert_eq!(
+        error["error"],
+        "a gap and a tolerance are both given; convex bodies accept only one of them"
+    );
 }
 
 #[test]
-fn either_body_moves_and_slides() {
+fn moving_either_body_gives_equal_times() {
     for takes in KINDS {
         let mut state = loaded(takes);
-        // A slide is a screw without a turn: up to 0.25 below the other one, from 3 below.
+        // A slide is a screw without rotation: it starts 3 below and comes within 0.25 of the other body.
         let up = json!({ "screw": { "point": [0, 0, 0], "axis": [0, 0, 1], "angle": 0.0, "rise": 4.0 } });
         let mut question = asked("motion", &up, 0.0, 0.0);
         question["moving_pose"] = json!([0.5, 0.5, -3, 0, 0, 0, 1]);
         let time = |told: &Value| told["record"]["time"]["lower"].as_f64().expect("a contact");
         let slid = ask(&mut state, &question, "");
         assert!((time(&slid) - 2.25 / 4.0).abs() < 1e-5, "{slid}");
-        // The other one comes down as far.
+        // The other body moves down by the same distance.
         let down = json!({ "screw": { "point": [0, 0, 0], "axis": [0, 0, -1], "angle": 0.0, "rise": 4.0 } });
         question["moving_motion"] = Value::Null;
         question["fixed_motion"] = down.clone();
@@ -113,7 +117,7 @@ fn either_body_moves_and_slides() {
         let rests = other["pose"].as_array().expect("a pose").iter().map(Value::as_f64);
         let rests: Vec<f64> = rests.map(|x| x.expect("a number")).collect();
         assert_eq!(rests, [0.5, 0.5, -3.0, 0.0, 0.0, 0.0, 1.0]);
-        // Both meet in the middle.
+        // Both bodies meet in the middle.
         question["moving_motion"] = up;
         let both = ask(&mut state, &question, "");
         assert!((2.0 * time(&both) - time(&slid)).abs() < 1e-5, "{both}");
@@ -123,7 +127,7 @@ fn either_body_moves_and_slides() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_questions_return_errors() {
     let mut state = State::default();
     let error = |told: Value| told["error"].as_str().expect("an error").to_owned();
     let question = asked("motion", &turn(1.0), 3.0, 0.0);

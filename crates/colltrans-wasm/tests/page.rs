@@ -1,4 +1,4 @@
-//! Answers to the page's questions against the library itself.
+//! Answers to the page's questions, compared with the library.
 
 use std::fmt::Write as _;
 
@@ -35,7 +35,7 @@ fn pair(what: &str, direction: [f64; 3]) -> Value {
 }
 
 #[test]
-fn a_cast_is_the_library_s() {
+fn cast_equals_library_cast() {
     use colltrans::glam::{DQuat, DVec3};
     use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 
@@ -59,10 +59,10 @@ fn a_cast_is_the_library_s() {
     assert_eq!(answer["clearance"]["outcome"], "blocked");
 }
 
-/// Numbers of the file are told, and what is lit lies where they say, with a vertex that nothing uses;
-/// a face is the polygon; each number has its bounds.
+/// Features have vertex numbers of the file, and highlights the indices of the answer, even if a vertex is
+/// unused. A face is a polygon, and each number has its bounds.
 #[test]
-fn what_a_solid_touches_with() {
+fn solid_contact_reports_features_and_bounds() {
     let file = "OFF\n5 4 0\n50 50 50\n-1 -1 1\n1 -1 1\n0 1 1\n0.25 0 0\n\
                 3 1 2 3\n3 2 1 4\n3 3 2 4\n3 1 3 4\n";
     let mut state = loaded("dodecahedron.off", "plate.off", "solid");
@@ -92,7 +92,7 @@ fn what_a_solid_touches_with() {
 }
 
 #[test]
-fn what_cannot_be_answered_is_said() {
+fn invalid_questions_return_errors() {
     let mut state = State::default();
     let mut refused = |question: Value, file: Vec<u8>, part: &str| {
         let (answer, _) = ask(&mut state, &question, file);
@@ -110,7 +110,7 @@ fn what_cannot_be_answered_is_said() {
     refused(load("a.off"), b"OFF\n1 0 0\n0 0".to_vec(), "a.off");
     let instead = refused(load("plate.off"), data("plate.off"), "plate.off");
     assert!(instead.as_array().unwrap().contains(&json!("solid")));
-    // The file is kept: it can be taken in another way.
+    // The file is kept, so that it can be used in another way.
     let again = json!({ "do": "load", "slot": "moving", "name": "plate.off", "take": "solid" });
     let (answer, _) = ask(&mut state, &again, Vec::new());
     assert_eq!(answer["body"]["kind"], "solid");
@@ -118,7 +118,7 @@ fn what_cannot_be_answered_is_said() {
     let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
     let (before, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
     assert_eq!(before["record"]["outcome"], "contact");
-    // What was there is still answered about when a file is refused, because of its text or of its shape.
+    // The old body still answers questions after a file is rejected, because of its text or its shape.
     for (name, file) in [("a.off", b"OFF\n1 0 0\n0 0".to_vec()), ("plate.off", data("plate.off"))] {
         let (refused, _) = ask(&mut state, &load(name), file);
         assert!(refused["error"].is_string() && refused["gone"] == false, "{refused}");
@@ -134,7 +134,7 @@ fn what_cannot_be_answered_is_said() {
 }
 
 #[test]
-fn a_lie_is_no_proof() {
+fn modified_proof_is_rejected() {
     let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
     let (answer, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
     let mut question = pair("verify", [-0.3, 0.1, -1.0]);
@@ -147,9 +147,9 @@ fn a_lie_is_no_proof() {
     assert_eq!(checked["holds"], false, "{checked}");
 }
 
-/// Read as a page hands it back; changed in any of its parts it holds no more.
+/// A proof is read as the page hands it back. It does not hold after a change of any of its parts.
 #[test]
-fn proofs_between_solids_are_checked_as_they_were_told() {
+fn modified_solid_proofs_are_rejected() {
     let solids = |moving: &str, fixed: &str| loaded(moving, fixed, "solid");
     let cases = [
         (solids("bolt.stl", "plate.off"), [0.3, 0.2, 7.0], [0.0, 0.0, -1.0], "stop"),
@@ -191,9 +191,9 @@ fn proofs_between_solids_are_checked_as_they_were_told() {
     }
 }
 
-/// Of a dense body the edges between faces that make an angle are drawn, of another one all.
+/// A dense body has only its sharp edges drawn, another body all edges.
 #[test]
-fn dense_bodies_have_sharp_edges_alone() {
+fn dense_bodies_draw_only_sharp_edges() {
     for (sides, drawn) in [(100, 300), (4000, 8000)] {
         let mut file = format!("OFF\n{} {} 0\n", 2 * sides, sides + 2);
         for z in [-1.0, 1.0] {
@@ -221,9 +221,9 @@ fn dense_bodies_have_sharp_edges_alone() {
     }
 }
 
-/// The page offers files of all formats that are read, and of no other.
+/// The page offers files of exactly the formats that the library reads.
 #[test]
-fn the_page_lists_the_formats_of_the_library() {
+fn page_lists_all_library_formats() {
     let list = format!("{}/../../web/src/formats.ts", env!("CARGO_MANIFEST_DIR"));
     let expected = Format::ALL.iter().map(|format| format!("{:?}", format.extension()));
     let expected = expected.collect::<Vec<_>>().join(", ");

@@ -1,4 +1,4 @@
-//! Drawings of small scenes, and questions that do not say what they should.
+//! Drawings of small scenes, and invalid questions.
 
 use colltrans_wasm::picture::State;
 use colltrans_wasm::{Answer, Answers as _};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 /// Corners, style, number.
 type Triangle = ([[f64; 3]; 3], u32, u32);
-/// Ends, style, numbers of the triangles beside.
+/// Ends, style, numbers of adjacent triangles.
 type Segment<'a> = ([[f64; 3]; 2], u32, &'a [u32]);
 
 fn file(triangles: &[Triangle], segments: &[Segment]) -> Vec<u8> {
@@ -55,9 +55,9 @@ const fn across(q: f64) -> [[f64; 3]; 2] {
     [[0.0, 10.0, q], [60.0, 10.0, q]]
 }
 
-/// The order of what is drawn: the ground's lines, areas by depth, lines, what is above, words.
+/// The drawing order: lines on the ground, areas by depth, lines, areas above, words.
 #[test]
-fn from_below_to_above() {
+fn layers_are_drawn_in_order() {
     let triangles = [(over(0.5), 2, 0), (over(2.0), 1, 1), (over(1.0), 0, 2)];
     let segments: [Segment; 3] =
         [(across(3.0), 2, &[]), (across(0.1), 0, &[]), (across(3.0), 1, &[])];
@@ -78,9 +78,10 @@ fn from_below_to_above() {
     assert!(places.is_sorted(), "{svg}");
 }
 
-/// Of a line behind a triangle two pieces are seen; of an edge of it all; of an edge of what is not drawn nothing.
+/// A line behind a triangle has two visible parts; its own edge is visible; an edge of undrawn triangles is
+/// not.
 #[test]
-fn lines_are_seen_beside_what_hides_them() {
+fn hidden_parts_of_lines_are_cut() {
     let pieces = |beside: &[u32]| {
         let triangles = [(over(1.0), 0, 7)];
         let svg = ask(&question(1, 1), file(&triangles, &[(across(0.5), 2, beside)])).unwrap();
@@ -91,18 +92,18 @@ fn lines_are_seen_beside_what_hides_them() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn inconsistent_scenes_are_rejected() {
     let good = file(&[(over(1.0), 0, 0)], &[(across(0.5), 0, &[0, 1])]);
     assert!(ask(&question(1, 1), good.clone()).is_ok());
     for (triangles, segments) in [(0, 1), (2, 1), (1, 2), (usize::MAX, 0), (1, usize::MAX)] {
         let error = ask(&question(triangles, segments), good.clone()).unwrap_err();
-        assert!(error.contains("not as many"), "{error}");
+        assert!(error.contains("does not match the stated numbers"), "{error}");
     }
     for length in [0, 1, good.len() - 4, good.len() - 1] {
         ask(&question(1, 1), good[..length].to_vec()).unwrap_err();
     }
     ask(&question(1, 1), [&good[..], &[0; 4]].concat()).unwrap_err();
-    // Styles that are not there; as many neighbours as there cannot be.
+    // Styles that do not exist, and more neighbours than possible.
     ask(&question(1, 0), file(&[(over(1.0), 3, 0)], &[])).unwrap_err();
     ask(&question(0, 1), file(&[], &[(across(1.0), 3, &[])])).unwrap_err();
     let mut endless = file(&[], &[(across(1.0), 0, &[])]);
@@ -119,7 +120,7 @@ fn what_does_not_fit_is_refused() {
 }
 
 #[test]
-fn what_is_no_number_is_left_out() {
+fn triangles_and_segments_with_nan_are_omitted() {
     let odd = [[f64::NAN, 0.0, 1.0], [60.0, 0.0, 1.0], [0.0, 40.0, f64::INFINITY]];
     let triangles = [(odd, 0, 0), (over(1.0), 0, 1)];
     let segments: [Segment; 1] = [([[f64::NAN, 1.0, 1.0], [1.0, f64::NAN, 1.0]], 2, &[])];

@@ -1,9 +1,10 @@
-//! Assemblies: a module of its own, because it is as large as all the rest and most visitors ask about two bodies.
+//! Questions about assemblies. This is a module of its own, because it is as large as all others together and
+//! most visitors ask about two bodies.
 //!
-//! Data flow: files -> parts -> [`State`]: the fit, who blocks whom along a direction, the removal map of some parts,
-//! the plan.
+//! Data flow: files -> parts -> [`State`]: the fit, the blocking graph of a direction, the removal map of
+//! some parts, the plan.
 
+mod answers;
 mod state;
-mod tell;
 
 pub use state::State;

@@ -1,14 +1,13 @@
-//! The parts in use, and what is answered about them.
+//! The parts in use, and the answers about them.
 //!
 //! Questions, by their field `do`:
-//! - `add`: the file that comes with it, named `name`, adds a part, or with GLB several;
-//! - `parts`: all that was added becomes the assembly; how its parts look;
-//! - `fit`: with `tolerance` (the default one without) and `ignore_overlaps`; what overlaps, who
-//!   touches whom;
-//! - `along` a `direction`: who stops whom, and what comes out;
-//! - `map` of the parts `group`: their free travel in all directions;
-//! - `plan`: how everything comes apart;
-//! - `report` with a `title`: that, as the file that is printed for the workshop.
+//! - `add`: adds the parts of the attached file, named `name`; a GLB file may have several;
+//! - `parts`: builds the assembly of all added parts; returns their meshes;
+//! - `fit`: sets `tolerance` (default if missing) and `ignore_overlaps`; returns overlaps and liaisons;
+//! - `along`: returns blockers and removable groups for a `direction`;
+//! - `map`: returns the free travel of the parts `group` in all directions;
+//! - `plan`: returns a disassembly plan;
+//! - `report`: returns the printable report of the plan, with a `title`.
 
 use std::path::Path;
 
@@ -27,21 +26,22 @@ use colltrans_mesh::Format;
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
 
-use super::tell;
+use super::answers;
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
 use crate::fields::Fields;
 
-/// A browser has one thread for this: with more the command line is the better place.
+/// Maximum number of parts. The page has one thread; larger assemblies are for the command line.
 const MOST_PARTS: usize = 120;
-/// The same.
+/// Maximum number of triangles of all parts.
 const MOST_TRIANGLES: usize = 400_000;
-/// Samples of a removal map before its borders are refined, and how well those are known, in radians:
-/// coarser than on the command line, for a picture to click into.
+/// Number of samples of a removal map before refinement. It is lower than on the command line because the map
+/// is only a picture to click into.
 const SAMPLES: usize = 642;
+/// Resolution of the borders of free regions, in radians.
 const BORDER: f64 = 0.04;
 
-/// An assembly, as files made it.
+/// The parts that were added, and the assembly built from them.
 #[derive(Default)]
 pub struct State {
     gathered: Vec<Part>,
@@ -49,9 +49,9 @@ pub struct State {
     set: Option<Set>,
 }
 
-/// What was found out with one fit.
+/// An assembly with the results for its current fit.
 struct Set {
-    /// Kept for as long as the module is: a page starts another one for another assembly.
+    /// Leaked, because the page starts another module for another assembly.
     assembly: &'static Assembly,
     fitted: Option<Fitted>,
 }
@@ -64,16 +64,16 @@ struct Fitted {
 }
 
 impl Answers for State {
-    /// Answers one question; `file` holds the bytes that come with it, if any.
+    /// Answers one question. `file` has the attached bytes, if any.
     fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let asked: Result<Value, _> = serde_json::from_slice(question);
         let answer = match &asked {
             Err(error) => Err(format!("the question cannot be read: {error}").into()),
             Ok(asked) => {
-                Fields::of(asked).map_err(Refusal::from).and_then(|f| self.answer(&f, file))
+                Fields::from_value(asked).map_err(Refusal::from).and_then(|f| self.answer(&f, file))
             }
         };
-        answer.unwrap_or_else(Refusal::answer)
+        answer.unwrap_or_else(Refusal::into_answer)
     }
 }
 
@@ -87,7 +87,7 @@ impl State {
             "map" => self.map(&asked.list("group")?),
             "plan" => self.plan(),
             "report" => self.report(asked.text("title")?),
-            other => Err(format!("nothing is known to do for {other}").into()),
+            other => Err(format!("unknown question {other}").into()),
         }
     }
 
@@ -104,14 +104,14 @@ impl State {
                 colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
             let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
             let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
-            let part = Part::new(self.unused(&stem), &[piece]);
+            let part = Part::new(self.unused_name(&stem), &[piece]);
             self.gathered.push(part.map_err(|error| format!("{name}: {error}"))?);
         }
         if let Err(refusal) = self.check_size(name) {
             self.gathered.truncate(before);
             return Err(refusal);
         }
-        Ok(Answer::of(&json!({ "parts": self.gathered.len() })))
+        Ok(Answer::from_facts(&json!({ "parts": self.gathered.len() })))
     }
 
     fn check_size(&self, name: &str) -> Result<(), Refusal> {
@@ -121,14 +121,14 @@ impl State {
         }
         let parts = self.gathered.len();
         Err(format!(
-            "{name}: with it these would be {parts} parts of {triangles} triangles; a page takes up to \
-             {MOST_PARTS} parts and {MOST_TRIANGLES} triangles, the command line larger assemblies"
+            "{name}: too large; with it there are {parts} parts with {triangles} triangles, but the page accepts \
+             {MOST_PARTS} parts and {MOST_TRIANGLES} triangles; use the command line"
         )
         .into())
     }
 
-    /// A name that no part has yet.
-    fn unused(&self, stem: &str) -> String {
+    /// Returns a part name that is not used yet.
+    fn unused_name(&self, stem: &str) -> String {
         let taken = |name: &str| self.gathered.iter().any(|part| part.name() == name);
         let numbered = (2..).map(|number| format!("{stem}_{number}"));
         std::iter::once(stem.to_owned())
@@ -148,7 +148,7 @@ impl State {
         }
         let assembly: &'static Assembly = Box::leak(Box::new(assembly));
         self.set = Some(Set { assembly, fitted: None });
-        Ok(tell::parts(assembly))
+        Ok(answers::parts_answer(assembly))
     }
 
     fn fit(&mut self, tolerance: Option<f64>, ignore: bool) -> Result<Answer, Refusal> {
@@ -156,12 +156,12 @@ impl State {
         let default = Fit::default_for(set.assembly);
         let fit = tolerance.map_or(default, Fit::Tolerance);
         let watch = Watch::default();
-        let said = |error: colltrans_assembly::AssemblyError| error.to_string();
-        let bodies = Bodies::new(set.assembly, fit).map_err(said)?;
-        let start = Start::new(&bodies, watch).map_err(said)?;
-        let touching: Vec<Liaison> = liaisons(&bodies, watch).map_err(said)?;
-        let candidates = candidates(&bodies, &touching, &Choice::default()).map_err(said)?;
-        let answer = tell::fit(&bodies, default.tolerance(), &start, &touching);
+        let message = |error: colltrans_assembly::AssemblyError| error.to_string();
+        let bodies = Bodies::new(set.assembly, fit).map_err(message)?;
+        let start = Start::new(&bodies, watch).map_err(message)?;
+        let touching: Vec<Liaison> = liaisons(&bodies, watch).map_err(message)?;
+        let candidates = candidates(&bodies, &touching, &Choice::default()).map_err(message)?;
+        let answer = answers::fit_answer(&bodies, default.tolerance(), &start, &touching);
         let overlaps = if ignore { StartOverlap::Ignore } else { StartOverlap::Refuse };
         set.fitted = Some(Fitted { bodies, start: overlaps, candidates, plan: None });
         Ok(answer)
@@ -177,7 +177,7 @@ impl State {
         let d = unit(DVec3::from_array(direction)).map_err(|error| error.to_string())?;
         let all = vec![true; bodies.len()];
         let matrix = Matrix::new(bodies, &[d], &all, *start, Watch::default());
-        Ok(tell::along(&matrix.map_err(|error| error.to_string())?, bodies))
+        Ok(answers::blocking_answer(&matrix.map_err(|error| error.to_string())?, bodies))
     }
 
     fn map(&mut self, group: &[f64]) -> Result<Answer, Refusal> {
@@ -186,38 +186,42 @@ impl State {
         parts.sort_unstable();
         parts.dedup();
         if parts.last().is_none_or(|last| *last >= bodies.len()) {
-            return Err(format!("there are {} parts, and none of {group:?}", bodies.len()).into());
+            return Err(format!(
+                "part indices {group:?} are out of range; there are {} parts",
+                bodies.len()
+            )
+            .into());
         }
         let options =
             MapOptions::default().with_samples(SAMPLES).with_border(BORDER).with_start(*start);
         let directions = candidates.directions();
         let map = RemovalMap::new(bodies, &parts, &directions, options, Watch::default());
-        Ok(tell::map(&map.map_err(|error| error.to_string())?, bodies.assembly()))
+        Ok(answers::map_answer(&map.map_err(|error| error.to_string())?, bodies.assembly()))
     }
 
     fn plan(&mut self) -> Result<Answer, Refusal> {
         let Fitted { bodies, start, plan, .. } = self.fitted()?;
-        let found = question(*start).ask(bodies, Watch::default());
+        let found = plan_options(*start).ask(bodies, Watch::default());
         let found = found.map_err(|error| error.to_string())?;
-        let answer = tell::plan(bodies, &found.plan, found.matrix.directions().len());
+        let answer = answers::plan_answer(bodies, &found.plan, found.matrix.directions().len());
         *plan = Some(found.plan);
         Ok(answer)
     }
 
-    /// The bytes of the file are the answer's numbers.
+    /// Returns the report; its bytes are the numbers of the answer.
     fn report(&mut self, title: &str) -> Result<Answer, Refusal> {
         let Fitted { bodies, start, plan, .. } = self.fitted()?;
         let Some(plan) = plan.clone() else {
-            return Err("nothing is planned yet".to_owned().into());
+            return Err("there is no plan yet; ask for a plan first".to_owned().into());
         };
-        let found = question(*start).look(bodies, Watch::default());
+        let found = plan_options(*start).look(bodies, Watch::default());
         let found = Findings { plan, ..found.map_err(|error| error.to_string())? };
         let page = html::page(&found, title).into_bytes();
-        Ok(Answer { numbers: page, ..Answer::of(&json!({ "title": title })) })
+        Ok(Answer { numbers: page, ..Answer::from_facts(&json!({ "title": title })) })
     }
 }
 
-/// What a plan is asked for.
-fn question(start: StartOverlap) -> Question {
+/// Returns the options of a plan.
+fn plan_options(start: StartOverlap) -> Question {
     Question::default().with_options(PlanOptions::default().with_start(start))
 }

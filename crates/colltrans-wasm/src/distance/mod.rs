@@ -1,7 +1,7 @@
-//! Distances and depths: a module of its own, because the first answer needs neither.
+//! Distances and depths. This is a module of its own, because the first answer does not need it.
 //!
-//! Data flow: the files of both bodies -> the bodies, as the page's library has them -> how far they are apart where
-//! they are, and if they meet, how deep -> the library's records.
+//! Data flow: the files of both bodies -> the bodies, as in the module `page` -> their distance and, if they
+//! meet, their depth -> records of the library.
 
 mod state;
 

@@ -1,4 +1,4 @@
-//! The bodies in use, and how far they are apart.
+//! The bodies in use, and their distance.
 
 use colltrans::record::{Ending, PairQuestion, Record};
 use colltrans::{Pair, QueryError, Solid};
@@ -9,33 +9,33 @@ use crate::answer::{Answer, Refusal};
 use crate::placing::{Part, Places, Slot};
 use crate::pose::pose;
 
-/// One question.
+/// A question.
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 enum Question {
-    /// The file that comes with it becomes a body.
+    /// Builds a body from the attached file.
     Place { slot: Slot, name: String, take: String },
-    /// How far are the bodies apart? Poses are `x,y,z,qx,qy,qz,qw`.
+    /// Computes the distance of the bodies. Poses are `x,y,z,qx,qy,qz,qw`.
     Distance { moving_pose: [f64; 7], fixed_pose: [f64; 7] },
 }
 
-/// Two bodies, as files made them.
+/// Two bodies, built from files.
 #[derive(Debug, Default)]
 pub struct State(Places);
 
-/// The answer about two bodies where they are.
+/// The answer about two bodies at their poses.
 #[derive(Serialize)]
 struct PairAnswer {
-    /// How far they are apart.
+    /// Their distance.
     distance: Record,
-    /// How deep they overlap, if they meet.
+    /// The depth of their overlap, if they meet.
     #[serde(skip_serializing_if = "Option::is_none")]
     depth: Option<Record>,
 }
 
 impl Answers for State {
-    /// Answers one question: `place`, a body of the file that comes with it; `distance`, of both bodies
-    /// where they are.
+    /// Answers one question: `place` builds a body from the attached file; `distance` measures both bodies at
+    /// their poses.
     fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let answered = match serde_json::from_slice(question) {
             Err(error) => Err(format!("the question cannot be read: {error}")),
@@ -44,7 +44,7 @@ impl Answers for State {
                 self.distance(moving_pose, fixed_pose)
             }
         };
-        answered.unwrap_or_else(|error| Refusal::from(error).answer())
+        answered.unwrap_or_else(|error| Refusal::from(error).into_answer())
     }
 }
 
@@ -61,7 +61,7 @@ impl State {
                 .and_then(|p| Pair::new(p.at(poses[0]), fixed.solid()?.at(poses[1])))
                 .and_then(|pair| solids(&pair)),
         };
-        Ok(Answer::of(&answer.map_err(|error| error.to_string())?))
+        Ok(Answer::from_facts(&answer.map_err(|error| error.to_string())?))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The questions, as the page writes them.
+//! The questions as the page writes them.
 
 use colltrans::{Cast, ConvexPolyhedron, Options, Solver, cta};
 use glam::DVec3;
@@ -6,15 +6,15 @@ use serde::Deserialize;
 
 use crate::pose::pose;
 
-/// One question.
+/// A question.
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 pub(crate) enum Question {
-    /// The file that comes with it becomes a body.
+    /// Builds a body from the attached file.
     Place { slot: Slot, name: String, take: String },
-    /// What does a search do?
+    /// Records a search.
     Search(Search),
-    /// The collision translation of pairs of sections.
+    /// Computes the collision translations of pairs of sections.
     Levels(Levels),
 }
 
@@ -25,7 +25,7 @@ pub(crate) enum Slot {
     Fixed,
 }
 
-/// Two placed bodies and a direction, as a cast of the page has them. Poses are `x,y,z,qx,qy,qz,qw`.
+/// Two placed bodies and a direction. Poses are `x,y,z,qx,qy,qz,qw`.
 #[derive(Deserialize)]
 pub(crate) struct Pair {
     moving_pose: [f64; 7],
@@ -35,19 +35,19 @@ pub(crate) struct Pair {
     graze: f64,
     #[serde(default)]
     solver: Solver,
-    /// Of `cta`: from `start`, `center` or `ellipsoids`, `until` it ends, `exit` or a gap.
+    /// For the solver `cta`: `start` is `center` or `ellipsoids`, `until` is `exit` or a gap.
     #[serde(default)]
     start: cta::Start,
     #[serde(default)]
     until: cta::Until,
 }
 
-/// A search to look at.
+/// A search to record.
 #[derive(Deserialize)]
 pub(crate) struct Search {
     #[serde(flatten)]
     pub(crate) pair: Pair,
-    /// A query asked before, whose answer a tracker starts from.
+    /// A previous query, from whose answer a tracker starts.
     #[serde(default)]
     pub(crate) after: Option<Pair>,
 }
@@ -60,7 +60,7 @@ pub(crate) struct Levels {
     /// Section axes in the world.
     pub(crate) moving_axis: [f64; 3],
     pub(crate) fixed_axis: [f64; 3],
-    /// Of the sections, each in its body's own frame.
+    /// Levels of the sections, each in its body frame.
     #[serde(rename = "moving_levels")]
     pub(crate) moving: Vec<f64>,
     #[serde(rename = "fixed_levels")]
@@ -68,7 +68,7 @@ pub(crate) struct Levels {
 }
 
 impl Pair {
-    /// The query that it asks.
+    /// Builds the cast of this pair.
     pub(crate) fn query<'a>(
         &self,
         [moving, fixed]: [&'a ConvexPolyhedron; 2],

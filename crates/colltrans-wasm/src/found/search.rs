@@ -1,4 +1,4 @@
-//! What a search did: the library's recording, as a page reads it.
+//! The recording of a search as the page reads it.
 
 use colltrans::observe::{Event, Recording, Touch};
 use colltrans::{
@@ -16,36 +16,43 @@ use crate::answer::Answer;
 struct Found {
     events: Vec<Value>,
     steps: Steps,
-    /// In the neighbourhood of the solution of the query before.
+    /// The search in the neighbourhood of the solution of the previous query.
     #[serde(skip_serializing_if = "Option::is_none")]
     region: Option<Around>,
-    /// Of a tracker, after the query before.
+    /// The steps of a tracker after the previous query.
     #[serde(skip_serializing_if = "Option::is_none")]
     tracked: Option<Steps>,
 }
 
 #[derive(Serialize)]
 struct Around {
-    /// Levels.
+    /// The levels at the centre of the square.
     center: [f64; 2],
-    /// Half the side of the square, along axes as long as levels count.
+    /// Half the side of the square, in levels along axes of any length.
     half: f64,
-    /// The same as a length.
+    /// Half the side of the square as a length.
     delta: f64,
     steps: Steps,
     events: Vec<Value>,
 }
 
-pub(crate) fn search(bodies: [&ConvexPolyhedron; 2], asked: &Search) -> Result<Answer, String> {
+/// Answers the question `search`.
+pub(crate) fn search_answer(
+    bodies: [&ConvexPolyhedron; 2],
+    asked: &Search,
+) -> Result<Answer, String> {
     let cast = asked.pair.query(bodies)?;
     let before = asked.after.as_ref().map(|before| before.query(bodies)).transpose()?;
-    found(&cast, before.as_ref()).map(|found| Answer::of(&found)).map_err(|error| error.to_string())
+    record_search(&cast, before.as_ref())
+        .map(|found| Answer::from_facts(&found))
+        .map_err(|error| error.to_string())
 }
 
-fn found(cast: &Cast, before: Option<&Cast>) -> Result<Found, QueryError> {
+/// Records a search, and the searches of a tracker after a previous query.
+fn record_search(cast: &Cast, before: Option<&Cast>) -> Result<Found, QueryError> {
     let mut recording = Recording::default();
     let steps = cast.first_contact_observed(&mut recording)?.steps();
-    let mut found = Found { events: told_of(&recording), steps, region: None, tracked: None };
+    let mut found = Found { events: event_values(&recording), steps, region: None, tracked: None };
     let Some(before) = before else { return Ok(found) };
     if cast.options().solver == Solver::Cta {
         found.region = region(before, cast)?;
@@ -57,9 +64,11 @@ fn found(cast: &Cast, before: Option<&Cast>) -> Result<Found, QueryError> {
     Ok(found)
 }
 
-/// The minimisation again, in the neighbourhood `N(p)` of the solution `p` of the query before: a
-/// square of pairs of levels around those of its contact points, whose half-side is how far those
-/// have moved apart sideways (the paper, section III-D).
+/// Repeats the minimisation in the neighbourhood `N(p)` of the solution `p` of the previous query (the paper,
+/// section III-D).
+///
+/// The neighbourhood is a square of pairs of levels around those of the contact points. Its half-side is the
+/// lateral distance by which these points have moved apart.
 fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, QueryError> {
     let outcome = before.first_contact_observed(&mut Recording::default())?;
     let Outcome::Contact(contact) = outcome else { return Ok(None) };
@@ -85,15 +94,17 @@ fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, QueryError> {
         half: half_side * a.length(),
         delta: half_side,
         steps: outcome.steps(),
-        events: told_of(&seen),
+        events: event_values(&seen),
     }))
 }
 
-fn told_of(seen: &Recording) -> Vec<Value> {
-    seen.events().iter().filter_map(event).collect()
+/// Converts the events of a recording to JSON.
+fn event_values(seen: &Recording) -> Vec<Value> {
+    seen.events().iter().filter_map(event_value).collect()
 }
 
-fn touch(touch: Touch) -> &'static str {
+/// Returns the name of a kind of contact of two sections.
+fn touch_name(touch: Touch) -> &'static str {
     match touch {
         Touch::Edges => "edges",
         Touch::Vertex => "vertex",
@@ -102,7 +113,8 @@ fn touch(touch: Touch) -> &'static str {
     }
 }
 
-fn event(event: &Event) -> Option<Value> {
+/// Converts an event to JSON; `None` for events that the page does not show.
+fn event_value(event: &Event) -> Option<Value> {
     Some(match event {
         Event::Begun(frame) => {
             json!({ "begun": frame.world_from_shadow.to_cols_array_2d() })
@@ -120,7 +132,7 @@ fn event(event: &Event) -> Option<Value> {
         Event::PlanarProblem(problem) => json!({
             "planar": problem.levels,
             "value": problem.value,
-            "touch": touch(problem.touch),
+            "touch": touch_name(problem.touch),
             "gradient": problem.gradient.to_array(),
             "best": problem.best,
             "shifted": problem.shifted,

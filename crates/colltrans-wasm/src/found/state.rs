@@ -1,4 +1,4 @@
-//! The bodies in use, and what is asked about them.
+//! The bodies in use, and the questions about them.
 
 use std::path::Path;
 
@@ -12,21 +12,25 @@ use super::{levels, search};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
 
-/// Two convex bodies, as files made them.
+/// Two convex bodies, built from files.
 #[derive(Debug, Default)]
 pub struct State([Option<ConvexPolyhedron>; 2]);
 
 impl Answers for State {
-    /// Answers one question: `place`, a body of the file that comes with it; `search`, what a search does;
-    /// `levels`, the function that it minimises.
+    /// Answers one question: `place` builds a body from the attached file; `search` records a search;
+    /// `levels` evaluates the function that the search minimises.
     fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let answered = match serde_json::from_slice(question) {
             Err(error) => Err(format!("the question cannot be read: {error}")),
             Ok(Question::Place { slot, name, take }) => self.place(slot, &name, &take, file),
-            Ok(Question::Search(asked)) => self.both().and_then(|p| search::search(p, &asked)),
-            Ok(Question::Levels(asked)) => self.both().and_then(|p| levels::levels(p, &asked)),
+            Ok(Question::Search(asked)) => {
+                self.both().and_then(|p| search::search_answer(p, &asked))
+            }
+            Ok(Question::Levels(asked)) => {
+                self.both().and_then(|p| levels::levels_answer(p, &asked))
+            }
         };
-        answered.unwrap_or_else(|error| Refusal::from(error).answer())
+        answered.unwrap_or_else(|error| Refusal::from(error).into_answer())
     }
 }
 
@@ -38,7 +42,7 @@ impl State {
         }
     }
 
-    /// As [`colltrans_mesh::body`] makes it for the page's library.
+    /// Builds the body as [`colltrans_mesh::body`] does for the module `page`.
     fn place(
         &mut self,
         slot: Slot,
@@ -50,13 +54,13 @@ impl State {
         *place = None;
         let options = match take {
             "convex" | "hull" => BodyOptions::default().with_hull(take == "hull"),
-            other => return Err(format!("a body that is taken as {other} has no sections")),
+            other => return Err(format!("a body used as {other} has no sections")),
         };
         let path = Path::new(name);
         let format = Format::of_path(path).map_err(|error| error.to_string())?;
         let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
         let made = body::convex(&mesh, &options).map_err(|error| error.to_string())?;
         *place = Some(made.body);
-        Ok(Answer::of(&json!({ "placed": true })))
+        Ok(Answer::from_facts(&json!({ "placed": true })))
     }
 }

@@ -1,7 +1,7 @@
-//! First contacts of bodies that turn: a module of its own, because the first answer needs none.
+//! First contacts of moving bodies. This is a module of its own, because the first answer does not need it.
 //!
-//! Data flow: the files of both bodies -> the bodies, as the page's library has them -> when they first meet -> the
-//! library's record, and its proof, made and checked.
+//! Data flow: the files of both bodies -> the bodies, as in the module `page` -> their first contact -> the
+//! record of the library, and its proof, built and checked.
 
 mod state;
 

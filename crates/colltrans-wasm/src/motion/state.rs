@@ -1,4 +1,4 @@
-//! The bodies in use, and when they first meet.
+//! The bodies in use, and their first contact.
 
 use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome, MotionProofError};
 use colltrans::record::MotionRecord;
@@ -10,40 +10,41 @@ use serde_json::json;
 
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
-use crate::lit::{Lit, Touching};
+use crate::highlight::{ContactHighlight, FeatureHighlight};
 use crate::placing::{Part, Places, Slot};
 use crate::pose::pose;
 
-/// One question.
+/// A question.
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 enum Question {
-    /// The file that comes with it becomes a body.
+    /// Builds a body from the attached file.
     Place { slot: Slot, name: String, take: String },
-    /// When do the bodies first meet?
-    Motion(Asked),
-    /// The proof of that answer, made and checked.
-    Prove(Asked),
+    /// Computes the first contact.
+    Motion(Request),
+    /// Builds the proof of the first contact and checks it.
+    Prove(Request),
 }
 
-/// What a body does, and where one that does nothing rests. Poses are `x,y,z,qx,qy,qz,qw`.
+/// The motions of the bodies, and the poses of bodies at rest. Poses are `x,y,z,qx,qy,qz,qw`.
 #[derive(Deserialize)]
-struct Asked {
+struct Request {
     moving_pose: [f64; 7],
     fixed_pose: [f64; 7],
     #[serde(default)]
     moving_motion: Option<Kind>,
     #[serde(default)]
     fixed_motion: Option<Kind>,
-    /// A gap to be kept.
+    /// A minimum gap.
     #[serde(default)]
     keep: f64,
-    /// Of convex bodies, in the place of a gap, a depth; `None` for none, and of solids for what the files ask for.
+    /// For convex bodies a tolerated depth instead of a gap. If it is `None`, convex bodies have none, and
+    /// solids use the tolerance that follows from their files.
     #[serde(default)]
     tolerance: Option<f64>,
 }
 
-/// As a line of a batch says it; angles are radians.
+/// A motion as in a line of a batch; angles are in radians.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum Kind {
@@ -52,7 +53,8 @@ enum Kind {
 }
 
 impl Kind {
-    fn from(&self, start: Pose) -> Result<Motion, String> {
+    /// Builds the motion from a pose.
+    fn motion_from(&self, start: Pose) -> Result<Motion, String> {
         let v = DVec3::from_array;
         let motion = match *self {
             Self::Turn { point, axis, angle } => Motion::turn(start, v(point), v(axis), angle),
@@ -64,22 +66,22 @@ impl Kind {
     }
 }
 
-/// Two bodies, as files made them.
+/// Two bodies, built from files.
 #[derive(Debug, Default)]
 pub struct State(Places);
 
-/// The answer; fields that do not apply are left out.
+/// The answer. Fields that do not apply are omitted.
 #[derive(Serialize)]
 struct MotionAnswer {
-    /// How the bodies were taken: `convex` or `solid`.
+    /// The kind of the bodies: `convex` or `solid`.
     kind: &'static str,
     record: MotionRecord,
     /// The pose of the moving body at the lower bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pose: Option<[f64; 7]>,
-    /// What touches.
+    /// The features in contact.
     #[serde(skip_serializing_if = "Option::is_none")]
-    lit: Option<Touching>,
+    lit: Option<ContactHighlight>,
 }
 
 /// A query between bodies of either kind.
@@ -89,23 +91,24 @@ enum Query<'a> {
 }
 
 impl Answers for State {
-    /// Answers one question: `place`, a body of the file that comes with it; `motion`, when they first meet;
-    /// `prove`, what came of a check of its proof.
+    /// Answers one question: `place` builds a body from the attached file; `motion` computes the first
+    /// contact; `prove` checks its proof.
     fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let answered = match serde_json::from_slice(question) {
             Err(error) => Err(format!("the question cannot be read: {error}")),
             Ok(Question::Place { slot, name, take }) => self.0.place(slot, &name, &take, file),
-            Ok(Question::Motion(asked)) => self.with(&asked, first_contact),
-            Ok(Question::Prove(asked)) => self.with(&asked, prove),
+            Ok(Question::Motion(asked)) => self.answer_with(&asked, first_contact),
+            Ok(Question::Prove(asked)) => self.answer_with(&asked, prove_contact),
         };
-        answered.unwrap_or_else(|error| Refusal::from(error).answer())
+        answered.unwrap_or_else(|error| Refusal::from(error).into_answer())
     }
 }
 
 impl State {
-    fn with(
+    /// Answers a question about the cast of both bodies.
+    fn answer_with(
         &self,
-        asked: &Asked,
+        asked: &Request,
         answer: impl FnOnce(&Query<'_>) -> Result<Answer, String>,
     ) -> Result<Answer, String> {
         let parts = self.0.both()?;
@@ -114,10 +117,10 @@ impl State {
     }
 }
 
-impl Asked {
+impl Request {
     fn motions(&self) -> Result<[Motion; 2], String> {
         let motion = |kind: Option<&Kind>, start: Pose| {
-            kind.map_or(Ok(Motion::still(start)), |kind| kind.from(start))
+            kind.map_or(Ok(Motion::still(start)), |kind| kind.motion_from(start))
         };
         let (moving, fixed) = (pose(self.moving_pose, "moving")?, pose(self.fixed_pose, "fixed")?);
         Ok([
@@ -135,7 +138,7 @@ impl Asked {
             let cast = MotionCast::new(p.body.along(moves), q.body.along(other));
             match self.tolerance {
                 Some(_) if self.keep > 0.0 => {
-                    return Err("convex bodies have either a gap or a tolerance".into());
+                    return Err("a gap and a tolerance are both given; convex bodies accept only one of them".into());
                 }
                 Some(depth) => cast.and_then(|cast| cast.tolerating(depth)),
                 None => cast.and_then(|cast| cast.keeping(self.keep)),
@@ -164,20 +167,21 @@ const fn precision(part: &Part) -> f64 {
 }
 
 fn first_contact(query: &Query<'_>) -> Result<Answer, String> {
-    let said = |error: QueryError| error.to_string();
-    Ok(Answer::of(&match query {
+    let message = |error: QueryError| error.to_string();
+    Ok(Answer::from_facts(&match query {
         Query::Convex(cast) => {
-            let outcome = cast.first_contact().map_err(said)?;
-            told("convex", MotionRecord::of(&outcome, cast), &outcome, cast.bodies())
+            let outcome = cast.first_contact().map_err(message)?;
+            motion_answer("convex", MotionRecord::of(&outcome, cast), &outcome, cast.bodies())
         }
         Query::Solid(cast) => {
-            let outcome = cast.first_contact().map_err(said)?;
-            told("solid", MotionRecord::of_solids(&outcome, cast), &outcome, cast.bodies())
+            let outcome = cast.first_contact().map_err(message)?;
+            motion_answer("solid", MotionRecord::of_solids(&outcome, cast), &outcome, cast.bodies())
         }
     }))
 }
 
-fn told<P, B: Body>(
+/// Builds the answer of an outcome.
+fn motion_answer<P, B: Body>(
     kind: &'static str,
     record: MotionRecord,
     outcome: &MotionOutcome<P>,
@@ -189,39 +193,41 @@ fn told<P, B: Body>(
         return MotionAnswer { kind, record, pose: None, lit: None };
     };
     let MotionContact { poses, features, .. } = at;
-    let lit = features.map(|Features { moving, fixed }| Touching {
-        moving: Lit::of(moving, bodies[0]),
-        fixed: Lit::of(fixed, bodies[1]),
+    let lit = features.map(|Features { moving, fixed }| ContactHighlight {
+        moving: FeatureHighlight::from_feature(moving, bodies[0]),
+        fixed: FeatureHighlight::from_feature(fixed, bodies[1]),
     });
-    MotionAnswer { kind, record, pose: Some(numbers(poses[0])), lit }
+    MotionAnswer { kind, record, pose: Some(pose_numbers(poses[0])), lit }
 }
 
-fn numbers(pose: Pose) -> [f64; 7] {
+/// Returns a pose as seven numbers.
+fn pose_numbers(pose: Pose) -> [f64; 7] {
     let (at, turn) = (pose.translation(), pose.rotation());
     [at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w]
 }
 
-/// Makes the proof, and checks it without a search.
-fn prove(query: &Query<'_>) -> Result<Answer, String> {
-    let said = |error: QueryError| error.to_string();
+/// Builds the proof and checks it without a search.
+fn prove_contact(query: &Query<'_>) -> Result<Answer, String> {
+    let message = |error: QueryError| error.to_string();
     let (checked, entries) = match query {
         Query::Convex(cast) => {
-            let outcome = cast.first_contact().map_err(said)?;
+            let outcome = cast.first_contact().map_err(message)?;
             let proof = outcome.proof();
             (cast.verify(proof), proof.planes())
         }
         Query::Solid(cast) => {
-            let outcome = cast.certified_first_contact().map_err(said)?;
+            let outcome = cast.certified_first_contact().map_err(message)?;
             let proof = outcome.proof();
             (cast.verify(proof), proof.spans.iter().map(|span| span.cover.len()).sum())
         }
     };
-    Ok(judged(checked, entries))
+    Ok(check_answer(checked, entries))
 }
 
-fn judged(checked: Result<[f64; 2], MotionProofError>, entries: usize) -> Answer {
-    Answer::of(&match checked {
-        // Infinite, that they meet is not claimed, is written as null.
+/// Returns the result of a check.
+fn check_answer(checked: Result<[f64; 2], MotionProofError>, entries: usize) -> Answer {
+    Answer::from_facts(&match checked {
+        // An infinite bound, which claims no contact, is written as null.
         Ok(proven) => json!({ "holds": true, "proven": proven, "entries": entries }),
         Err(error) => json!({ "holds": false, "because": error.to_string() }),
     })

@@ -1,7 +1,7 @@
-//! From the bytes of a file to a body, and to what a page draws of it.
+//! From the bytes of a file to a body, and to the data that the page draws.
 //!
-//! Numbers of an answer: the vertices (three `f64` each), the triangles (three `u32` each), the face
-//! of each triangle (`u32`), the edges to be drawn (two `u32` each). Vertices are those of the body.
+//! Numbers of an answer: the vertices (three `f64` each), the triangles (three `u32` each), the face of each
+//! triangle (`u32`), the edges to draw (two `u32` each). Vertex indices are those of the body.
 
 use std::path::Path;
 use std::sync::OnceLock;
@@ -15,15 +15,16 @@ use serde_json::json;
 
 use crate::answer::{Answer, Refusal};
 
-/// Edges of a solid, or of a dense body, whose faces make a smaller angle are not drawn: its cosine, that of drawings.
+/// Cosine of the angle between faces below which an edge of a solid or of a dense body is not drawn, as in
+/// drawings.
 const SMOOTH: f64 = 0.906;
 
-/// A convex body with more edges is dense: all of them would cover it.
+/// Number of edges above which a convex body is dense, because all edges together would cover it.
 const DENSE: usize = 10_000;
 
 /// A body in use.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "there are two, and they stay where they are")]
+#[expect(clippy::large_enum_variant, reason = "there are two values, which are never moved")]
 pub(crate) enum Part {
     Convex(Hull),
     Solid(Facets),
@@ -33,7 +34,7 @@ pub(crate) enum Part {
 #[derive(Debug)]
 pub(crate) struct Hull {
     pub(crate) body: ConvexPolyhedron,
-    /// The same as a solid, made when it is asked about with one.
+    /// The body as a solid, built on the first query with a solid.
     solid: OnceLock<Result<Facets, String>>,
 }
 
@@ -41,7 +42,7 @@ pub(crate) struct Hull {
 #[derive(Debug)]
 pub(crate) struct Facets {
     pub(crate) body: Solid,
-    /// How far apart vertices may be written that were meant to be one: a length.
+    /// Maximum distance of stored vertices that represent the same point.
     pub(crate) precision: f64,
 }
 
@@ -61,7 +62,7 @@ impl Part {
     }
 }
 
-/// What is said about a body.
+/// The facts about a body that the page shows.
 #[derive(Debug)]
 struct Facts {
     kind: &'static str,
@@ -69,19 +70,20 @@ struct Facts {
     edges: usize,
     dimension: u8,
     closed: bool,
-    /// Of a surface, how many shells there are of each kind.
+    /// For a surface the numbers of shells of each kind.
     shells: Option<[usize; 3]>,
     volume: f64,
     bounds: [[f64; 3]; 2],
-    /// What was merged, mended or filled.
+    /// Descriptions of merged vertices, repairs and filled holes.
     notes: Vec<String>,
 }
 
-fn words(notes: &[Note]) -> Vec<String> {
+/// Returns the notes as text.
+fn note_texts(notes: &[Note]) -> Vec<String> {
     notes.iter().map(Note::to_string).collect()
 }
 
-/// What is drawn.
+/// The data to draw.
 #[derive(Debug, Default)]
 struct Drawn {
     triangles: Vec<[u32; 3]>,
@@ -89,33 +91,37 @@ struct Drawn {
     edges: Vec<[u32; 2]>,
 }
 
-pub(crate) fn read(name: &str, file: Vec<u8>) -> Result<Mesh, Refusal> {
+/// Reads a mesh file.
+pub(crate) fn read_mesh(name: &str, file: Vec<u8>) -> Result<Mesh, Refusal> {
     let path = Path::new(name);
     let format = Format::of_path(path).map_err(|error| error.to_string())?;
     colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string().into())
 }
 
-pub(crate) fn build(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer), Refusal> {
+/// Builds a body from a mesh, and the answer with its drawing.
+pub(crate) fn build_body(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer), Refusal> {
     let options =
         BodyOptions::default().with_hull(take == Take::Hull).with_open(take == Take::Open);
     match take {
         Take::Convex | Take::Hull => {
             let loaded = body::convex(mesh, &options).map_err(|error| refusal(name, &error))?;
             let Loaded { body, notes, .. } = loaded;
-            let answer = answer(&convex_facts(&body, &notes), body.vertices(), &of_hull(&body));
+            let answer =
+                body_answer(&convex_facts(&body, &notes), body.vertices(), &hull_drawing(&body));
             Ok((Part::Convex(Hull { body, solid: OnceLock::new() }), answer))
         }
         Take::Solid | Take::Open => {
             let loaded = body::solid(mesh, &options).map_err(|error| refusal(name, &error))?;
             let Loaded { body, precision, notes } = loaded;
-            let answer = answer(&solid_facts(&body, &notes), body.vertices(), &of_solid(&body));
+            let answer =
+                body_answer(&solid_facts(&body, &notes), body.vertices(), &solid_drawing(&body));
             Ok((Part::Solid(Facets { body, precision }), answer))
         }
     }
 }
 
-/// What a question calls this.
-fn word(take: Take) -> &'static str {
+/// Returns the name of a way to use a mesh, as in questions.
+fn take_name(take: Take) -> &'static str {
     match take {
         Take::Convex => "convex",
         Take::Hull => "hull",
@@ -125,7 +131,7 @@ fn word(take: Take) -> &'static str {
 }
 
 fn refusal(name: &str, error: &Refused) -> Refusal {
-    let instead = error.instead().iter().map(|take| word(*take)).collect();
+    let instead = error.instead().iter().map(|take| take_name(*take)).collect();
     Refusal { instead, ..format!("{name}: {error}").into() }
 }
 
@@ -144,7 +150,7 @@ fn convex_facts(body: &ConvexPolyhedron, notes: &[Note]) -> Facts {
         shells: None,
         volume: body.volume(),
         bounds: bounds(body.vertices()),
-        notes: words(notes),
+        notes: note_texts(notes),
     }
 }
 
@@ -159,12 +165,13 @@ fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
         shells: (!body.is_closed()).then(|| ShellKind::ALL.map(|kind| body.report().count(kind))),
         volume: body.volume(),
         bounds: bounds(body.vertices()),
-        notes: words(notes),
+        notes: note_texts(notes),
     }
 }
 
-/// Faces as fans; every edge once, of a dense body those between faces that make an angle.
-fn of_hull(body: &ConvexPolyhedron) -> Drawn {
+/// Returns faces as fans and every edge once. Edges between nearly coplanar faces of a dense body are
+/// omitted.
+fn hull_drawing(body: &ConvexPolyhedron) -> Drawn {
     let mut drawn = Drawn::default();
     for face in 0..body.face_count() as u32 {
         let corners: Vec<u32> = body.face_vertices(face).collect();
@@ -186,8 +193,8 @@ fn of_hull(body: &ConvexPolyhedron) -> Drawn {
     drawn
 }
 
-/// Edges are those between faces that make an angle, and open ones.
-fn of_solid(body: &Solid) -> Drawn {
+/// Returns the triangles, the edges between faces at an angle, and open edges.
+fn solid_drawing(body: &Solid) -> Drawn {
     let vertices = body.vertices();
     let normal = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| vertices[v as usize]);
@@ -196,7 +203,7 @@ fn of_solid(body: &Solid) -> Drawn {
     let triangles = body.triangles();
     let mut edges = Vec::new();
     for around in sides(triangles).chunk_by(|(a, _), (b, _)| a == b) {
-        // A side is twice its corner, of which a triangle has three.
+        // The number of a side is twice the number of its corner; a triangle has three corners.
         let smooth = match *around {
             [] | [_] => false,
             [(_, first), .., (_, last)] => {
@@ -211,9 +218,10 @@ fn of_solid(body: &Solid) -> Drawn {
     Drawn { triangles: triangles.to_vec(), faces: body.face_numbers().to_vec(), edges }
 }
 
-fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
+/// Builds the answer about a body.
+fn body_answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
     let triangles = drawn.triangles.len();
-    let mut answer = Answer::of(&json!({
+    let mut answer = Answer::from_facts(&json!({
         "body": {
             "kind": facts.kind,
             "vertices": vertices.len(),

@@ -1,24 +1,24 @@
-//! Proofs of answers between solids: made, told, and checked as they were told.
+//! Proofs of clearances between solids: built, sent to the page, and checked as received.
 
 use colltrans::solid::{Cover, Reason, SolidCast, SolidCertificate, StartProof};
 use colltrans::{Cast, Solid};
 use serde::Serialize;
 
 use super::body::{Facets, Part};
-use super::convex::judged;
+use super::convex::check_answer;
 use super::question::Pair;
 use super::record::Proof;
-use super::solid::query;
+use super::solid::cast_of;
 use crate::answer::{Answer, Refusal};
 
 const REASONS: [(Reason, &str); 8] = [
-    (Reason::MovingFacesAway, "facets of the moving body look away"),
-    (Reason::FixedFacesAway, "facets of the fixed body look away"),
-    (Reason::ShadowsApart, "their shadows are apart"),
-    (Reason::Parting, "they part"),
+    (Reason::MovingFacesAway, "facets of the moving body face away"),
+    (Reason::FixedFacesAway, "facets of the fixed body face away"),
+    (Reason::ShadowsApart, "their shadows are disjoint"),
+    (Reason::Parting, "they move apart"),
     (Reason::NotBefore, "they meet no earlier"),
-    (Reason::Examined, "looked at facet by facet"),
-    (Reason::Disjoint, "apart where they are"),
+    (Reason::Examined, "examined facet by facet"),
+    (Reason::Disjoint, "disjoint at the start"),
     (Reason::FaceToFace, "face to face in one plane"),
 ];
 
@@ -26,13 +26,13 @@ const REASONS: [(Reason, &str); 8] = [
 #[derive(Serialize)]
 struct Certified<'a> {
     proof: Proof,
-    /// Why nothing stops the body before.
+    /// The reasons why nothing stops the body earlier.
     claims: Vec<Claims<'a>>,
-    /// Why the bodies do not overlap where they are, if they do not.
+    /// The reasons why the bodies do not overlap at the start, if they do not.
     start_claims: Option<Vec<Claims<'a>>>,
 }
 
-/// One reason: how often it is given, about how many pairs of facets.
+/// A reason, the number of its uses, and the number of pairs of facets for which it is used.
 #[derive(Serialize)]
 struct Claims<'a> {
     because: &'a str,
@@ -40,23 +40,26 @@ struct Claims<'a> {
     pairs: f64,
 }
 
-fn facets([moving, fixed]: [&Part; 2]) -> Result<[&Facets; 2], Refusal> {
+/// Returns both bodies as solids.
+fn facet_bodies([moving, fixed]: [&Part; 2]) -> Result<[&Facets; 2], Refusal> {
     Ok([moving.facets()?, fixed.facets()?])
 }
 
-pub(crate) fn certify(bodies: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
-    let cast = query(facets(bodies)?, pair)?;
+/// Answers the question `certify`.
+pub(crate) fn certify_clearance(bodies: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
+    let cast = cast_of(facet_bodies(bodies)?, pair)?;
     let (_, certificate) = cast.certified_clearance().map_err(|error| error.to_string())?;
     let SolidCertificate { start, cover, .. } = &certificate;
     let apart = if let StartProof::Apart(cover) = start { Some(cover) } else { None };
-    Ok(Answer::of(&Certified {
-        claims: counted(cover, &cast),
-        start_claims: apart.map(|cover| counted(cover, &cast)),
+    Ok(Answer::from_facts(&Certified {
+        claims: count_claims(cover, &cast),
+        start_claims: apart.map(|cover| count_claims(cover, &cast)),
         proof: Proof::Clearance(certificate),
     }))
 }
 
-fn counted(cover: &Cover, cast: &Cast<'_, Solid>) -> Vec<Claims<'static>> {
+/// Counts the claims of a cover by reason.
+fn count_claims(cover: &Cover, cast: &Cast<'_, Solid>) -> Vec<Claims<'static>> {
     let all = cover.claims(cast).unwrap_or_default();
     let row = |&(reason, because): &(Reason, &'static str)| {
         let given = all.iter().filter(|claim| claim.reason == reason);
@@ -68,12 +71,12 @@ fn counted(cover: &Cover, cast: &Cast<'_, Solid>) -> Vec<Claims<'static>> {
     REASONS.iter().filter_map(row).collect()
 }
 
-/// Checks a proof as it was written, against the two solids alone.
+/// Checks a proof, as received, with the two solids alone.
 pub(crate) fn verify(bodies: [&Part; 2], pair: &Pair, proof: &Proof) -> Result<Answer, Refusal> {
-    let cast = query(facets(bodies)?, pair)?;
-    Ok(judged(match proof {
+    let cast = cast_of(facet_bodies(bodies)?, pair)?;
+    Ok(check_answer(match proof {
         Proof::Separation(separation) => cast.verify(separation),
         Proof::Clearance(certificate) => cast.verify(certificate),
-        Proof::Contact(_) => return Err("that is a proof between convex bodies".to_owned().into()),
+        Proof::Contact(_) => return Err("the proof is about convex bodies".to_owned().into()),
     }))
 }

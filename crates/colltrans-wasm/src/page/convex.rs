@@ -9,11 +9,14 @@ use super::body::Hull;
 use super::question::Pair;
 use super::record::{CastAnswer, Proof};
 use crate::answer::{Answer, Refusal};
-use crate::lit::{Lit, Touching};
+use crate::highlight::{ContactHighlight, FeatureHighlight};
 use crate::pose::pose;
 
-/// The query that a question asks.
-pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
+/// Builds the cast of a question.
+pub(crate) fn cast_of<'a>(
+    [moving, fixed]: [&'a Hull; 2],
+    pair: &Pair,
+) -> Result<Cast<'a>, Refusal> {
     let moving = moving.body.at(pose(pair.moving_pose, "moving")?);
     let fixed = fixed.body.at(pose(pair.fixed_pose, "fixed")?);
     let options = Options::default()
@@ -24,8 +27,9 @@ pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<C
     Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
 }
 
-pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
-    let cast = query(bodies, pair)?;
+/// Answers the question `cast` for convex bodies.
+pub(crate) fn cast_answer(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
+    let cast = cast_of(bodies, pair)?;
     let range = cast.contact_range().map_err(|error| error.to_string())?;
     let clearance = cast.clearance().map_err(|error| error.to_string())?;
     let first = match &range {
@@ -33,13 +37,16 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
         ContactRange::Grazing { first, .. } => Ok(&first.contact),
         ContactRange::Separated(separated) => Err(separated.certificate),
     };
-    Ok(Answer::of(&CastAnswer {
+    Ok(Answer::from_facts(&CastAnswer {
         kind: "convex",
         record: CastRecord::of_range(&range, &cast).into(),
         clearance: Some(ClearanceRecord::of(&clearance, &cast)),
         lit: first.ok().map(|contact| {
             let Features { moving, fixed } = contact.features(&cast);
-            Touching { moving: Lit::of(moving, cast.moving()), fixed: Lit::of(fixed, cast.fixed()) }
+            ContactHighlight {
+                moving: FeatureHighlight::from_feature(moving, cast.moving()),
+                fixed: FeatureHighlight::from_feature(fixed, cast.fixed()),
+            }
         }),
         proof: Some(
             first.map_or_else(Proof::Separation, |contact| Proof::Contact(contact.certificate)),
@@ -48,20 +55,20 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
     }))
 }
 
-/// Checks a proof as it was written, against the two bodies alone.
+/// Checks a proof, as received, with the two bodies alone.
 pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<Answer, Refusal> {
-    let cast = query(bodies, pair)?;
+    let cast = cast_of(bodies, pair)?;
     let checked = match proof {
         Proof::Contact(certificate) => cast.verify(certificate),
         Proof::Separation(separation) => cast.verify(separation),
-        Proof::Clearance(_) => return Err("that is a proof between solids".to_owned().into()),
+        Proof::Clearance(_) => return Err("the proof is about solids".to_owned().into()),
     };
-    Ok(judged(checked))
+    Ok(check_answer(checked))
 }
 
-/// What came of a check.
-pub(crate) fn judged(checked: Result<f64, CertificateError>) -> Answer {
-    Answer::of(&match checked {
+/// Returns the result of a check.
+pub(crate) fn check_answer(checked: Result<f64, CertificateError>) -> Answer {
+    Answer::from_facts(&match checked {
         Ok(proven) => json!({ "holds": true, "proven": proven }),
         Err(error) => json!({ "holds": false, "because": error.to_string() }),
     })

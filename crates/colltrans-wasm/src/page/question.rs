@@ -1,7 +1,7 @@
-//! The questions, as the page writes them: objects with a field `do`.
+//! The questions as the page writes them: objects with a field `do`.
 //!
-//! Read by hand but for proofs, which the library reads: what derived readers of all of them would add is a
-//! third of the download.
+//! They are read by hand, except proofs, which the library reads, because derived readers of all of them
+//! would add a third to the download.
 
 use colltrans::{Solver, cta};
 use colltrans_mesh::body::Take;
@@ -11,20 +11,20 @@ use serde_json::Value;
 use super::record::Proof;
 use crate::fields::Fields;
 
-/// One question.
+/// A question.
 #[derive(Debug)]
 pub(crate) enum Question {
-    /// The file that comes with the question becomes a body.
+    /// Builds a body from the attached file.
     Load(Load),
-    /// When do they meet, and how far can the moving one go?
+    /// Computes the contacts, and the clearance of the moving body.
     Cast(Pair),
-    /// A proof of the clearance between solids.
+    /// Builds a proof of the clearance between solids.
     Certify(Pair),
-    /// Is this proof, as an answer had it, one?
+    /// Checks a proof of an earlier answer.
     Verify(Pair, Proof),
 }
 
-/// Which of the two bodies.
+/// The body of a question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Slot {
     Moving,
@@ -34,7 +34,7 @@ pub(crate) enum Slot {
 #[derive(Debug)]
 pub(crate) struct Load {
     pub(crate) slot: Slot,
-    /// The file's name; its extension tells the format.
+    /// The file name, whose extension selects the format.
     pub(crate) name: String,
     pub(crate) take: Take,
 }
@@ -45,37 +45,37 @@ pub(crate) struct Pair {
     pub(crate) moving_pose: [f64; 7],
     pub(crate) fixed_pose: [f64; 7],
     pub(crate) direction: [f64; 3],
-    /// Between convex bodies: sideways overlap that counts as grazing.
+    /// Graze tolerance, for convex bodies.
     pub(crate) graze: f64,
-    /// Between convex bodies.
+    /// The solver, for convex bodies.
     pub(crate) solver: Solver,
-    /// Of `cta`: from `start`, `center` or `ellipsoids`, `until` it ends, `exit` or a gap.
+    /// For the solver `cta`: `start` is `center` or `ellipsoids`, `until` is `exit` or a gap.
     pub(crate) narrowing: cta::Options,
-    /// Between solids: by how much they are shrunk; what the files' precision asks for by default.
+    /// Tolerance of solids; the default follows from the precision of the files.
     pub(crate) tolerance: Option<f64>,
-    /// Between solids: facets that cross at the start do not block.
+    /// Whether facets of solids that cross at the start are ignored.
     pub(crate) ignore_overlaps: bool,
 }
 
 impl Question {
-    /// From JSON.
+    /// Reads a question from JSON.
     pub(crate) fn read(text: &[u8]) -> Result<Self, String> {
         let value: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
-        let fields = Fields::of(&value)?;
+        let fields = Fields::from_value(&value)?;
         match fields.text("do")? {
             "load" => fields.load().map(Self::Load),
             "cast" => fields.pair().map(Self::Cast),
             "certify" => fields.pair().map(Self::Certify),
             "verify" => {
-                let proof = Proof::deserialize(fields.need("proof")?);
+                let proof = Proof::deserialize(fields.required("proof")?);
                 Ok(Self::Verify(fields.pair()?, proof.map_err(|error| error.to_string())?))
             }
-            other => Err(format!("nothing is known to do for {other}")),
+            other => Err(format!("unknown question {other}")),
         }
     }
 }
 
-/// A question's fields, as a question reads them.
+/// Reads parts of a question from its fields.
 trait Read {
     fn load(&self) -> Result<Load, String>;
     fn pair(&self) -> Result<Pair, String>;
@@ -87,14 +87,18 @@ impl Read for Fields<'_> {
         let slot = match self.text("slot")? {
             "moving" => Slot::Moving,
             "fixed" => Slot::Fixed,
-            other => return Err(format!("there is no body {other}")),
+            other => return Err(format!("unknown body {other}; known bodies: moving, fixed")),
         };
         let take = match self.text("take")? {
             "convex" => Take::Convex,
             "hull" => Take::Hull,
             "solid" => Take::Solid,
             "open" => Take::Open,
-            other => return Err(format!("a mesh cannot be taken as {other}")),
+            other => {
+                return Err(format!(
+                    "unknown kind of body {other}; known kinds: convex, hull, solid, open"
+                ));
+            }
         };
         Ok(Load { slot, name: self.text("name")?.to_owned(), take })
     }

@@ -1,39 +1,39 @@
-//! The record of a cast as the page takes it: that of the library, and what only a page needs.
+//! The answer of a cast as the page reads it: the record of the library, and data for the page alone.
 
 use colltrans::record::{ClearanceRecord, Record};
 use colltrans::solid::SolidCertificate;
 use colltrans::{Certificate, Separation};
 use serde::{Deserialize, Serialize};
 
-use crate::lit::Touching;
+use crate::highlight::ContactHighlight;
 
-/// An answer to `cast`; fields that do not apply are left out.
+/// An answer to `cast`. Fields that do not apply are omitted.
 #[derive(Serialize)]
 pub(crate) struct CastAnswer {
-    /// How the bodies were taken: `convex` or `solid`.
+    /// The kind of the bodies: `convex` or `solid`.
     pub(crate) kind: &'static str,
-    /// Between convex bodies of when they meet, between solids of how far the moving one can go.
+    /// The contacts of convex bodies, or the clearance of solids.
     pub(crate) record: Record,
-    /// Between convex bodies: how far the moving one can go.
+    /// The clearance of convex bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) clearance: Option<ClearanceRecord>,
-    /// What touches.
+    /// The features in contact.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) lit: Option<Touching>,
-    /// Of the answer; between solids only where it is short.
+    pub(crate) lit: Option<ContactHighlight>,
+    /// The proof of the answer; for solids only a short one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) proof: Option<Proof>,
-    /// Of the files of solids: a length.
+    /// The precision of the files of solids, a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) precision: Option<f64>,
 }
 
-/// What anyone can check.
+/// A proof that the page can hand back for a check.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Proof {
     Contact(Certificate),
     Separation(Separation),
-    /// Between solids.
+    /// A proof between solids.
     Clearance(SolidCertificate),
 }

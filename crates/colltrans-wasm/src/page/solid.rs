@@ -1,4 +1,4 @@
-//! Casts between bodies of which at least one need not be convex.
+//! Casts between two bodies, at least one of them a solid.
 
 use colltrans::record::SolidClearanceRecord;
 use colltrans::solid::{SolidCast, StartOverlap};
@@ -10,25 +10,26 @@ use super::body::{Facets, Part};
 use super::question::Pair;
 use super::record::{CastAnswer, Proof};
 use crate::answer::{Answer, Refusal};
-use crate::lit::{Lit, Touching};
+use crate::highlight::{ContactHighlight, FeatureHighlight};
 use crate::pose::pose;
 
-pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
+/// Answers the question `cast` for solids.
+pub(crate) fn cast_answer([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
-    let cast = query([moving, fixed], pair)?;
+    let cast = cast_of([moving, fixed], pair)?;
     let clearance = cast.clearance().map_err(|error| error.to_string())?;
     let (mut lit, mut proof) = (None, None);
     match &clearance {
         Clearance::Free(free) => proof = free.separation.map(Proof::Separation),
         Clearance::Overlapping(_) => {}
         Clearance::Blocked { contact, .. } => {
-            lit = Some(Touching {
-                moving: Lit::of(contact.moving_feature, cast.moving()),
-                fixed: Lit::of(contact.fixed_feature, cast.fixed()),
+            lit = Some(ContactHighlight {
+                moving: FeatureHighlight::from_feature(contact.moving_feature, cast.moving()),
+                fixed: FeatureHighlight::from_feature(contact.fixed_feature, cast.fixed()),
             });
         }
     }
-    Ok(Answer::of(&CastAnswer {
+    Ok(Answer::from_facts(&CastAnswer {
         kind: "solid",
         record: SolidClearanceRecord::of(&clearance, cast.exit(), &cast).into(),
         clearance: None,
@@ -38,8 +39,8 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
     }))
 }
 
-/// The query that a question asks.
-pub(crate) fn query<'a>(
+/// Builds the cast of a question.
+pub(crate) fn cast_of<'a>(
     [moving, fixed]: [&'a Facets; 2],
     pair: &Pair,
 ) -> Result<Cast<'a, Solid>, Refusal> {

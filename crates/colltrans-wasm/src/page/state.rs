@@ -1,4 +1,4 @@
-//! The bodies in use, and what is answered about them.
+//! The bodies in use, and the questions about them.
 
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::Take;
@@ -9,25 +9,26 @@ use super::{certify, convex, solid};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
 
-/// A body made of a file with more bytes goes before the next file is read: both may not fit.
+/// Number of bytes of a file above which its body is dropped before the next file is read, because both may
+/// not fit.
 const LARGE: usize = 64 << 20;
 
-/// Two bodies, as files made them.
+/// Two bodies, built from files.
 #[derive(Debug, Default)]
 pub struct State {
     moving: Place,
     fixed: Place,
 }
 
-/// What is asked about, and what is to take its place: a file that no body was made of is refused, and what
-/// was there stays.
+/// The body of a slot, and a file that may replace it. If no body can be built from the file, the old body
+/// stays.
 #[derive(Debug, Default)]
 struct Place {
     body: Option<(File, Part)>,
     offered: Option<File>,
 }
 
-/// A file, read once.
+/// A file that has been read.
 #[derive(Debug)]
 struct File {
     name: String,
@@ -36,7 +37,7 @@ struct File {
 }
 
 impl Place {
-    /// A file without bytes is the one that was offered last, or else the one in use, taken in another way.
+    /// Builds a body. Without bytes it uses the last rejected file, or the file in use, in another way.
     fn load(&mut self, load: Load, bytes: Vec<u8>) -> Result<Answer, Refusal> {
         let used = self.body.as_ref().map(|(file, _)| file);
         let known = self.offered.as_ref().or(used).is_some_and(|file| file.name == load.name);
@@ -44,17 +45,17 @@ impl Place {
             self.offered = None;
             self.drop_large();
             let length = bytes.len();
-            let mesh = body::read(&load.name, bytes)?;
+            let mesh = body::read_mesh(&load.name, bytes)?;
             self.offered = Some(File { name: load.name, bytes: length, mesh });
         }
         let mut file = match self.offered.take() {
             Some(file) => file,
             None => self.body.take().map(|(file, _)| file).ok_or_else(|| "no file".to_owned())?,
         };
-        match body::build(&file.mesh, &file.name, load.take) {
+        match body::build_body(&file.mesh, &file.name, load.take) {
             Ok((part, answer)) => {
                 if load.take == Take::Convex {
-                    // Nothing else will be made of it.
+                    // No other body will be built from the mesh.
                     file.mesh = Mesh::default();
                 }
                 self.body = Some((file, part));
@@ -75,13 +76,13 @@ impl Place {
 }
 
 impl Answers for State {
-    /// Answers one question; `file` holds the bytes that come with it, if any.
+    /// Answers one question. `file` has the attached bytes, if any.
     fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let answer = match Question::read(question) {
             Ok(question) => self.answer(question, file),
             Err(error) => Err(format!("the question cannot be read: {error}").into()),
         };
-        answer.unwrap_or_else(Refusal::answer)
+        answer.unwrap_or_else(Refusal::into_answer)
     }
 }
 
@@ -93,12 +94,12 @@ impl State {
                 let bodies = self.bodies()?;
                 match bodies {
                     [Part::Convex(moving), Part::Convex(fixed)] => {
-                        convex::cast([moving, fixed], &pair)
+                        convex::cast_answer([moving, fixed], &pair)
                     }
-                    _ => solid::cast(bodies, &pair),
+                    _ => solid::cast_answer(bodies, &pair),
                 }
             }
-            Question::Certify(pair) => certify::certify(self.bodies()?, &pair),
+            Question::Certify(pair) => certify::certify_clearance(self.bodies()?, &pair),
             Question::Verify(pair, proof) => match self.bodies()? {
                 [Part::Convex(moving), Part::Convex(fixed)] => {
                     convex::verify([moving, fixed], &pair, &proof)

@@ -1,6 +1,6 @@
-//! From the scene to SVG.
+//! Draws a scene as SVG.
 //!
-//! From below to above: lines on the ground, areas, lines, what nothing hides, words.
+//! The order from bottom to top is: lines on the ground, areas, lines, areas above, words.
 
 use std::collections::HashSet;
 
@@ -9,20 +9,21 @@ use glam::{DVec2, DVec3};
 
 use super::scene::{Area, Line, Scene, Segment, Styles};
 
-/// The width of an opaque area's rim, so that nothing shines through between it and its neighbours: pixels.
+/// Width of the stroke around an opaque area, in pixels, so that no gaps show between neighbouring areas.
 const RIM: f64 = 0.7;
 const WORDS: &str = r#"font-family="sans-serif" font-size="14" font-style="italic""#;
 
-pub(crate) fn drawing(scene: &Scene) -> String {
+/// Draws a scene and returns the text of the SVG file.
+pub(crate) fn draw_scene(scene: &Scene) -> String {
     let Styles { size, ground, text, words, .. } = &scene.styles;
     let size = DVec2::from_array(*size);
     let window = Frame { low: DVec2::ZERO, high: size };
     let mut page = Page::new(window);
     let lines = Lines::new(scene, window);
     lines.draw(&mut page, |style| style.below);
-    areas(&mut page, scene, window, |area| !area.above);
+    draw_areas(&mut page, scene, window, |area| !area.above);
     lines.draw(&mut page, |style| !style.below);
-    areas(&mut page, scene, window, |area| area.above);
+    draw_areas(&mut page, scene, window, |area| area.above);
     for word in words {
         let look = format!(r#"{WORDS} fill="{}""#, escaped(text));
         page.text(DVec2::from_array(word.at), "middle", &look, &word.text);
@@ -30,8 +31,8 @@ pub(crate) fn drawing(scene: &Scene) -> String {
     page.alone(size, ground)
 }
 
-/// Neighbours of one style are one path.
-fn areas(page: &mut Page, scene: &Scene, window: Frame, some: impl Fn(&Area) -> bool) {
+/// Draws areas. Neighbours in depth order with the same style become one path.
+fn draw_areas(page: &mut Page, scene: &Scene, window: Frame, some: impl Fn(&Area) -> bool) {
     let style = |facet: &Facet| &scene.styles.areas[facet.style as usize];
     let facets = scene.triangles.iter().map(|(facet, _)| *facet).filter(|f| some(style(f)));
     let painted = ordered(facets.collect(), window, Depth::Inverse, scene.styles.slack);
@@ -43,21 +44,22 @@ fn areas(page: &mut Page, scene: &Scene, window: Frame, some: impl Fn(&Area) -> 
         } else {
             format!(r#"fill="{fill}" fill-opacity="{opacity}""#)
         };
-        page.polygons(&look, same.iter().map(one_way_round));
+        page.polygons(&look, same.iter().map(oriented_corners));
     }
 }
 
-/// All of them the same way round: then overlaps add up and nothing is a hole.
-fn one_way_round(facet: &Facet) -> Vec<DVec2> {
+/// Returns a triangle with a fixed orientation, so that overlapping triangles in a path add up and make no
+/// holes.
+fn oriented_corners(facet: &Facet) -> Vec<DVec2> {
     let [a, b, c] = facet.corners.map(DVec3::truncate);
     if (b - a).perp_dot(c - a) > 0.0 { vec![a, b, c] } else { vec![a, c, b] }
 }
 
-/// Lines, and what hides them.
+/// The lines of a scene, and the depth buffer that hides parts of them.
 struct Lines<'a> {
     scene: &'a Scene,
     raster: Raster,
-    /// Triangles that are drawn.
+    /// The numbers of the opaque triangles in the depth buffer.
     drawn: HashSet<u32>,
 }
 
@@ -86,16 +88,16 @@ impl<'a> Lines<'a> {
                 None => r#"stroke-linecap="round""#.to_owned(),
             };
             let look = format!(r#"stroke="{}" stroke-opacity="{opacity}" {ends}"#, escaped(colour));
-            page.lines(&look, same.iter().flat_map(|segment| self.seen(segment)));
+            page.lines(&look, same.iter().flat_map(|segment| self.visible_parts(segment)));
         }
     }
 
-    /// Nothing of an edge whose triangles all look away.
-    fn seen(&self, Segment { ends, beside, .. }: &Segment) -> Vec<[DVec2; 2]> {
-        if !beside.is_empty() && !beside.iter().any(|number| self.drawn.contains(number)) {
+    /// Returns the visible parts of a segment. An edge is hidden if none of its triangles is drawn.
+    fn visible_parts(&self, Segment { ends, adjacent, .. }: &Segment) -> Vec<[DVec2; 2]> {
+        if !adjacent.is_empty() && !adjacent.iter().any(|number| self.drawn.contains(number)) {
             return Vec::new();
         }
-        let [seen, _] = self.raster.split_edge(*ends, self.scene.styles.slack, beside);
+        let [seen, _] = self.raster.split_edge(*ends, self.scene.styles.slack, adjacent);
         seen
     }
 }

@@ -1,7 +1,7 @@
-//! The view as SVG: a module of its own, because few visitors save a drawing.
+//! The view as SVG. This is a module of its own, because few visitors save a drawing.
 //!
-//! Data flow: what the page shows, already in perspective on it (`scene`) -> `drawing`: areas in the order in which
-//! the nearer cover the farther, and of the lines what no opaque area hides -> SVG.
+//! Data flow: the geometry that the page shows, projected to the page (`scene`) -> `drawing`: areas sorted by
+//! depth, and the visible parts of lines -> SVG.
 
 mod drawing;
 mod scene;

@@ -1,15 +1,15 @@
-//! What is to be drawn, as the page hands it over.
+//! The scene to draw, as the page sends it.
 //!
-//! Points are (x, y, q): pixels of the page, and the inverse of the distance along the view. The file that
-//! comes with a question is little-endian: the corners of the triangles (nine `f64` each), the ends of the
-//! segments (six `f64` each), then `u32`: for each triangle its style and its number, for each segment its
-//! style and of how many triangles it is an edge, and after all of them, the numbers of those.
+//! Points are (x, y, q): pixels of the page, and the inverse of the distance along the view. The attached
+//! file is little-endian: the corners of the triangles (nine `f64` each), the ends of the segments (six `f64`
+//! each), then as `u32` for each triangle its style and number, for each segment its style and its count of
+//! adjacent triangles, and finally the numbers of these triangles.
 
 use colltrans_picture::Facet;
 use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
-/// The longest side of a page that is drawn: pixels.
+/// Maximum side of a drawing, in pixels.
 const LARGEST: f64 = 16_384.0;
 
 #[derive(Debug, Deserialize)]
@@ -18,12 +18,12 @@ pub(crate) enum Question {
     Draw(Styles),
 }
 
-/// All but the geometry.
+/// The scene without its geometry.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Styles {
-    /// Pixels.
+    /// Width and height in pixels.
     pub(crate) size: [f64; 2],
-    /// Lengths along the view that are no difference.
+    /// Differences of depth up to this value are ignored.
     pub(crate) slack: f64,
     /// The colour of the ground.
     pub(crate) ground: String,
@@ -41,7 +41,7 @@ pub(crate) struct Styles {
 pub(crate) struct Area {
     pub(crate) fill: String,
     pub(crate) opacity: f64,
-    /// Nothing hides it, and it hides no line.
+    /// Whether the area is above everything: nothing hides it, and it hides no line.
     pub(crate) above: bool,
 }
 
@@ -50,9 +50,9 @@ pub(crate) struct Area {
 pub(crate) struct Line {
     pub(crate) colour: String,
     pub(crate) opacity: f64,
-    /// Length of dashes and of the gaps between them: pixels.
+    /// Length of dashes and of the gaps between them, in pixels.
     pub(crate) dash: Option<f64>,
-    /// It comes before all areas: they cover it.
+    /// Whether the line is below all areas.
     pub(crate) below: bool,
 }
 
@@ -66,14 +66,14 @@ pub(crate) struct Word {
 pub(crate) struct Segment {
     pub(crate) ends: [DVec3; 2],
     pub(crate) style: u32,
-    /// Triangles whose edge it is.
-    pub(crate) beside: Vec<u32>,
+    /// The triangles of which the segment is an edge.
+    pub(crate) adjacent: Vec<u32>,
 }
 
 #[derive(Debug)]
 pub(crate) struct Scene {
     pub(crate) styles: Styles,
-    /// With their numbers.
+    /// The triangles with their numbers.
     pub(crate) triangles: Vec<(Facet, u32)>,
     pub(crate) segments: Vec<Segment>,
 }
@@ -82,15 +82,19 @@ impl Scene {
     pub(crate) fn read(styles: Styles, file: &[u8]) -> Result<Self, String> {
         let size = DVec2::from_array(styles.size);
         if !(size.cmpge(DVec2::ONE).all() && size.max_element() <= LARGEST) {
-            return Err(format!("a page of {} by {} pixels", size.x, size.y));
+            return Err(format!(
+                "a size of {} by {} pixels is out of range; accepted: 1 to {LARGEST}",
+                size.x, size.y
+            ));
         }
         let scene = Self { triangles: Vec::new(), segments: Vec::new(), styles };
-        scene
-            .filled(file)
-            .ok_or_else(|| "triangles and lines are not as many as is said".to_owned())
+        scene.with_geometry(file).ok_or_else(|| {
+            "the file does not match the stated numbers of triangles and lines".to_owned()
+        })
     }
 
-    fn filled(mut self, file: &[u8]) -> Option<Self> {
+    /// Reads the geometry; returns `None` if the file has another size than the counts require.
+    fn with_geometry(mut self, file: &[u8]) -> Option<Self> {
         let Styles { triangles, segments, ref areas, ref lines, .. } = self.styles;
         let points = triangles.checked_mul(3)?.checked_add(segments.checked_mul(2)?)?;
         let (floats, integers) = file.split_at_checked(points.checked_mul(24)?)?;
@@ -108,17 +112,17 @@ impl Scene {
             let opaque = areas.get(style as usize)?.opacity >= 1.0;
             self.triangles.push((Facet { corners, style, opaque }, number));
         }
-        let mut beside = Vec::new();
+        let mut adjacent = Vec::new();
         for _ in 0..segments {
             let ends = [point()?, point()?];
             let (style, count) = (integers.next()?, integers.next()?);
             lines.get(style as usize)?;
-            beside.push(count as usize);
-            self.segments.push(Segment { ends, style, beside: Vec::new() });
+            adjacent.push(count as usize);
+            self.segments.push(Segment { ends, style, adjacent: Vec::new() });
         }
-        for (segment, count) in self.segments.iter_mut().zip(beside) {
-            segment.beside.extend(integers.by_ref().take(count));
-            (segment.beside.len() == count).then_some(())?;
+        for (segment, count) in self.segments.iter_mut().zip(adjacent) {
+            segment.adjacent.extend(integers.by_ref().take(count));
+            (segment.adjacent.len() == count).then_some(())?;
         }
         integers.next().is_none().then_some(self)
     }

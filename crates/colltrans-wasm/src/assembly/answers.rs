@@ -1,0 +1,103 @@
+//! Answers about assemblies as the page reads them: records of the library, and data to draw.
+//!
+//! Binary numbers are little-endian, in single precision, relative to the middle of the assembly.
+
+use colltrans::Aabb;
+use colltrans_assembly::blocking::Blocking;
+use colltrans_assembly::liaisons::Liaison;
+use colltrans_assembly::map::RemovalMap;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::Plan;
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, Bodies, record as library_record};
+use serde_json::json;
+
+use crate::answer::Answer;
+
+/// Returns all parts. Numbers: for each part its vertices (three `f32` each), then its triangles (three `u32`
+/// each).
+pub(crate) fn parts_answer(assembly: &Assembly) -> Answer {
+    let Aabb { low, high } = assembly.bounds();
+    let middle = (low + high) / 2.0;
+    let record = assembly.parts().iter().map(|part| {
+        let mut record = library_record::part(part);
+        // The counts of the numbers that follow.
+        record["vertices"] = json!(part.solid().vertices().len());
+        record["triangles"] = json!(part.solid().triangles().len());
+        record
+    });
+    let mut answer = Answer::from_facts(&json!({
+        "parts": record.collect::<Vec<_>>(),
+        "unit": assembly.unit(),
+        "size": (high - low).length(),
+        "middle": middle.to_array(),
+    }));
+    for part in assembly.parts() {
+        let places =
+            part.solid().vertices().iter().flat_map(|v| (*v - middle).as_vec3().to_array());
+        places.for_each(|x| answer.numbers.extend(x.to_le_bytes()));
+        let corners = part.solid().triangles().iter().flatten();
+        corners.for_each(|v| answer.numbers.extend(v.to_le_bytes()));
+    }
+    answer
+}
+
+/// Returns the tolerance, the overlaps and the liaisons of a fit.
+pub(crate) fn fit_answer(
+    bodies: &Bodies,
+    default: f64,
+    start: &Start,
+    touching: &[Liaison],
+) -> Answer {
+    let assembly = bodies.assembly();
+    Answer::from_facts(&json!({
+        "tolerance": bodies.fit().tolerance(),
+        "default": default,
+        "suggested_tolerance": start.suggested,
+        "overlaps": library_record::overlaps(assembly, start),
+        "liaisons": library_record::liaisons(assembly, touching),
+    }))
+}
+
+/// Returns the blocking graph of a matrix with one direction.
+pub(crate) fn blocking_answer(matrix: &Matrix, bodies: &Bodies) -> Answer {
+    let assembly = bodies.assembly();
+    let (d, all) = (matrix.directions()[0], 0..bodies.len());
+    let rooms =
+        all.clone().map(|part| library_record::room(bodies, part, d, &matrix.room(0, part)));
+    let graph = Blocking::new(matrix, 0, &vec![true; bodies.len()]);
+    let removable = graph.removable();
+    Answer::from_facts(&json!({
+        "direction": d.to_array(),
+        "meetings": library_record::meetings(assembly, matrix, 0),
+        "rooms": rooms.collect::<Vec<_>>(),
+        "removable": removable.iter().map(|group| assembly.names(group)).collect::<Vec<_>>(),
+        // The parts that move along with each part.
+        "closures": all.map(|part| assembly.names(&graph.closure(part))).collect::<Vec<_>>(),
+    }))
+}
+
+/// Returns a removal map. Numbers: directions (three `f32` each), free travel (`f32`, infinite if free), then
+/// triangles of directions (three `u32` each).
+pub(crate) fn map_answer(map: &RemovalMap, assembly: &Assembly) -> Answer {
+    let leaves: Vec<[u32; 3]> =
+        map.sphere.leaves().map(|t| map.sphere.triangles[t].corners).collect();
+    let mut record = library_record::regions(assembly, map);
+    record["directions"] = json!(map.rooms.len());
+    record["triangles"] = json!(leaves.len());
+    record["size"] = json!(map.size);
+    let mut answer = Answer::from_facts(&record);
+    let numbers = &mut answer.numbers;
+    let directions = map.sphere.directions.iter().flat_map(|d| d.as_vec3().to_array());
+    let distances = map.rooms.iter().map(|room| room.distance() as f32);
+    directions.chain(distances).for_each(|x| numbers.extend(x.to_le_bytes()));
+    leaves.iter().flatten().for_each(|v| numbers.extend(v.to_le_bytes()));
+    answer
+}
+
+/// Returns the record of a plan, and its number of directions.
+pub(crate) fn plan_answer(bodies: &Bodies, plan: &Plan, directions: usize) -> Answer {
+    let mut record = library_record::plan(bodies, plan);
+    record["directions"] = json!(directions);
+    Answer::from_facts(&record)
+}

@@ -1,4 +1,4 @@
-// For the tests: the page as it was built, in a browser; and programs that answer the same natively.
+// For the tests: the built page in a browser, and native programs that give the same answers.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -14,15 +14,15 @@ const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 export const data = join(root, "data");
 export const dist = join(root, "web/dist");
 
-/** An example of crates/colltrans-wasm: there, `cargo build --profile native --all-features --example NAME`. */
+/** Returns the path of an example of crates/colltrans-wasm; build it there with `cargo build --profile native --all-features --example NAME`. */
 export const program = (name) => join(built, "native/examples", name);
 
-/** The answers of a module (`page`, `found`, ...) natively, a line each. */
+/** Returns the native answers of a module (`page`, `found`, ...), one for each question. */
 export function answers(module, questions) {
   return execFileSync(program("native"), [module], { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
 }
 
-/** Asks a module of the page and the native one the same questions, some with a file of data/; returns the answers, which agree to the bit. */
+/** Sends questions, some with a file of data/, to a module of the page and to the native one; checks that the answers are equal to the bit and returns them. */
 export async function agreed(page, module, questions) {
   const native = answers(module, questions.map(({ file, question }) =>
     (file ? `${join(data, file)}\t` : "") + JSON.stringify(question)));
@@ -42,7 +42,7 @@ export async function agreed(page, module, questions) {
 const schema = new Ajv2020({ strict: false, allErrors: true });
 schema.addSchema(JSON.parse(readFileSync(join(root, "docs/answers.schema.json"), "utf8")), "answers");
 
-/** The same numbers each time for a seed: from -1 to 1, and unit quaternions of four of them. */
+/** Returns generators of reproducible random numbers for a seed: from -1 to 1, and unit quaternions of four of them. */
 export function draws(seed) {
   let state = seed;
   const random = () => {
@@ -57,15 +57,15 @@ export function draws(seed) {
   return { random, turn };
 }
 
-/** Whether a value is what the schema of answers calls so. */
+/** Checks a value against a definition of the schema of answers. */
 export function conform(name, value) {
   const fits = schema.getSchema(`answers#/$defs/${name}`);
   assert.ok(fits, `${name} is not in the schema`);
   assert.ok(fits(value), `${name}: ${schema.errorsText(fits.errors)}: ${JSON.stringify(value).slice(0, 500)}`);
 }
 
-/** Graphics are computed. Only what is drawn in three dimensions is, as by a graphics card; the page around it is
- * put together without one, which takes half as long. */
+/** Flags for software rendering. Only the three-dimensional drawing uses it, as it would use a graphics card. The page
+ * around it is composited without a card, which takes half as long. */
 const COMPUTED = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--disable-gpu-rasterization"];
 
 export function launch(args = COMPUTED) {
@@ -73,10 +73,10 @@ export function launch(args = COMPUTED) {
   return chromium.launch({ executablePath, args: ["--no-sandbox", ...args] });
 }
 
-/** Without graphics. */
+/** Launches the browser without graphics. */
 export const launchPlain = () => launch(["--disable-gpu", "--disable-3d-apis"]);
 
-/** An OFF file of boxes, each by its lowest and its highest corner. */
+/** Builds an OFF file of boxes, each given by its lowest and its highest corner. */
 export function boxes(...all) {
   const corners = all.flatMap((ends) => [...Array(8).keys()].map((k) => [0, 1, 2].map((axis) => ends[(k >> axis) & 1][axis]).join(" ")));
   const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -84,19 +84,19 @@ export function boxes(...all) {
   return ["OFF", `${corners.length} ${faces.length} 0`, ...corners, ...faces, ""].join("\n");
 }
 
-/** Files, by name and text, that are dropped on an element. */
+/** Drops files, by name and text, on an element. */
 export const drop = (page, selector, files) => page.evaluate(([selector, files]) => {
   const dataTransfer = new DataTransfer();
   for (const [name, text] of Object.entries(files)) dataTransfer.items.add(new File([text], name));
   document.querySelector(selector).dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
 }, [selector, files]);
 
-/** What a page complains about, and what it reads. Waits end with a failure late: graphics are computed here, and
- * pages of several tests at once. */
+/** Collects the errors and the requests of a page. Waits have long time limits, because graphics are computed in
+ * software and several tests run their pages at once. */
 export function watch(page) {
   page.setDefaultTimeout(120_000);
   page.complaints = [];
-  // Without a card the browser reads what is drawn back for every frame, and warns of it; the page never does.
+  // Without a graphics card the browser reads every frame back and warns about it; the page itself never reads back.
   const isBrowsers = (text) => /^\[\.WebGL-\w+\]GL Driver Message .*: GPU stall due to ReadPixels/.test(text);
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && !isBrowsers(message.text()) && page.complaints.push(message.text()));
   page.on("pageerror", (error) => page.complaints.push(String(error)));
@@ -106,7 +106,7 @@ export function watch(page) {
   return page;
 }
 
-/** Whether something of what a canvas shows is cut off by its border. */
+/** Checks whether the drawing of a canvas is cut off at its border. */
 export const isCut = (page, canvas) => page.evaluate(async (selector) => {
   await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
   const source = document.querySelector(selector);
@@ -117,7 +117,7 @@ export const isCut = (page, canvas) => page.evaluate(async (selector) => {
   return borders.some((border) => flat.getImageData(...border).data.some((x, k) => k % 4 === 3 && x > 0));
 }, canvas);
 
-/** The page, served under a path of its own as on a site among others, in a browser. */
+/** Serves the page under a path of its own, as on a site among others, and opens a browser. */
 export async function site() {
   const server = await serve(dist, 0, "/some/where/");
   const browser = await launch();
@@ -125,7 +125,7 @@ export async function site() {
   return {
     base,
     browser,
-    /** A page of a context of its own, once it shows what is waited for. */
+    /** Opens a page in a context of its own, and waits for the given elements. */
     async open(hash = "", options = {}, ready = ["#headline", "#tools button"]) {
       const context = await browser.newContext({ viewport: { width: 900, height: 640 }, ...options });
       const page = watch(await context.newPage());
@@ -133,17 +133,17 @@ export async function site() {
       for (const selector of ready) await page.waitForSelector(selector);
       return page;
     },
-    /** The same page, asked by another address, as where somebody follows a link in it: what is asked and answered
-     * is as where a page is opened with it. Tools, themes and cards are a test's own to put back. */
+    /** Navigates the page to another address, as a link in it does. The state is then as in a newly opened page. Tools,
+     * themes and cards are reset by each test itself. */
     async ask(page, hash = "#example=bracket", ready = ["#headline"]) {
       await page.evaluate(async (hash) => {
         const changed = new Promise((resolve) => addEventListener("hashchange", resolve, { once: true }));
         window.before = window.colltrans.probe().answer;
-        // What nobody reads in it makes it another one, even where the same is asked again.
+        // An unused parameter makes the address new, even for the same question.
         location.hash = `${hash}&turn=${(window.turn = (window.turn ?? 0) + 1)}`;
         await changed;
       }, hash);
-      // The last answer stays until there is another one.
+      // The last answer stays until the next one arrives.
       await page.waitForFunction(() => ![undefined, window.before].includes(window.colltrans.probe().answer));
       await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
       for (const selector of ready) await page.waitForSelector(selector);

@@ -1,8 +1,8 @@
 // Builds the page into `dist/`: the library for WebAssembly by cargo and wasm-opt, the scripts by esbuild.
 //
-//   node build.mjs            once
-//   node build.mjs --serve    and serves it on this machine
-//   node build.mjs --no-wasm  only the scripts; the library as it was built last
+//   node build.mjs            builds once
+//   node build.mjs --serve    also serves the page on this machine
+//   node build.mjs --no-wasm  builds only the scripts, with the last build of the library
 
 import { execFileSync } from "node:child_process";
 import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -14,7 +14,7 @@ import { shaders } from "./shaders.mjs";
 import { serve } from "./serve.mjs";
 import { Missing, built, toolchain } from "./toolchain.mjs";
 
-/** Without a compiler for the target it ends with 3, to be told from a failure. */
+/** Exits with code 3 if there is no compiler for the target, to distinguish this from a failure. */
 function found() {
   try {
     return toolchain();
@@ -29,7 +29,7 @@ const root = join(here, "..");
 const data = join(root, "data");
 const out = join(here, "dist");
 
-/** The page's modules, by the features of `colltrans-wasm` that they are built with: the fewer, the smaller they are. */
+/** The modules of the page by the features of `colltrans-wasm`. Fewer features give smaller modules. */
 const MODULES = {
   "": ["page", "page_distance", "page_found", "page_picture"],
   motion: ["page_motion"],
@@ -56,7 +56,7 @@ await Promise.all(Object.values(MODULES).flat().map(async (example) => {
 }));
 copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
-// What the page links to.
+// Files that the page links to.
 copyFileSync(join(root, "docs/paper.md"), join(out, "paper.md"));
 cpSync(join(root, "docs/figures"), join(out, "figures"), { recursive: true });
 mkdirSync(join(out, "source"));
@@ -66,7 +66,7 @@ await build({
   bundle: true,
   minify: true,
   format: "esm",
-  // What is not needed at once is read when it is asked for.
+  // Code that is not needed at once is loaded on demand.
   splitting: true,
   chunkNames: "chunk-[name]-[hash]",
   target: "es2022",

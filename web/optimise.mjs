@@ -1,4 +1,4 @@
-// Makes the page's modules smaller by Binaryen's wasm-opt. It keeps the order of floating-point operations, so that
+// Shrinks the modules of the page with Binaryen's wasm-opt. It keeps the order of floating-point operations, so that
 // answers keep their bits.
 
 import { execFile } from "node:child_process";
@@ -11,13 +11,13 @@ import { built } from "./toolchain.mjs";
 
 const binaryen = join(dirname(fileURLToPath(import.meta.url)), "node_modules/binaryen");
 
-/** The features that rustc's output for WebAssembly uses beyond the default ones of wasm-opt. */
+/** WebAssembly features that the output of rustc uses, beyond the defaults of wasm-opt. */
 const FEATURES = ["--enable-bulk-memory", "--enable-bulk-memory-opt", "--enable-nontrapping-float-to-int"];
 
-/** The skipped passes make a module shorter but larger after brotli: their output repeats itself less. */
+/** Passes. The skipped ones make a module shorter but larger after brotli, because their output has fewer repetitions. */
 const PASSES = ["-Os", "--skip-pass=inlining-optimizing", "--skip-pass=local-cse"];
 
-/** Returns the path of the optimised form of a module. It is kept, and made again if the module, the passes or the
+/** Returns the path of the optimised form of a module. It is cached, and built again if the module, the passes or the
  * version of Binaryen change. */
 export async function optimised(module) {
   const version = readFileSync(join(binaryen, "package.json"));
@@ -26,7 +26,7 @@ export async function optimised(module) {
   const made = join(folder, `${basename(module, ".wasm")}-${key.digest("hex").slice(0, 16)}.wasm`);
   if (existsSync(made)) return made;
   mkdirSync(folder, { recursive: true });
-  // The file gets its name when all of it is there.
+  // The file is renamed when it is complete.
   const making = `${made}.${process.pid}`;
   await promisify(execFile)(process.execPath, [join(binaryen, "bin/wasm-opt"), module, ...FEATURES, ...PASSES, "-o", making]);
   renameSync(making, made);

@@ -9,7 +9,7 @@ const types = {
   ".md": "text/plain; charset=utf-8", ".rs": "text/plain; charset=utf-8",
 };
 
-/** Serves a folder under a path; port 0 takes any. */
+/** Serves a folder under a path; port 0 selects a free port. */
 export function serve(folder, port, under = "/") {
   return new Promise((resolve) => {
     const server = createServer((request, response) => {

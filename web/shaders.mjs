@@ -1,10 +1,9 @@
-// What of three.js this page does not use, and no bundler can tell, because the renderer names it all:
-// shaders of other materials, virtual reality, shadows and environment maps. Left out here, which saves
-// a fifth of its download. Shaders are text that no minifier may touch: their indents and comments,
-// which mean nothing, are taken out too.
+// Removes parts of three.js that the page does not use, which saves a fifth of its download. A bundler cannot detect
+// them, because the renderer refers to all: shaders of other materials, virtual reality, shadows, environment maps.
+// Minifiers do not touch shaders, which are strings, so their indentation and comments are removed here too.
 //
-// Used are: MeshLambertMaterial, MeshBasicMaterial, LineBasicMaterial, LineDashedMaterial. A browser
-// reports an error where a shader is missing, and the tests look for errors.
+// Used are: MeshLambertMaterial, MeshBasicMaterial, LineBasicMaterial, LineDashedMaterial. A browser reports an error
+// if a shader is missing, and the tests check for errors.
 
 import { readFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
@@ -12,12 +11,12 @@ import { fileURLToPath } from "node:url";
 
 const three = join(dirname(fileURLToPath(import.meta.url)), "node_modules/three/src/Three.js");
 const MATERIALS = ["meshlambert", "meshbasic", "linedashed"];
-/** For what no material here has; left out where all of a piece is between `#ifdef USE_...`. */
+/** Pieces for features of other materials; removed if all of a piece is between `#ifdef USE_...`. */
 const PIECES =
   /^(shadowmap_|shadowmask_|transmission_|envmap_|cube_uv_|bumpmap_|normalmap_|displacementmap_|morph|skin|logdepthbuf_|clipping_planes_|alphahash_|alphamap_|alphatest_|batching_|lightmap_|aomap_|emissivemap_|specularmap_|roughnessmap_|metalnessmap_|gradientmap_|fog_|lightprobes_|map_|uv_|dithering_|premultiplied_)/;
-/** Included by the other materials only, or with tone mapping. */
+/** Pieces that only other materials, or tone mapping, include. */
 const OTHERS = /^(lights_(physical|phong|toon)_|iridescence_|clearcoat_|tonemapping_pars_)/;
-/** Classes without which the renderer does not begin. */
+/** Stubs for classes without which the renderer does not start. */
 const STUBS = {
   "renderers/webxr/WebXRManager.js": `export class WebXRManager {
     enabled = false; isPresenting = false; cameraAutoUpdate = false;
@@ -28,7 +27,7 @@ const STUBS = {
   "extras/PMREMGenerator.js": "export class PMREMGenerator {}",
 };
 
-/** Whether all lines are between an `#if` and its `#endif`. */
+/** Checks whether all lines are between an `#if` and its `#endif`. */
 function nothingElse(text) {
   const lines = text.match(/\/\* glsl \*\/`([^`]*)`/)?.[1].split("\n") ?? ["?"];
   let depth = 0;

@@ -1,8 +1,8 @@
-// With what Rust is compiled to WebAssembly: the installed toolchain, if it has the target; else
-// Debian's packages, unpacked into a folder of their own, because they conflict with an installed rustc. Those
-// have the standard library for WebAssembly as source alone: it is compiled once, and kept beside them.
+// The toolchain that compiles Rust to WebAssembly: the installed one if it has the target, otherwise Debian's packages,
+// unpacked into a folder of their own because they conflict with an installed rustc. These have the standard library for
+// WebAssembly only as source, which is compiled once and kept next to them.
 //
-// On an ordinary machine: rustup target add wasm32-unknown-unknown
+// On an ordinary machine run: rustup target add wasm32-unknown-unknown
 
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -11,17 +11,16 @@ import { homedir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-/** Where cargo puts what it builds. */
+/** Cargo's target folder. */
 export const built = process.env.CARGO_TARGET_DIR ?? join(dirname(fileURLToPath(import.meta.url)), "../target");
 
 const TARGET = "wasm32-unknown-unknown";
 
-/** What only a compiler takes that is allowed unstable options, as Debian's is here: no place of the source in what
- * a panic says, and of values made of others only their names. Nothing but the last words of a stopped library has
- * either, and both are bytes that every visitor loads. */
+/** Unstable options, which Debian's compiler accepts here: panic messages without source locations, and short debug
+ * output. Only the last message of a stopped library has either, and both cost bytes that every visitor loads. */
 const SMALLER = "-Zlocation-detail=none -Zfmt-debug=shallow";
 
-/** For the linker: numbers of functions in as few bytes as they take, not in the five that it has left for each. */
+/** Linker option: writes function numbers in as few bytes as needed instead of five. */
 const LINKED = "-Clink-arg=--compress-relocations";
 
 const run = (command, args, options = {}) => execFileSync(command, args, { encoding: "utf8", ...options });
@@ -34,7 +33,7 @@ function installed() {
   }
 }
 
-/** The newest name that a pattern matches. */
+/** Returns the latest name that matches a pattern. */
 function newest(names, pattern) {
   return names.filter((name) => pattern.test(name)).sort((a, b) => a.localeCompare(b, "en", { numeric: true })).at(-1);
 }
@@ -54,8 +53,8 @@ function unpacked(folder) {
   return { ...env, CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: `${SMALLER} ${LINKED} --sysroot=${sysroot}` };
 }
 
-/** What the standard library is compiled for: a program as small as the page's modules (see profile `page` in
- * crates/colltrans-wasm), and their linking together as one. */
+/** The program for which the standard library is compiled: as small as the page's modules (see profile `page` in
+ * crates/colltrans-wasm), linked together as one. */
 const PROGRAM = `
 [package]
 name = "program"
@@ -73,13 +72,13 @@ panic = "abort"
 `;
 const OF_SOURCE = ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"];
 
-/** The folder of the standard library by this compiler and for such programs. */
+/** Returns the folder of the standard library for this compiler and such programs. */
 function standardLibrary(folder, env) {
   const compiler = run(env.RUSTC, ["-vV"], { env });
   const key = createHash("sha256").update([compiler, PROGRAM, SMALLER, ...OF_SOURCE].join()).digest("hex").slice(0, 16);
   const sysroot = join(folder, `std-${key}`);
   if (existsSync(sysroot)) return sysroot;
-  // It gets its name when all of it is there.
+  // The folder is renamed when it is complete.
   const making = mkdtempSync(join(folder, "making-"));
   try {
     writeFileSync(join(making, "Cargo.toml"), PROGRAM);
@@ -109,10 +108,10 @@ function unpack(folder) {
   run("apt-get", ["install", "-qq", "-y", "--no-install-recommends", linker], quiet);
 }
 
-/** There is no compiler for the target: nothing is wrong with the page. */
+/** The error that there is no compiler for the target; nothing is wrong with the page. */
 export class Missing extends Error {}
 
-/** The environment for cargo; installs what can be installed if `install` is given. */
+/** Returns the environment for cargo; installs the toolchain if `install` is set. */
 export function toolchain(install = process.argv.includes("--install")) {
   if (installed()) return { CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: LINKED };
   const folder = process.env.COLLTRANS_WASM_TOOLCHAIN ?? join(homedir(), ".cache/colltrans-wasm-toolchain");

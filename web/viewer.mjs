@@ -1,5 +1,5 @@
-// Builds the viewer of an assembly's report, which is kept in the repository so that a Rust toolchain
-// alone builds the command. With --check it only says whether the one that is kept is what is built.
+// Builds the viewer of an assembly's report, which is committed so that a Rust toolchain alone builds the command. With
+// --check it only compares the committed viewer with its source.
 
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";

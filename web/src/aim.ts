@@ -1,10 +1,10 @@
-// The arrow of a direction: its tip is dragged over a sphere about its base.
+// The arrow of a direction; its tip is dragged over a sphere about its base.
 
 import { type Camera, Raycaster, Vector2, Vector3 } from "three";
 import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec } from "./math";
 
-/** A point of the scene, in pixels of the page. */
+/** Projects a point of the scene to pixels of the page. */
 export function onPage(canvas: HTMLCanvasElement, camera: Camera, point: Vector3): [number, number] {
   const box = canvas.getBoundingClientRect();
   const at = point.clone().project(camera);
@@ -21,7 +21,7 @@ export function casterAt(canvas: HTMLCanvasElement, camera: Camera, event: Mouse
   return caster;
 }
 
-/** To four digits; what is small is 0. */
+/** Rounds a vector to four digits; small components become 0. */
 export const rounded = (v: Vec, small: number): Vec =>
   v.map((x) => (Math.abs(x) < small ? 0 : Number(x.toPrecision(4)))) as Vec;
 

@@ -1,8 +1,8 @@
-// The assemblies' part of the page, read when it is asked for: several parts, who stops whom along
-// the arrow, the removal map of one of them, and how everything comes apart.
+// The assembly tab, loaded on demand: several parts, which of them block which along the arrow, the removal map of a
+// part, and the disassembly plan.
 //
-// Data flow: files -> the library in a worker of its own (parts, fit, plan) -> `Parts`, `Player`
-// and `Sphere`. Another assembly takes another worker, so that what the last one held is given back.
+// Data flow: files -> the library in a worker (parts, fit, plan) -> `Parts`, `Player` and `Sphere`. Another assembly
+// gets another worker, so that the memory of the last one is freed.
 
 import { Group, MeshLambertMaterial, Vector3 } from "three";
 import { aim, onPage, rounded } from "./aim";
@@ -24,9 +24,9 @@ const GEARBOX = [
   "bolt_2", "bolt_3", "cover", "gear", "housing", "rear_bush", "shaft", "spacer",
 ].map((name) => `gearbox_small/${name}.off`);
 const EXAMPLE = "gearbox_small";
-/** Directions to begin with, of equal ones the first. */
+/** Directions to try first; among equally good ones the first is used. */
 const AXES: Vec[] = [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]];
-/** What is planned without being asked to. */
+/** Maximum number of parts for which a plan is computed without a request. */
 const SOON = 40;
 
 export class AssemblyTab {
@@ -43,7 +43,7 @@ export class AssemblyTab {
   private readonly ignore = h("input", { type: "checkbox" });
   private readonly fitFields = [
     h("label", {}, "Tolerance (empty: from the files)", this.tolerance),
-    h("label", { style: "display: flex; gap: 8px; align-items: center" }, this.ignore, "What overlaps at the start does not block"),
+    h("label", { style: "display: flex; gap: 8px; align-items: center" }, this.ignore, "Ignore overlaps at the start"),
   ];
   private readonly player = new Player((t) => this.seen?.place(this.moves, t));
   private readonly sphere: Sphere | undefined;
@@ -60,13 +60,13 @@ export class AssemblyTab {
   private moves: Move[] = [];
   private error = "";
   private busy = "";
-  /** Whether what may take long is done without being asked for. */
+  /** Whether slow computations run without a request. */
   private patient = true;
-  /** Whether the direction that frees most is looked for: of files that somebody gave. */
+  /** Whether to search for the direction that frees most parts, for files of the visitor. */
   private seeking = false;
   private asking = false;
   private again = false;
-  /** Counts assemblies and fits: what comes for an older one is of no use. */
+  /** Counts assemblies and fits; results for an older one are dropped. */
   private turn = 0;
 
   constructor(
@@ -102,7 +102,7 @@ export class AssemblyTab {
       this.arrange(this.seen, this.sphere);
     } catch (error) {
       this.view.append(h("p", { class: "lone", role: "alert" },
-        `The view in three dimensions draws with WebGL 2, which this browser does not have, or has switched off (${said(error)}). What is found is told beside it.`));
+        `The three-dimensional view needs WebGL 2, which this browser lacks or has switched off (${said(error)}). The results are listed next to it.`));
     }
     this.panel.append(...this.cards());
   }
@@ -120,7 +120,7 @@ export class AssemblyTab {
     sphere.onDirection = (d) => this.turnTo(rounded(d, 1e-4));
     this.stage.append(h("div", { class: "group assembly-tools" },
       h("button", { onclick: () => seen.fit() }, "Fit"),
-      h("button", { onclick: () => this.player.set(0), title: "All parts where they belong" }, "Assembled")));
+      h("button", { onclick: () => this.player.set(0), title: "All parts at their places" }, "Assembled")));
   }
 
   private cards(): HTMLElement[] {
@@ -133,25 +133,25 @@ export class AssemblyTab {
         h("div", { class: "row" },
           h("button", { class: "small", onclick: () => this.choose() }, "Choose files…"),
           h("button", { class: "small", onclick: () => { this.seeking = true; void this.example(); } }, "Small gearbox")),
-        h("small", {}, `${names("and")} files, one part each, or GLB; or drop them here. Up to 120 parts and 400,000 triangles: beyond that, the command line.`)),
+        h("small", {}, `${names("and")} files, one part each, or GLB; or drop them here. Up to 120 parts and 400,000 triangles; for larger assemblies use the command line.`)),
       card("Direction",
         h("div", { class: "fields" }, h("span", {}, "d"), ...this.fields),
         h("div", { class: "row" },
           axis("+x", [1, 0, 0]), axis("−x", [-1, 0, 0]), axis("+y", [0, 1, 0]), axis("−y", [0, -1, 0]), axis("+z", [0, 0, 1]), axis("−z", [0, 0, -1]))),
       card("Removal map", this.mapCard),
-      card("How it comes apart", this.planCard),
+      card("Disassembly plan", this.planCard),
       card("Fit", this.fitCard),
     ];
   }
 
-  // --- what is asked
+  // --- questions
 
-  /** Shown for the first time, or asked for: with the files of the example. */
+  /** Opens the tab for the first time, or on request, with the files of the example. */
   async start() {
     await this.example();
   }
 
-  /** Or about to be. */
+  /** Whether the example is shown, or about to be. */
   get isExample(): boolean {
     return !this.source || this.source === EXAMPLE;
   }
@@ -171,7 +171,7 @@ export class AssemblyTab {
     }
   }
 
-  /** Files that somebody chose or dropped make another assembly. */
+  /** Builds another assembly from files that the visitor chose or dropped. */
   async open(files: File[]) {
     if (!files.length) return;
     this.patient = true;
@@ -200,18 +200,18 @@ export class AssemblyTab {
     try {
       for (const { name, bytes } of files) {
         await engine.ask({ do: "add", name }, bytes.slice(0));
-        if (turn !== this.turn) return engine.stop("another assembly was asked for");
+        if (turn !== this.turn) return engine.stop("another assembly was requested");
       }
       const { facts, numbers } = await engine.ask({ do: "parts" });
-      if (turn !== this.turn) return engine.stop("another assembly was asked for");
-      // What is there stays until the new one is read.
-      this.engine.stop("another assembly was asked for");
+      if (turn !== this.turn) return engine.stop("another assembly was requested");
+      // The current assembly stays until the new one has been read.
+      this.engine.stop("another assembly was requested");
       this.engine = engine;
       [this.files, this.source, this.facts] = [files, source, facts];
       this.showParts(facts, numbers);
     } catch (error) {
       engine.stop("it was refused");
-      // What is wrong with it is of no use once another one is asked for.
+      // An error of an assembly does not matter once another one is requested.
       if (turn !== this.turn) return;
       throw error;
     } finally {
@@ -231,16 +231,16 @@ export class AssemblyTab {
     this.seen?.show(parts, facts.size);
   }
 
-  /** Everything again, with the tolerance that is asked for. */
+  /** Computes everything again with the chosen tolerance. */
   private async refit() {
     if (!this.facts) return;
-    // An address may name a part that is not there.
+    // An address may name a part that does not exist.
     if (this.asked.part !== null && !this.facts.parts[this.asked.part]) this.asked.part = null;
     const turn = ++this.turn;
     [this.fit, this.along, this.map, this.plan, this.moves, this.error] = [undefined, undefined, undefined, undefined, [], ""];
     this.player.show([], "");
     const { tolerance, ignore } = this.asked;
-    this.wait("Looking for overlaps and contacts");
+    this.wait("Searching for overlaps and contacts");
     this.remember();
     try {
       const { facts } = await this.engine.ask({ do: "fit", tolerance, ignore_overlaps: ignore });
@@ -258,10 +258,10 @@ export class AssemblyTab {
     }
   }
 
-  /** Turns the arrow to the axis along which most parts, or else most groups, come out; of equal ones to the first. */
+  /** Turns the arrow to the axis along which most parts, or else most groups, come out; the first of equal ones. */
   private async seek(turn: number) {
     this.seeking = false;
-    this.wait("Looking for the direction that frees most");
+    this.wait("Searching for the direction that frees most parts");
     let most: [number, number] = [-1, -1];
     for (const direction of AXES) {
       const { facts } = await this.engine.ask({ do: "along", direction });
@@ -272,7 +272,7 @@ export class AssemblyTab {
     this.remember();
   }
 
-  /** Who stops whom along the arrow. One question is on its way at a time. */
+  /** Computes the blocking graph along the arrow. One question is pending at a time. */
   private async ask(): Promise<void> {
     if (!this.fit) return;
     if (this.asking) {
@@ -299,7 +299,7 @@ export class AssemblyTab {
     const part = this.asked.part;
     if (!this.fit || part === null || !this.facts?.parts[part]) return;
     const turn = this.turn;
-    this.wait("Looking in all directions");
+    this.wait("Examining all directions");
     try {
       const { facts, numbers } = await this.engine.ask({ do: "map", group: [part] });
       if (turn !== this.turn || this.asked.part !== part) return;
@@ -324,11 +324,11 @@ export class AssemblyTab {
       const { size, middle, unit: of } = this.facts;
       const places = new Map(this.facts.parts.map(({ name }, k) => [name, k]));
       this.moves = plan.plan.map(({ path, back = [] }) => [...path, ...back].map((leg, l) => {
-        // With the last move of its path a step leaves.
+        // The parts of a step leave with the last move of its path.
         const leaves = l === path.length - 1;
         const moved = { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
         if (!leg.turn) return moved;
-        // Parts are shown about their middle.
+        // Parts are shown relative to the middle of the assembly.
         const { point, axis, aside, phase, turns } = leg.turn, at = sub(point, middle);
         return { ...moved, turn: { own: sub(at, aside), point: at, axis, phase, turns } };
       }));
@@ -343,7 +343,7 @@ export class AssemblyTab {
     this.show();
   }
 
-  /** What is printed for the workshop, as a file. */
+  /** Downloads the printable report. */
   private async report() {
     const turn = this.turn;
     this.wait("Drawing a page for each step");
@@ -358,16 +358,16 @@ export class AssemblyTab {
     }
   }
 
-  /** What takes too long is given up: the worker goes, and another one reads the files again. */
+  /** Cancels a slow computation: stops the worker and lets another one read the files. */
   private async giveUp() {
-    this.engine.stop("it was given up");
+    this.engine.stop("it was cancelled");
     this.patient = false;
     this.asked.part = null;
     if (this.facts) await this.load(this.files, this.source).catch((error: unknown) => this.refuse(error));
-    else this.refuse(new Error("It was given up."));
+    else this.refuse(new Error("It was cancelled."));
   }
 
-  /** The address has changed. */
+  /** Called when the address has changed. */
   stateChanged() {
     if (this.facts) void this.refit();
   }
@@ -398,7 +398,7 @@ export class AssemblyTab {
     this.show();
   }
 
-  // --- what is shown
+  // --- output
 
   private name(part: number): string {
     return this.facts?.parts[part]?.name ?? "?";
@@ -446,7 +446,7 @@ export class AssemblyTab {
       ...(count ? [h("p", { id: "assembly-overlaps" }, `${count} ${count > 1 ? "pairs overlap" : "pair overlaps"} with this tolerance, and ${count > 1 ? "each moves" : "moves"} as one: ${pairs}. The tolerance is set under Fit.`)] : []),
       h("p", {}, free.length
         ? `${free.map(({ part }) => part).join(", ")}.`
-        : groups.length ? `As they are, these can leave together: ${groups.slice(0, 3).map((group) => group.join(", ")).join("; ")}.` : "Everything is in the way of something."),
+        : groups.length ? `These groups can leave together: ${groups.slice(0, 3).map((group) => group.join(", ")).join("; ")}.` : "Every part is blocked."),
       ...(wait ? [wait] : []));
   }
 
@@ -497,12 +497,12 @@ export class AssemblyTab {
     const { part, direction } = this.asked;
     sphere?.show(map, direction);
     if (part === null || !this.facts) {
-      refill(this.mapCard, h("p", { class: "proof" }, "Pick a part, here or in the view: the sphere then shows how far it can go in every direction, against all others where they are."));
+      refill(this.mapCard, h("p", { class: "proof" }, "Pick a part, here or in the view. The sphere then shows its free travel in every direction while all other parts stay."));
       return;
     }
     const name = this.name(part);
     if (!map) {
-      refill(this.mapCard, h("p", { class: "proof" }, `${name}: looking in all directions.`));
+      refill(this.mapCard, h("p", { class: "proof" }, `${name}: examining all directions.`));
       return;
     }
     const blocked = map.distances.reduce((best, x, k) => (Number.isFinite(x) && x > map.distances[best]! || !Number.isFinite(map.distances[best]!) ? k : best), 0);
@@ -510,7 +510,7 @@ export class AssemblyTab {
     const farthest = map.distances[blocked]!;
     const of = (k: number): Vec => [0, 1, 2].map((c) => map.directions[3 * k + c]!) as Vec;
     refill(this.mapCard,
-      h("p", { class: "proof" }, `${name} ${freedom(map)}. The paler the rest, the farther it can go. Click for a direction.`),
+      h("p", { class: "proof" }, `${name} ${freedom(map)}. In the other directions paler means farther. Click to choose a direction.`),
       ...(sphere ? [sphere.canvas] : []),
       h("div", { class: "row" },
         ...map.regions.slice(0, 4).map(({ center, solid_angle }) => go(center, `middle of ${short((100 * solid_angle) / (4 * Math.PI), 2)} %`)),
@@ -535,12 +535,12 @@ export class AssemblyTab {
     const remains = plan.last.length ? [h("p", { class: "proof" }, `What remains: ${plan.last.join(", ")}.`)] : [];
     const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}`));
     refill(this.planCard,
-      h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`),
+      h("p", { class: "proof" }, `${plan.directions} directions were tested for all parts; each step was checked again, pair by pair.`),
       h("ol", {}, ...rows), ...remains, ...stuck,
-      h("div", { class: "row" }, h("button", { class: "small", disabled: !!this.busy, onclick: () => void this.report() }, "Download report.html"), h("small", {}, "a page for each step, to be printed")));
+      h("div", { class: "row" }, h("button", { class: "small", disabled: !!this.busy, onclick: () => void this.report() }, "Download report.html"), h("small", {}, "one page for each step, for printing")));
   }
 
-  /** The tip of the arrow. */
+  /** Returns the tip of the arrow. */
   private tip(): Vector3 {
     return new Vector3(...times(unit(this.asked.direction), 0.62 * (this.facts?.size ?? 1)));
   }
@@ -556,7 +556,7 @@ export class AssemblyTab {
     seen.render();
   }
 
-  /** For tests. */
+  /** State for tests. */
   probe() {
     const { facts, fit, along, map, plan, engine, busy, error } = this;
     const tip = this.seen && onPage(this.seen.renderer.domElement, this.seen.camera, this.tip());
@@ -564,13 +564,13 @@ export class AssemblyTab {
   }
 }
 
-/** The parts that come out alone. */
+/** Returns the parts that can be removed alone. */
 const freeParts = (along: PageAlong) => along.rooms.filter(({ outcome }) => outcome === "free");
 
-/** The groups that come out as one, without single parts and without the whole: all parts together always can. */
+/** Returns the groups that come out as one, without single parts and without the whole assembly, which can always be moved. */
 const properGroups = (along: PageAlong, { parts }: PageParts) => along.removable.filter(({ length }) => length > 1 && length < parts.length);
 
-/** The pairs that overlap with the tolerance, the deepest six in words, and how many there are. */
+/** Returns the pairs that overlap with the tolerance, the deepest six as text, and their number. */
 function overlapping(fit: PageFit | undefined): { pairs: string; count: number } {
   const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
   const pairs = remaining.slice(0, 6).map(({ parts, least_tolerance: depth }) => `${parts.join(" and ")}${depth === null ? "" : ` (${short(depth, 3)})`}`);
@@ -579,18 +579,18 @@ function overlapping(fit: PageFit | undefined): { pairs: string; count: number }
 
 const said = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
-/** What is in the way of a part. */
+/** Describes the parts that block a part. */
 function blockers(along: PageAlong, part: number, name: string): string {
   const met = along.meetings.filter(({ moving }) => moving === name).sort((a, b) => a.distance - b.distance);
-  if (!met.length) return "Nothing is in its way.";
+  if (!met.length) return "Nothing blocks it.";
   const each = met.map(({ fixed, outcome, distance }) => `${fixed} ${outcome === "overlapping" ? "(overlap)" : `after ${short(distance, 4)}`}`).join(", ");
-  return `In its way: ${each}. With all that has to come along: ${along.closures[part]!.length} parts, in full in the view.`;
+  return `Blocked by: ${each}. With all parts that must move along: ${along.closures[part]!.length} parts, in full in the view.`;
 }
 
 function freedom({ free_share, exactly, regions, isolated: { length: single } }: RemovalMap): string {
   const unknown = exactly?.undecided_share ?? 0;
   const proven = exactly ? (unknown > 0 ? `, which is proven but for ${short(100 * unknown, 2)} %` : ", which is proven") : ", as sampled";
-  // Regions that are too small to be seen are dots.
+  // Regions that are too small to be visible are drawn as dots.
   const share = regions.length > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)${proven}`;
   const arcs = exactly?.arcs?.length ?? 0;
   const several = (count: number, what: string) => `${count} ${what}${count > 1 ? "s" : ""}`;
@@ -598,16 +598,16 @@ function freedom({ free_share, exactly, regions, isolated: { length: single } }:
   const alone = tight.length > 0 && `${tight.join(" and ")}, a tight fit`;
   if (share) return alone ? `${share}, and ${alone}` : share;
   if (alone) return `is free only ${alone}${proven}`;
-  return exactly ? `is free in no direction${proven}` : "is free in no direction that was looked at";
+  return exactly ? `is free in no direction${proven}` : "is free in no tested direction";
 }
 
-/** A direction for people: an axis by name. */
+/** Formats a direction for display: an axis by name. */
 function arrow(d: Vec): string {
   const names = ["x", "y", "z"].flatMap((name, k) => (Math.abs(Math.abs(d[k]!) / length(d) - 1) < 1e-12 ? [`${d[k]! > 0 ? "+" : "−"}${name}`] : []));
   return names[0] ?? `(${shown(d)})`;
 }
 
-/** Before where a step leads to, if it has more moves than one. */
+/** Describes the moves before the last one, if a path has several. */
 const severally = (path: { travel: number; turn?: { turns: number } }[]) => {
   const { turn, travel } = path[0]!;
   if (turn && !travel) return `turned by ${short(360 * turn.turns, 4)}°, then `;

@@ -1,5 +1,5 @@
-// Colours, told apart by people with any colour vision: blue and sand for the bodies, as in the
-// project's pictures; orange, green and magenta differ from them and each other in lightness too.
+// Colours that people with any colour vision can distinguish: blue and sand for the bodies, as in the project's
+// pictures. Orange, green and magenta differ from these and from each other in lightness too.
 
 export interface Palette {
   dark: boolean;

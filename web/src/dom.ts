@@ -1,4 +1,4 @@
-// Elements, written as calls.
+// Elements built by function calls.
 
 type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | EventListener | undefined>;
@@ -32,8 +32,8 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
-/** Other children; what is in focus stays so, or what is there instead of it. What was a child and is to be
- * one again comes as it is, not in a wrapper: moving it there would have ended its focus before. */
+/** Replaces the children of an element and keeps the focus. Children that stay must be passed themselves, not in a
+ * wrapper, because moving them there would have ended their focus. */
 export function refill(host: Element, ...children: Child[]) {
   const controls = () => [...host.querySelectorAll<HTMLElement | SVGElement>("button, input, select, [tabindex]")];
   const focused = document.activeElement as HTMLElement | SVGElement | null;
@@ -42,14 +42,14 @@ export function refill(host: Element, ...children: Child[]) {
   if (at >= 0) (host.contains(focused) ? focused : controls()[at])?.focus({ preventScroll: true });
 }
 
-/** The element of the page with a name. */
+/** Returns the element of the page with an id. */
 export function named<T extends Element = HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no element ${id}`);
   return found as unknown as T;
 }
 
-/** Calls at most once a frame. */
+/** Limits calls of a function to one per frame. */
 export function soon(f: () => void): () => void {
   let waiting = false;
   return () => {
@@ -62,7 +62,7 @@ export function soon(f: () => void): () => void {
   };
 }
 
-/** Saves a file as the visitor's browser saves files. */
+/** Saves a file through the browser's download. */
 export function save(blob: Blob, name: string) {
   const link = h("a", { href: URL.createObjectURL(blob), download: name });
   link.click();

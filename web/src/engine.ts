@@ -1,4 +1,4 @@
-// A library, in a worker: questions go in, answers come out, in order.
+// A library in a worker: takes questions and returns answers, in order.
 
 import type {
   PageAdd, PageAlong, PageBody, PageCast, PageCertify, PageDistance, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
@@ -9,7 +9,7 @@ import type { Pose, Vec } from "./math";
 export type Slot = "moving" | "fixed";
 export type Take = PageError["instead"][number];
 
-/** What is answered, by what a question has in its field `do`. */
+/** The type of the answer for each value of the field `do`. */
 interface Answers {
   load: PageLoad;
   cast: PageCast;
@@ -41,13 +41,13 @@ export interface Body {
   edges: Uint32Array;
 }
 
-/** Where they touch first. */
+/** The first contact. */
 export interface Touch {
   t: number;
   normal: Vec;
-  /** Of the fixed body. */
+  /** On the fixed body. */
   point: Vec;
-  /** By the numbers of the files. */
+  /** With the vertex numbers of the files. */
   features: NonNullable<PageCast["record"]["features"]>;
   lit: PageLit;
 }
@@ -58,11 +58,11 @@ export function touch(answer: PageCast | undefined): Touch | undefined {
   return t !== undefined && normal && point && features && lit ? { t, normal, point, features, lit } : undefined;
 }
 
-/** The plane along the direction between bodies that never meet, where it is known. */
+/** Returns the plane along the direction between bodies that never meet, if it is known. */
 export const plane = (answer: PageCast | undefined): Separation | undefined =>
   answer?.proof && "separation" in answer.proof ? answer.proof.separation : undefined;
 
-/** Where the paper's algorithm starts. */
+/** The start of the paper's algorithm. */
 export type Start = "center" | "ellipsoids";
 
 /** Two placed bodies and a direction. */
@@ -72,33 +72,33 @@ export interface Pair {
   direction: Vec;
   graze?: number;
   solver?: "auto" | "cta" | "portal";
-  /** Of `cta`: where the minimisation starts, and at which gap it ends. */
+  /** For `cta`: the start of the minimisation, and the gap at which it ends. */
   start?: Start;
   until?: "exit" | number;
   tolerance?: number | null;
   ignore_overlaps?: boolean;
 }
 
-/** Why there is no answer, and what the same file could be taken as instead. */
+/** An error with other ways to use the same file. */
 export class Refused extends Error {
   constructor(
     message: string,
     readonly instead: Take[] = [],
-    /** Whether the body that was there before is no more. */
+    /** Whether the previous body was dropped. */
     readonly gone = false,
   ) {
     super(message);
   }
 }
 
-/** What 32-bit memory holds, with the body that is built of it. */
+/** Maximum size of a file, so that the file and its body fit into 32-bit memory. */
 export const MOST_MIB = 400;
 
-/** Those of a file that somebody gave. */
+/** Reads the bytes of a file of the visitor. */
 export async function bytesOf(file: File): Promise<ArrayBuffer> {
-  if (!file.size) throw new Refused(`${file.name}: it is empty`);
+  if (!file.size) throw new Refused(`${file.name}: the file is empty`);
   const mib = file.size / 2 ** 20;
-  if (mib > MOST_MIB) throw new Refused(`${file.name}: ${Math.ceil(mib)} MiB; a page takes files up to ${MOST_MIB} MiB, the command line larger ones`);
+  if (mib > MOST_MIB) throw new Refused(`${file.name}: ${Math.ceil(mib)} MiB; the page accepts up to ${MOST_MIB} MiB; use the command line for larger files`);
   return file.arrayBuffer();
 }
 
@@ -107,7 +107,7 @@ export interface Reply {
   id: number;
   text: string;
   numbers: ArrayBuffer;
-  /** Milliseconds that the library took. */
+  /** Time of the library in milliseconds. */
   took: number;
 }
 
@@ -123,12 +123,12 @@ export class Engine {
   private readonly waiting = new Map<number, Waiting>();
   private next = 1;
 
-  /** The worker starts at once: the library is read while the page is still being made. */
+  /** Starts the worker at once, so that the library loads while the page is still being built. */
   constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_motion" | "colltrans_picture" = "colltrans") {
     this.running();
   }
 
-  /** A question, and the bytes of a file with it. */
+  /** Sends a question, with the bytes of a file if given. */
   async ask<Do extends keyof Answers>(question: { do: Do; [field: string]: unknown }, file?: ArrayBuffer): Promise<{ facts: Answers[Do]; text: string; numbers: ArrayBuffer; took: number }> {
     const id = this.next++;
     const reply = await new Promise<Reply>((resolve, reject) => {
@@ -161,7 +161,7 @@ export class Engine {
     return { answer: facts, took };
   }
 
-  /** What it holds is lost, and what it was asked has no answer; the next question starts another one. */
+  /** Stops the worker: its state is lost and pending questions fail. The next question starts another worker. */
   stop(why: string) {
     this.worker?.terminate();
     this.worker = undefined;

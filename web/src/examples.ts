@@ -1,4 +1,4 @@
-// Pairs of bodies to begin with. Their files are in `data/`, and served beside the page.
+// Example pairs of bodies. Their files are in `data/` and are served with the page.
 
 import type { Slot, Take } from "./engine";
 import { AT_HOME, type Pose, type Vec } from "./math";
@@ -56,7 +56,7 @@ export const EXAMPLES: Record<string, Example> = {
     direction: [-0.36, 0.01, -1],
     solver: "cta",
   },
-  // The same cubes as the pictures of docs/paper.md.
+  // The cubes of the pictures in docs/paper.md.
   cubes: {
     title: "The two cubes of the paper's figures",
     moving: convex("cube.off"),

@@ -1,8 +1,8 @@
-// A field for a number. Arrow keys move it by a step that fits.
+// A field for a number. Arrow keys change it by a step that fits its size.
 
 import { h } from "./dom";
 
-/** Calls back with every number, and with nothing where it is emptied. */
+/** Calls back with every number, and with undefined if the field is emptied. */
 export function numberField(name: string, change: (x: number | undefined) => void): HTMLInputElement {
   const input = h("input", { type: "number", step: "any", "aria-label": name, inputmode: "decimal" });
   input.addEventListener("input", () => {

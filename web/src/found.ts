@@ -1,8 +1,8 @@
-// How the answer was found: the paper's figures, alive, from the library's recording of a search.
+// The search behind an answer: the paper's figures, animated from the library's recording of a search.
 //
 // Data flow: the question, in a library of its own -> `found/recording` (steps, portals, moments) -> `found/player`
-// (which moment) -> `found/graph`, `found/bounds`, `found/planar`, `found/refinement` beside the view, and in it
-// `found/parts`. `found/examples` says what there is to look at, `found/motion` plays the incremental case.
+// (current moment) -> `found/graph`, `found/bounds`, `found/planar`, `found/refinement` next to the view, and
+// `found/parts` in it. `found/examples` lists examples, `found/motion` plays the incremental case.
 
 import type { PageSearch } from "./answers";
 import { h, refill } from "./dom";
@@ -24,19 +24,19 @@ import type { Drawn } from "./view/body";
 
 const GRID = 44;
 
-/** What the page does for this part of it. */
+/** The functions of the page that this tab uses. */
 export interface Around {
   view: View;
   pair(): Pair;
-  /** The question before. */
+  /** Returns the previous question. */
   before(): Pair | undefined;
   sources(): Partial<Record<Slot, Source>>;
-  /** Another example is asked about; comes back when it is answered. */
+  /** Loads an example; resolves when it has been answered. */
   example(name: string): Promise<void>;
   move(pose: Pose): void;
-  /** Of the answer. */
+  /** Returns the translation of the answer. */
   translation(): number | undefined;
-  /** The pairs of vertices that its proof is made of. */
+  /** Returns the pairs of vertices in the proof of the answer. */
   proven(): Two[];
 }
 
@@ -45,7 +45,7 @@ export class Found {
   private readonly engine = new Engine("colltrans_found");
   private readonly placing = new Placing(this.engine);
   private readonly head = h("section", { class: "said" });
-  private readonly looks = h("select", { "aria-label": "What to look at" });
+  private readonly looks = h("select", { "aria-label": "Example of a search" });
   private readonly caption = h("p", { class: "proof caption" });
   private readonly player = new Player();
   private readonly graph = new Graph();
@@ -71,13 +71,13 @@ export class Found {
   private moments: Moment[] = [];
   private look: Look | undefined;
   private readonly grids = new Map<string, Grid | "asked">();
-  /** Those who wait for a search to be shown. */
+  /** Callbacks that wait for a search to be shown. */
   private waiting: (() => void)[] = [];
 
   constructor(private readonly around: Around) {
-    for (const [value, text] of [["center", "The paper’s algorithm, from the centre"], ["ellipsoids", "The same, from where ellipsoids meet"], ["region", "The same, in N(p), around the last one"], ["portal", "Portal refinement alone, as auto does"]] as const) this.from.append(h("option", { value }, text));
+    for (const [value, text] of [["center", "The paper’s algorithm, from the centre"], ["ellipsoids", "The paper’s algorithm, from where ellipsoids meet"], ["region", "The paper’s algorithm, in N(p) around the last solution"], ["portal", "Portal refinement alone, as auto does"]] as const) this.from.append(h("option", { value }, text));
     this.from.addEventListener("change", () => this.refresh());
-    this.looks.append(h("option", { value: "" }, "The question as it is asked"), ...LOOKS.map(({ name }, k) => h("option", { value: k }, name)));
+    this.looks.append(h("option", { value: "" }, "The current question"), ...LOOKS.map(({ name }, k) => h("option", { value: k }, name)));
     this.looks.addEventListener("change", () => void this.choose(LOOKS[Number(this.looks.value)]));
     this.player.onChange = () => this.draw();
     this.graph.onStep = (step) => this.pick(step);
@@ -93,7 +93,7 @@ export class Found {
       h("h3", {}, "Minimisation over pairs of sections"),
       h("p", { class: "proof" }, "Cut both bodies by a plane each: their sections, at the levels x and y. How far along d the one can move until it meets the other is φ(x, y), a translation t in multiples of d. φ is convex, and its least value is the answer; in each cell of its mark, the map below, the same features touch."),
       this.graph.element, this.steps, this.told,
-      h("h3", {}, "What is proven, step by step"), this.bounds.element);
+      h("h3", {}, "Proven bounds, step by step"), this.bounds.element);
     this.body = h("div", { style: "display: contents" },
       h("section", { class: "card" }, h("label", {}, "Look at ", this.looks), this.caption, this.from),
       this.player.element, this.levelsCard,
@@ -110,7 +110,7 @@ export class Found {
     this.element.append(this.head, this.body);
   }
 
-  /** There is another answer. */
+  /** Called when there is another answer. */
   changed() {
     this.stale = true;
     if (this.visible) void this.refresh();
@@ -132,7 +132,7 @@ export class Found {
     return convex ? [moving!, fixed!] : undefined;
   }
 
-  /** One of the things to look at. */
+  /** Shows one of the examples. */
   private async choose(look: Look | undefined) {
     this.look = look;
     this.caption.textContent = look ? `${look.figure ? `The paper, ${look.figure}. ` : ""}${look.text}` : "";
@@ -168,7 +168,7 @@ export class Found {
       await this.placing.place({ moving, fixed });
       const by = start === "portal" ? { solver: "portal" } : { solver: "cta", start: start === "ellipsoids" ? start : "center", until: "exit" };
       const { facts } = await this.engine.ask({ do: "search", ...pair, ...by, after });
-      // Another one is on its way.
+      // A newer search is pending.
       if (turn !== this.asked) return;
       const events = start === "region" ? facts.region?.events : facts.events;
       this.search = facts;
@@ -194,11 +194,11 @@ export class Found {
     for (const resolve of this.waiting.splice(0)) resolve();
   }
 
-  /** The time at which one begins to look. */
+  /** Returns the initial time. */
   private begins(): number {
     const after = (is: (moment: Moment) => boolean) => this.moments.findIndex(is) + 1;
     const steps = this.found?.steps ?? [];
-    // All of the minimisation.
+    // The whole minimisation.
     if (this.motion.isPlaying) return this.moments.filter((one) => one.kind !== "portal").length;
     const { at = "first shift", touch } = this.look ?? {};
     const step = touch ? Math.max(0, steps.findIndex((one) => one.touch === touch)) : 0;
@@ -212,7 +212,7 @@ export class Found {
     }
   }
 
-  /** For tests. */
+  /** State for tests. */
   probe() {
     const { engine, found, refined, moments, player, graph } = this;
     return { engine, found, refined, moments, at: player.at, follows: graph.follows };
@@ -236,7 +236,7 @@ export class Found {
   private tellTracker({ steps, tracked, region }: PageSearch) {
     this.tracker.textContent = tracked
       ? `Asked after the question before this one, a tracker starts from ${{ difference: "the faces of the bodies' difference", features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.started_from ?? "scratch"]}: ` +
-        `${count(tracked.supports, "supporting plane")} and ${count(tracked.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`
+        `${count(tracked.supports, "supporting plane")} and ${count(tracked.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is built from scratch, so it is as tight as any.`
       : "Change the question a little (drag the arrow, or move a body): a tracker then starts from the answer before.";
     if (!region) {
       this.near.textContent = tracked && this.from.value !== "portal" ? "The question before had no contact: there is no p, and no neighbourhood N(p)." : "";
@@ -257,16 +257,16 @@ export class Found {
     return { pose: [...pose] as Pose, direction, radius: bodies[0].radius };
   }
 
-  // --- what is seen
+  // --- pictures
 
-  /** To where the step's planar problem is solved, and what follows has happened. */
+  /** Jumps to the end of a step: its planar problem and everything before it. */
   private pick(step: number) {
     const of = (kind: Moment["kind"]) => this.moments.findIndex((one) => one.kind === kind && "step" in one && one.step === step) + 1;
     const at = of("cut") || of("solved") || of("shift") || of("touch");
     if (at && this.step !== step) this.player.go(at);
   }
 
-  /** The step that is looked at. */
+  /** The current step. */
   private get step(): number {
     const moment = this.moments[this.player.now[0]];
     return moment && "step" in moment ? moment.step : Math.max(0, (this.found?.steps.length ?? 1) - 1);
@@ -314,7 +314,7 @@ export class Found {
     const come = kind === "sections" ? over : 1;
     const shift = kind === "sections" || kind === "touch" ? 0 : kind === "shift" ? over : 1;
     const cut = kind === "cut" ? over : kind === "solved" ? 0 : kind === "portal" ? 1 : 0;
-    // The sections go from where the last step ended.
+    // The sections move from the end of the last step.
     const levels = between(between(before?.best ?? one.levels, one.levels, come), one.meets ? one.best : one.levels, shift);
     const touches = kind === "touch" ? over : kind === "sections" ? 0 : 1;
     const t = one.meets ? (touches * mix(one.value, one.shifted, shift)) / unit : 0;
@@ -328,7 +328,7 @@ export class Found {
     this.graph.show({ found, step: k, shift, cut, window, grids });
   }
 
-  /** What of the levels is shown at a step. */
+  /** Returns the window of levels that is shown at a step. */
   private window({ steps, ranges: [[a, b], [c, d]] }: Minimisation, step: number): Window {
     const all: Window = [[a, c], [b, d]];
     const region = steps[Math.max(step, 0)]?.region;
@@ -342,7 +342,7 @@ export class Found {
     return [[x[0], y[0]], [x[1], y[1]]];
   }
 
-  /** The values over a window, once they are there. */
+  /** Returns the values over a window, once they have been computed. */
   private grid(found: Minimisation, window: Window, pair: Pair): Grid | undefined {
     const key = window.join();
     const known = this.grids.get(key);
@@ -358,7 +358,7 @@ export class Found {
     return undefined;
   }
 
-  // --- what is said
+  // --- texts
 
   private tellStep(step: Step | undefined, unit: number): string {
     if (!step) return "";
@@ -390,18 +390,18 @@ export class Found {
       case "sections": return `${name}: both bodies are cut at c${moment.step ? ", the centroid of the region that is left" : this.found!.square ? " = p, the last solution" : ", the centre of all levels"}.`;
       case "touch": return step.meets ? `${name}: the moving section goes along d until it touches the other one.` : `${name}: the sections never meet; a line lies between their shadows.`;
       case "shift": return `${name}: within its cell the contact slides down to q${best && step.best[0] === best.at[0] && step.best[1] === best.at[1] ? ", the least value of all" : ""}.`;
-      case "cut": return `${name}: what lies behind the cut line cannot be better, and is cut off.`;
+      case "cut": return `${name}: the region behind the cut line cannot contain the minimum, and is cut off.`;
       default: return `${name}: q solves the problem, because the features that touch there have a common normal that supports both bodies.`;
     }
   }
 }
 
-/** Slow at both ends. */
+/** Eases an animation at both ends. */
 const ease = (s: number) => s * s * (3 - 2 * s);
 
 const count = (n: number, what: string) => `${n} ${what}${n === 1 ? "" : "s"}`;
 
-/** What the letters stand for, and where to read on. */
+/** Lists the symbols with links to further reading. */
 function words(): HTMLElement {
   const rows: [string, string][] = [
     ["d, t", "the direction of the motion; how far the moving body has gone, in multiples of d"],

@@ -1,8 +1,8 @@
-// The page: a question, its answer, and what is seen of it.
+// The page: a question, its answer, and the view of it.
 //
-// Data flow: `State` (what is asked; kept in the address) -> `Engine` (the library, in a worker)
-// -> the answer -> `View`, `Shadow`, `Timeline` and the panel. One question is on its way at a time;
-// of those that come meanwhile only the last is asked.
+// Data flow: `State` (the question, kept in the address) -> `Engine` (the library, in a worker) -> the answer ->
+// `View`, `Shadow`, `Timeline` and the panel. One question is pending at a time; of those that arrive meanwhile only
+// the last is sent.
 
 import { onChange } from "./colours";
 import { h, named, save, soon } from "./dom";
@@ -25,7 +25,7 @@ import { type Bodies, type Drawn, drawn, forget } from "./view/body";
 import { drawable } from "./view/framing";
 import type { Tool } from "./view/handles";
 
-/** Up to so many triangles of both bodies together. */
+/** Maximum number of triangles of both bodies for which the proof is built without a request. */
 const PROVED_SOON = 20_000;
 /** The example that is an assembly. */
 const GEARBOX = "gearbox";
@@ -33,40 +33,40 @@ const engine = new Engine();
 
 class Page {
   private state: State = fromHash(location.hash);
-  /** The address that the state is of. */
+  /** The address of the current state. */
   private address = location.hash;
   private answer: PageCast | undefined;
   private error: string | undefined;
   private took = 0;
-  /** Milliseconds from the page's beginning. */
+  /** Milliseconds from the start of the page. */
   private firstAnswer: number | undefined;
   private verdict: Shown["verdict"];
-  /** Of an answer between solids, with its entries. */
+  /** The proof of an answer between solids, with its entries. */
   private solidProof: PageCertify | undefined;
   private proving = 0;
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
   private readonly engine = engine;
   private readonly bodies: Bodies = {};
-  /** What they were made of. */
+  /** The sources of the bodies. */
   private readonly made: Partial<Record<Slot, Part>> = {};
-  /** Made after the first answer, because graphics may take a while to begin. */
+  /** Created after the first answer, because graphics may take a while to start. */
   private view: View | undefined;
   private readonly shadow = new Shadow();
   private readonly panel: AnswerPanel;
-  /** Read when their tabs are opened. */
+  /** Loaded when their tabs are opened. */
   private found: Found | undefined;
   private turning: Turning | undefined;
   private assembly: AssemblyTab | undefined;
   private readonly opening = new Set<Tab>();
-  /** What the view shows more belongs to a tab. */
+  /** The tab that the additions to the view belong to. */
   private extras: Tab = "answer";
   private readonly time: Timeline;
-  /** The question that was answered last, and the one before, about the same bodies. */
+  /** The last answered question, and the one before, about the same bodies. */
   private last: Pair | undefined;
   private before: Pair | undefined;
   private asking = false;
   private again = false;
-  /** How far the bodies are apart: read when it is asked for. */
+  /** The distance of the bodies, loaded on demand. */
   private nearness: Near | undefined;
   private near: Nearness | undefined;
   private nearButton: HTMLElement | undefined;
@@ -74,16 +74,16 @@ class Page {
   private nearing = false;
   private nearAgain = false;
   private readonly sources: Partial<Record<Slot, Source>> = {};
-  /** The bytes of the file that was given last. */
+  /** The bytes of the last file of each slot. */
   private readonly given: Partial<Record<Slot, Source["bytes"]>> = {};
   private loading = 0;
-  /** Counts what is asked for as a body: what comes for an older one is of no use. */
+  /** Counts requests for a body; results for an older one are dropped. */
   private readonly turns: Record<Slot, number> = { moving: 0, fixed: 0 };
-  /** Counts changes of the bodies: an answer about other ones is dropped. */
+  /** Counts changes of the bodies; answers about other ones are dropped. */
   private pairs = 0;
-  /** Slots whose next body stands where its file has it, not where the state has the one before. */
+  /** Slots whose next body takes the pose of its file instead of the pose in the state. */
   private readonly asInFile: Record<Slot, boolean> = { moving: false, fixed: false };
-  /** The body before one that was refused: shown again if the refused file is left. */
+  /** The body before a rejected one; it is shown again if the rejected file is discarded. */
   private readonly previous: Partial<Record<Slot, { drawn: Drawn; source: Source | undefined }>> = {};
   private tool: Tool = "look";
   private held: Slot = "moving";
@@ -107,7 +107,7 @@ class Page {
 
   async start() {
     await this.loadBoth();
-    // The answer is read while the view is being made.
+    // The answer is computed while the view is created.
     await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
     const view = this.makeView();
     if (!view) return;
@@ -119,7 +119,7 @@ class Page {
     this.show();
   }
 
-  /** Reads what a tab needs. */
+  /** Loads the code of a tab. */
   private async openTab(tab: Tab) {
     const { view } = this;
     if (this.opening.has(tab) || (tab !== "assembly" && !view)) return;
@@ -151,21 +151,21 @@ class Page {
       }
     } catch (error) {
       this.opening.delete(tab);
-      // Not again at once.
+      // Do not retry at once.
       this.state.tab = "answer";
       toast(`This part of the page could not be read: ${error instanceof Error ? error.message : String(error)}`);
     }
     this.show();
   }
 
-  /** The answer and the shadows do without. */
+  /** Creates the view; the answer and the shadows work without it. */
   private makeView(): View | undefined {
     try {
       return new View(named("view"), this.bodies);
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
       named("view").append(h("p", { class: "lone", role: "alert" },
-        `The view in three dimensions draws with WebGL 2, which this browser does not have, or has switched off (${why}). The answer, its proof and the shadows need none.`));
+        `The three-dimensional view needs WebGL 2, which this browser lacks or has switched off (${why}). The answer, its proof and the shadows work without it.`));
       return undefined;
     }
   }
@@ -175,7 +175,7 @@ class Page {
     else this.view?.fit(this.state, this.answer, along);
   }
 
-  // --- what is asked
+  // --- questions
 
   private pair(): Pair {
     const { poses, direction, graze, solver, start, until, tolerance, ignore } = this.state;
@@ -203,7 +203,7 @@ class Page {
     return () => {
       clearTimeout(timer);
       timer = window.setTimeout(() => {
-        // Another address than ours: somebody has followed a link, of which the event is to come.
+        // The address is not ours: a link was followed, and its event is still to come.
         if (location.hash !== this.address) return;
         this.write();
         this.showExample();
@@ -248,19 +248,19 @@ class Page {
     [this.answer, this.took, this.error] = [answer, took, undefined];
   }
 
-  /** No answer outlives the bodies that it is about. */
+  /** Removes the answer when its bodies change. */
   private clearAnswer() {
     clearTimeout(this.proving);
     [this.answer, this.error, this.verdict, this.solidProof, this.near] = [undefined, undefined, undefined, undefined, undefined];
   }
 
-  /** The bodies are other ones from now on. */
+  /** Called when the pair of bodies has changed. */
   private changedPair() {
     this.pairs++;
     this.clearAnswer();
   }
 
-  /** As with casts: of those that come meanwhile only the last is asked. */
+  /** Asks for the distance. As with casts, only the last of several pending questions is sent. */
   private async askNear(): Promise<void> {
     if (this.nearing) {
       this.nearAgain = true;
@@ -292,7 +292,7 @@ class Page {
     this.show();
   }
 
-  /** Between small solids the proof is made once the question stands still. */
+  /** Builds the proof between small solids once the question has settled. */
   private proveSoon() {
     this.solidProof = undefined;
     clearTimeout(this.proving);
@@ -308,7 +308,7 @@ class Page {
     this.show();
   }
 
-  /** What is proven, each by its own check: of solids the claims, and the plane if there is one. */
+  /** Checks every proof separately: for solids the claims, and the plane if there is one. */
   private async verify() {
     const answer = this.answer;
     if (!answer) return;
@@ -342,7 +342,7 @@ class Page {
     await this.ask();
   }
 
-  /** A file of `data/`, as the state names it. */
+  /** Loads a file of `data/` named in the state. */
   private async loadExample(slot: Slot) {
     const turn = ++this.turns[slot];
     const { file, take } = this.state.parts[slot];
@@ -350,7 +350,7 @@ class Page {
     try {
       const url = new URL(`data/${file}`, document.baseURI);
       const known = Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
-      // A file that somebody gave is there still when an address, or going back, asks for it again.
+      // A file of the visitor is still available when an address, or the back button, needs it again.
       const made = this.made[slot];
       if (!known && this.bodies[slot] && made?.file === file && made.take === take) return;
       const response = known ? await fetch(url) : undefined;
@@ -360,7 +360,7 @@ class Page {
       if (turn === this.turns[slot]) await this.load(slot, file, take, bytes);
     } catch (error) {
       if (turn !== this.turns[slot]) return;
-      // The body before it is not what is asked about.
+      // The previous body does not belong to the question.
       this.remove(slot);
       this.refuse(slot, file, error);
     }
@@ -395,7 +395,7 @@ class Page {
     this.changedPair();
   }
 
-  /** The body before a refused file is asked about again. */
+  /** Restores the body before a rejected file. */
   private restore(slot: Slot) {
     delete this.refusals[slot];
     const before = this.previous[slot];
@@ -412,10 +412,10 @@ class Page {
 
   private refuse(slot: Slot, name: string, error: unknown) {
     const { [slot]: drawn } = this.bodies;
-    // A large one makes room for the file that is read.
+    // A large body was dropped to make room for the file.
     if (error instanceof Refused && error.gone) this.remove(slot);
     else if (drawn) {
-      // It is not what is asked about, but may be again.
+      // The body no longer belongs to the question, but may be restored.
       this.previous[slot] = { drawn, source: this.sources[slot] };
       delete this.bodies[slot];
       this.changedPair();
@@ -426,16 +426,16 @@ class Page {
     this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead, before };
     void this.ask();
     this.show();
-    // It may be far below what was dropped on.
+    // The message may be far below the place of the drop.
     requestAnimationFrame(() => document.querySelector(".refused")?.scrollIntoView({ block: "nearest" }));
   }
 
-  /** Files that somebody chose or dropped stand where they have themselves, and are asked about together. */
+  /** Opens files that the visitor chose or dropped. They take the poses of their files and are loaded together. */
   private async open(files: [Slot, File][]) {
     for (const [slot, file] of files) {
       const turn = ++this.turns[slot];
       const { file: name, take } = this.state.parts[slot];
-      // A link to a file that had to be given says how it is taken, and where it is.
+      // A link to a file of the visitor specifies how it is used and its pose.
       const linked = !this.bodies[slot] && !this.previous[slot] && file.name === name;
       try {
         const bytes = await bytesOf(file);
@@ -450,7 +450,7 @@ class Page {
     await this.changedBody();
   }
 
-  /** The file that was refused, or is there, in another way. */
+  /** Uses the rejected or current file in another way. */
   private async take(slot: Slot, take: Take) {
     const name = this.refusals[slot]?.name ?? this.state.parts[slot].file;
     try {
@@ -481,7 +481,7 @@ class Page {
   private waiting(change: number) {
     this.loading += change;
     const wait = named("wait");
-    // What is quick is not worth saying.
+    // Fast operations need no message.
     clearTimeout(Number(wait.dataset.timer));
     if (!this.loading) wait.hidden = true;
     else wait.dataset.timer = String(setTimeout(() => {
@@ -490,7 +490,7 @@ class Page {
     }, 150));
   }
 
-  // --- what is shown
+  // --- output
 
   private readonly show = soon(() => {
     const { state, answer, view } = this;
@@ -520,7 +520,7 @@ class Page {
     if (seen) this.shadow.show(state, { moving, fixed }, answer);
   });
 
-  /** The translation after which the bodies have passed each other. */
+  /** Returns the translation after which the bodies have passed each other. */
   private pass(): number {
     const { moving, fixed } = this.bodies;
     const { poses, direction } = this.state;
@@ -530,7 +530,7 @@ class Page {
     return Math.max(ahead + moving.radius + fixed.radius, 2 * moving.radius) / length(direction);
   }
 
-  // --- what can be done
+  // --- controls
 
   private controls() {
     const select = named<HTMLSelectElement>("example");
@@ -565,7 +565,7 @@ class Page {
     });
   }
 
-  /** An example is asked about, from its beginning. */
+  /** Loads an example from its initial state. */
   private async begin(example: string, change: (state: State) => void = () => {}) {
     const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
     this.state = { ...fromExample(example), tab, near: this.state.near, assembly: this.state.assembly };
@@ -575,7 +575,7 @@ class Page {
     this.remember();
   }
 
-  /** The example that is asked about, if it is one as it began: else it can be chosen again. */
+  /** Selects the example in the list if the question is unchanged; otherwise it can be chosen again. */
   private showExample() {
     const asked = toHash({ ...this.state, t: null, near: false, tab: "answer" });
     const same = Object.keys(EXAMPLES).find((name) => toHash(fromExample(name)) === asked) ?? "";
@@ -583,7 +583,7 @@ class Page {
     named<HTMLSelectElement>("example").value = this.state.tab === "assembly" ? gearbox : same;
   }
 
-  /** One of them is in the order of focus; arrow keys go to the others. */
+  /** Only one tab is in the focus order; arrow keys go to the others. */
   private tabs() {
     const pick = (k: number) => this.change((s) => (s.tab = TABS[k]!), false);
     TABS.forEach((tab, k) => {
@@ -617,7 +617,7 @@ class Page {
       this.held = this.held === "moving" ? "fixed" : "moving";
       pick(tools.findIndex(([tool]) => tool === this.tool));
     });
-    this.nearButton = button("Distance", "How far the bodies are apart where they are, or how deep they overlap", () => {
+    this.nearButton = button("Distance", "Distance of the bodies at their poses, or depth of their overlap", () => {
       this.change((state) => (state.near = !state.near), false);
       void this.askNear();
     });
@@ -676,7 +676,7 @@ class Page {
   }
 
   private async copy(asked: string | undefined, what: string) {
-    // The address follows the question a little later.
+    // The address is updated a little later.
     this.write();
     const text = asked ?? location.href;
     try {
@@ -699,7 +699,7 @@ class Page {
     }
   }
 
-  /** For tests. */
+  /** State for tests. */
   probe() {
     return { assembly: this.assembly?.probe(), turning: this.turning?.probe(), found: this.found?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, near: this.near?.told, firstAnswer: this.firstAnswer };
   }
@@ -707,7 +707,7 @@ class Page {
 
 let styled: Promise<void> | undefined;
 
-/** What other tabs look like: read with the first of them. */
+/** Loads the styles of the other tabs with the first of them. */
 const tabStyles = () => (styled ??= new Promise((resolve, reject) => {
   const link = h("link", { rel: "stylesheet", href: "tabs.css", onload: () => resolve(), onerror: () => {
     styled = undefined;

@@ -16,20 +16,20 @@ export const cross = (a: Vec, b: Vec): Vec => [
   a[0] * b[1] - a[1] * b[0],
 ];
 
-/** At length 1; the x axis where there is no length. */
+/** Normalises a vector; returns the x axis for a zero vector. */
 export function unit(a: Vec): Vec {
   const l = length(a);
   return l > 0 ? times(a, 1 / l) : [1, 0, 0];
 }
 
-/** Two unit vectors that make a right-handed frame with a unit vector; the second one as far up as can be. */
+/** Returns two unit vectors that complete a unit vector to a right-handed frame; the second one points up as far as possible. */
 export function lateral(d: Vec): [Vec, Vec] {
   const up: Vec = Math.abs(d[2]) < 0.9 ? [0, 0, 1] : [0, 1, 0];
   const first = unit(cross(up, d));
   return [first, cross(d, first)];
 }
 
-/** A vector turned by a pose. */
+/** Rotates a vector by a pose. */
 export function turned(pose: Pose, v: Vec): Vec {
   const l = Math.hypot(pose[3], pose[4], pose[5], pose[6]) || 1;
   const q: Vec = [pose[3] / l, pose[4] / l, pose[5] / l];
@@ -37,10 +37,10 @@ export function turned(pose: Pose, v: Vec): Vec {
   return add(add(v, times(t, pose[6] / l)), cross(q, t));
 }
 
-/** A point of a body, in the world. */
+/** Transforms a point of a body to the world. */
 export const placed = (pose: Pose, v: Vec): Vec => add([pose[0], pose[1], pose[2]], turned(pose, v));
 
-/** The corners of the convex hull of points of the plane, counter-clockwise. */
+/** Returns the corners of the convex hull of points in the plane, counter-clockwise. */
 export function hull(points: [number, number][]): [number, number][] {
   const sorted = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = (all: [number, number][]) => {
@@ -59,7 +59,7 @@ export function hull(points: [number, number][]): [number, number][] {
   return sorted.length < 3 ? sorted : [...half(sorted), ...half(sorted.reverse())];
 }
 
-/** A number for people: up to six significant digits. */
+/** Formats a number with up to six significant digits. */
 export function short(x: number, digits = 6): string {
   if (x === 0) return "0";
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
@@ -70,5 +70,5 @@ export function short(x: number, digits = 6): string {
 
 const minus = (text: string) => text.replace(/-/g, "−");
 
-/** A vector for people; what is rounding of 0 is written as 0. */
+/** Formats a vector; rounding errors around 0 become 0. */
 export const shown = (v: Vec): string => v.map((x) => short(Math.abs(x) < 1e-12 ? 0 : x, 4)).join(", ");

@@ -1,4 +1,4 @@
-// How far the bodies are apart where they are, and how deep they overlap: asked of a library of its own, said and drawn.
+// The distance or the depth of the bodies at their poses: queried from a library of its own, described and drawn.
 
 import { MeshBasicMaterial, type Object3D } from "three";
 import type { DepthAnswer, DistanceAnswer, PageDistance } from "./answers";
@@ -8,7 +8,7 @@ import { Placing, type Source } from "./placing";
 import { type Frame, type Label, above, ball, inPicture, line, rod } from "./view/shapes";
 import { feature } from "./words";
 
-/** What is said and drawn beside the answer. */
+/** The text and the drawing next to the answer. */
 export interface Nearness {
   told: PageDistance;
   sentence: string;
@@ -33,7 +33,7 @@ function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "ro
   if (!depth) {
     const { upper = 0, features } = distance;
     return {
-      sentence: `Where they are, they are ${short(upper)} apart.`,
+      sentence: `At their poses they are ${short(upper)} apart.`,
       rows: [
         ["distance now", short(upper, 12)],
         ["proven", proven(distance)],
@@ -44,18 +44,18 @@ function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "ro
   const { upper, direction, start_overlaps } = depth;
   if (direction && upper) {
     return {
-      sentence: `Where they are, they overlap: the shortest way out is ${short(upper)} long.`,
+      sentence: `At their poses they overlap: the shortest way out is ${short(upper)} long.`,
       rows: [["depth now", short(upper, 12)], ["proven", proven(depth)], ["way out", shown(direction as Vec)]],
     };
   }
   const tolerance = start_overlaps?.[0]?.least_tolerance;
   return {
-    sentence: start_overlaps ? `Where they are, they overlap${tolerance ? `: with a tolerance of ${short(tolerance)} they would not` : ""}.` : "Where they are, they touch.",
+    sentence: start_overlaps ? `At their poses they overlap${tolerance ? `: with a tolerance of ${short(tolerance)} they would not` : ""}.` : "At their poses they touch.",
     rows: tolerance ? [["depth now", short(tolerance, 9)]] : [],
   };
 }
 
-/** The nearest points, joined; or the shortest way out, from a point of both. */
+/** Draws the nearest points with a segment, or the shortest way out from a common point. */
 function draw(frame: Frame, { distance, depth }: PageDistance): { parts: Object3D[]; labels: Label[] } {
   const [from, to] = (distance.points ?? []) as Vec[];
   if (!from || !to) return { parts: [], labels: [] };

@@ -1,4 +1,4 @@
-// What is said and what can be set, beside the view.
+// The texts and the controls next to the view.
 
 import { h, refill, svg } from "./dom";
 import type { Certificate, PageCast, PageCertify, PageConvex } from "./answers";
@@ -12,32 +12,32 @@ import { IN_FILE, type Solver, type State } from "./state";
 import type { Drawn } from "./view/body";
 import { say } from "./words";
 
-/** The view as pixels, the shadows, the view as a drawing. */
+/** The view as pixels, the shadows, or the view as a drawing. */
 export type Picture = "png" | "svg" | "drawing";
 
-/** Why a file was not taken, and what it could be taken as. */
+/** The reason why a file was rejected, and other ways to use it. */
 export interface Refusal {
   name: string;
   message: string;
   instead: Take[];
-  /** The file of the body that was there before, if that can be shown again. */
+  /** The file of the previous body, if it can be restored. */
   before: string | undefined;
 }
 
 export interface Shown {
   state: State;
   answer: PageCast | undefined;
-  /** Why there is no answer. */
+  /** The reason why there is no answer. */
   error: string | undefined;
-  /** Milliseconds. */
+  /** Time in milliseconds. */
   took: number;
   bodies: Partial<Record<Slot, Drawn>>;
   refusals: Partial<Record<Slot, Refusal>>;
-  /** Of an answer between solids, once it is made. */
+  /** The proof of an answer between solids, once it has been built. */
   solidProof: PageCertify | undefined;
-  /** How far the bodies are apart where they are, if that is shown. */
+  /** The distance of the bodies at their poses, if it is shown. */
   near: Nearness | undefined;
-  /** What came of the check of the proof. */
+  /** The result of the check of the proof. */
   verdict: { holds: boolean; text: string } | undefined;
 }
 
@@ -47,7 +47,7 @@ export interface Actions {
   take(slot: Slot, take: Take): void;
   dismiss(slot: Slot): void;
   verify(): void;
-  /** `undefined`: the address. */
+  /** Copies a text; `undefined` stands for the address. */
   copy(text: string | undefined, what: string): void;
   save(how: Picture): void;
 }
@@ -69,7 +69,7 @@ export class AnswerPanel {
   private readonly parts = h("div");
   private readonly fields: { input: HTMLInputElement; read: (state: State) => number | null }[] = [];
   private readonly solver = h("select", { "aria-label": "Solver" });
-  /** Of the paper's algorithm: where it starts and ends. */
+  /** Start and end of the paper's algorithm. */
   private readonly start = h("select", { "aria-label": "Where the algorithm starts" });
   private readonly narrowing: HTMLElement;
   private readonly graze: HTMLElement;
@@ -86,13 +86,13 @@ export class AnswerPanel {
       this.solver.append(h("option", { value: value! }, text!));
     }
     this.solver.addEventListener("change", () => act.change((s) => (s.solver = this.solver.value as Solver)));
-    this.start.append(h("option", { value: "center" }, "the centre of all levels"), h("option", { value: "ellipsoids" }, "where ellipsoids would meet"));
+    this.start.append(h("option", { value: "center" }, "the centre of all levels"), h("option", { value: "ellipsoids" }, "where ellipsoids meet"));
     this.start.addEventListener("change", () => act.change((s) => (s.start = this.start.value as Start)));
     this.narrowing = h(
       "div", { class: "fields", style: "grid-template-columns: 1fr 1fr; align-items: end" },
       h("label", {}, "It starts at", this.start),
-      h("label", { title: "A share of both bodies' extent along d: where its bounds are no farther apart it ends, and portals go on" },
-        "It ends at a gap (empty: at its own end)", this.number("Gap at which the algorithm ends", (s) => s.until, (s, x) => (s.until = Math.max(0, x)), (s) => (s.until = null))),
+      h("label", { title: "A fraction of the extent of both bodies along d. When the bounds differ by at most this, the algorithm ends and portal refinement continues" },
+        "Gap at which it ends (empty: its own end)", this.number("Gap at which the algorithm ends", (s) => s.until, (s, x) => (s.until = Math.max(0, x)), (s) => (s.until = null))),
     );
     this.ignore.addEventListener("change", () => act.change((s) => (s.ignore = this.ignore.checked)));
     this.graze = h(
@@ -104,7 +104,7 @@ export class AnswerPanel {
       "div", {},
       h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr" },
         h("label", {}, "Tolerance (empty: from the files)", this.number("Tolerance", (s) => s.tolerance, (s, x) => (s.tolerance = Math.max(0, x)), (s) => (s.tolerance = null)))),
-      h("label", { style: "display: flex; gap: 8px; align-items: center; margin-top: 8px" }, this.ignore, "What overlaps at the start does not block"),
+      h("label", { style: "display: flex; gap: 8px; align-items: center; margin-top: 8px" }, this.ignore, "Ignore overlaps at the start"),
     );
     this.proofCard = this.card("Proof", true, this.proof, h("div", { class: "row" }, this.check, this.verdict));
     const bodies = this.card("Bodies", true, this.parts);
@@ -164,7 +164,7 @@ export class AnswerPanel {
           if (l > 0) s.direction = s.direction.map((x) => x / l) as Vec;
         }) }, "length 1")),
       ...pose("moving"), ...pose("fixed"),
-      h("div", { class: "row" }, h("button", { class: "small", title: "Both bodies in the coordinates of their files, not moved and not turned", onclick: () => this.act.change((s) => (s.poses = { moving: [...IN_FILE], fixed: [...IN_FILE] })) }, "as in the files")),
+      h("div", { class: "row" }, h("button", { class: "small", title: "Both bodies at the coordinates of their files", onclick: () => this.act.change((s) => (s.poses = { moving: [...IN_FILE], fixed: [...IN_FILE] })) }, "as in the files")),
       this.graze, this.narrowing, this.solid,
       h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d. In a field the keys ↑ and ↓ change the number, with Shift by ten times as much."),
     );
@@ -184,7 +184,7 @@ export class AnswerPanel {
         h("button", { class: "small", onclick: () => this.act.save("png") }, "Save the view (PNG)"),
         h("button", { class: "small", onclick: () => this.act.save("svg") }, "Save the shadows (SVG)"),
         h("button", { class: "small", onclick: () => this.act.save("drawing") }, "Save the view (SVG)")),
-      h("small", { style: "color: var(--soft)" }, "Nothing is sent anywhere. A link holds the question; files that are not examples have to be given again."),
+      h("small", { style: "color: var(--soft)" }, "No data leave this browser. A link contains the question; files other than the examples must be opened again."),
     );
   }
 
@@ -205,7 +205,7 @@ export class AnswerPanel {
     this.narrowing.hidden = solids || state.solver !== "cta";
     this.solid.hidden = !solids;
     this.command.disabled = asCommand(state) === undefined;
-    this.command.title = this.command.disabled ? "The command takes no hull of a part beside one that is not convex" : "";
+    this.command.title = this.command.disabled ? "The command cannot combine a hull with a part that is not convex" : "";
     this.showParts(shown);
     this.facts.parentElement!.hidden = !answer || !!error;
     this.proofCard.hidden = !answer || !!error;
@@ -216,7 +216,7 @@ export class AnswerPanel {
     }
   }
 
-  /** Whether something has changed: what has not is left alone, so that a click on it is not lost. */
+  /** Checks whether a value has changed. Unchanged elements are kept, so that a click on them is not lost. */
   private fresh(what: string, value: unknown): boolean {
     const text = JSON.stringify(value);
     const changed = this.known.get(what) !== text;
@@ -289,22 +289,22 @@ export class AnswerPanel {
   }
 }
 
-/** The proof between convex bodies. */
+/** Describes the proof between convex bodies. */
 function convexProof(of: PageConvex["proof"]): Element[] {
   const text = (...children: (string | HTMLElement | null)[]) => h("p", { class: "proof" }, ...children);
-  if ("separation" in of) return [text("A plane along d lies between the bodies. All of the moving one is on one side, all of the fixed one on the other.")];
+  if ("separation" in of) return [text("A plane parallel to d separates the bodies: the moving body is on one side, the fixed body on the other.")];
   const proof = of.contact;
   const upper = proof.upper === null ? undefined : String(proof.upper);
   return [
     bounds(proof),
-    text("The green plane proves that nothing touches before ", h("b", {}, String(proof.lower)),
-      upper ? "; the two triangles meet in one point, which proves that something does by " : ".",
+    text("The green plane proves that there is no contact before ", h("b", {}, String(proof.lower)),
+      upper ? "; the two triangles share a point, which proves that there is a contact by " : ".",
       upper ? h("b", {}, upper) : null,
       upper ? `. The gap of ${short(proof.upper! - proof.lower, 2)} is rounding.` : ""),
   ];
 }
 
-/** Both bounds on a line that shows nothing but the gap, and what rounding alone can make of it. */
+/** Draws both bounds on a line that shows only their gap, and the part that rounding alone can cause. */
 function bounds(proof: Pick<Certificate, "lower" | "upper" | "rounding">): SVGSVGElement {
   const upper = proof.upper ?? proof.lower + proof.rounding;
   const width = Math.max(upper - proof.lower, proof.rounding, Number.MIN_VALUE);
@@ -320,6 +320,6 @@ function bounds(proof: Pick<Certificate, "lower" | "upper" | "rounding">): SVGSV
   return picture;
 }
 
-/** What there is any of. */
+/** Lists the counts that are not zero. */
 const counts = (all: [number, string][]) =>
   all.filter(([n]) => n > 0).map(([n, what]) => `${n} ${what}${n === 1 ? "" : "s"}`).join(", ");

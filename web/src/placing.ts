@@ -1,9 +1,9 @@
-// Bodies in a library of their own, made of the same files as the page's.
+// Bodies in a library of their own, built from the same files as those of the page.
 
 import type { Engine, Slot, Take } from "./engine";
 import { SLOTS } from "./examples";
 
-/** What a body was made of. */
+/** The source of a body. */
 export interface Source {
   name: string;
   take: Take;
@@ -15,7 +15,7 @@ export class Placing {
 
   constructor(private readonly engine: Engine) {}
 
-  /** What is there already is not read again. */
+  /** Sends the sources that the library does not have yet. */
   async place(sources: Record<Slot, Source>) {
     for (const slot of SLOTS) {
       const source = sources[slot];

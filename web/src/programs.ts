@@ -1,11 +1,11 @@
-// The question as a Rust program and as a Python program: read when one is asked for.
+// The question as a Rust or a Python program; loaded on demand.
 
 import type { Slot, Take } from "./engine";
 import type { Vec } from "./math";
 import { files, isHome, isSolid } from "./share";
 import type { State } from "./state";
 
-/** A number as Rust and Python read it: the same bits, and always a float. */
+/** Formats a number so that Rust and Python read the same bits, always as a float. */
 function float(x: number): string {
   const text = String(x);
   return /[.e]/.test(text) ? text : `${text}.0`;

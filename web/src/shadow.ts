@@ -1,4 +1,4 @@
-// The view along the direction: both shadows, and what lies between them or where they touch.
+// The view along the direction: both shadows, and the plane between them or the contact point.
 
 import { type Palette, palette } from "./colours";
 import { h, svg } from "./dom";
@@ -9,11 +9,11 @@ import type { State } from "./state";
 import type { Drawn } from "./view/body";
 
 type Flat = [number, number];
-/** Solids with more triangles than this are drawn when the question has stood still for a moment. */
+/** Number of triangles above which solids are drawn only after the question has settled. */
 const MANY = 20_000;
 const WIDE = 320;
 
-/** Right and up of somebody who looks along a unit vector. */
+/** Returns the right and the up vector for a view along a unit vector. */
 export function eyes(d: Vec): [Vec, Vec] {
   const up: Vec = Math.abs(d[2]) < 0.95 ? [0, 0, 1] : [0, 1, 0];
   const right = unit(cross(d, up));
@@ -91,7 +91,7 @@ export class Shadow {
     this.note.textContent = said;
   }
 
-  /** Marks, and what they mean. */
+  /** Draws marks, and returns their meaning. */
   private overlay(
     picture: SVGSVGElement, state: State, bodies: Record<Slot, Drawn>, answer: PageCast | undefined,
     flatten: (v: Vec) => Flat, scale: number, colours: Palette,
@@ -100,7 +100,7 @@ export class Shadow {
     const [first, between, overlap] = [touch(answer), plane(answer), grazing?.overlap ?? 0];
     const sideways = between?.normal ?? grazing?.sideways;
     if (sideways) {
-      // The line through the end of the moving body's shadow, and the one through the fixed one's.
+      // The line at the end of the moving body's shadow, and the one at the fixed body's.
       const gap = between?.margin ?? -overlap;
       const end = farthest(bodies.moving, state.poses.moving, sideways);
       const along = cross(unit(state.direction), sideways);
@@ -119,19 +119,19 @@ export class Shadow {
         svg("circle", { cx: a[0], cy: a[1], r: 3.5, fill: colours.normal }),
       );
       return between?.margin
-        ? `Seen along d: the shadows are apart by at least ${short(between.margin)}, so the bodies never meet.`
-        : `Seen along d: the shadows overlap by ${short(Math.abs(overlap))}, no more than is tolerated.`;
+        ? `Seen along d: the shadows are at least ${short(between.margin)} apart, so the bodies never meet.`
+        : `Seen along d: the shadows overlap by ${short(Math.abs(overlap))}, at most the graze tolerance.`;
     }
     if (first) {
       const at = flatten(first.point);
       picture.append(svg("circle", { cx: at[0], cy: at[1], r: 4.5, fill: colours.normal, stroke: "#fff", "stroke-width": 1.5 }));
       return "Seen along d: the shadows overlap, so the bodies meet; the point is where they touch first.";
     }
-    if (answer?.record.outcome === "free") return "Seen along d: nothing of the fixed body lies ahead of the moving one.";
+    if (answer?.record.outcome === "free") return "Seen along d: no part of the fixed body is ahead of the moving one.";
     return "Seen along d.";
   }
 
-  /** Shadows of solids: all triangles, each pixel once. */
+  /** Draws shadows of solids: all triangles, each pixel once. */
   private fill(solids: [Drawn, Flat[], string][], place: (p: Flat) => Flat) {
     clearTimeout(this.late);
     this.canvas.width = this.canvas.height = 2 * WIDE;
@@ -147,7 +147,7 @@ export class Shadow {
         const { triangles } = body.body;
         for (let k = 0; k < triangles.length; k += 3) {
           const [a, b, c] = [at[triangles[k]!]!, at[triangles[k + 1]!]!, at[triangles[k + 2]!]!];
-          // All of them the same way round: then overlaps add up and nothing is a hole.
+          // All triangles get the same orientation, so that overlaps add up and make no holes.
           const turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
           const [e, f] = turn > 0 ? [b, c] : [c, b];
           context.moveTo(a[0], a[1]);
@@ -162,7 +162,7 @@ export class Shadow {
     else draw();
   }
 
-  /** As a file. */
+  /** Returns the drawing as a file. */
   source(): string {
     const copy = this.picture.cloneNode(true) as SVGSVGElement;
     copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
@@ -175,7 +175,7 @@ export class Shadow {
   }
 }
 
-/** A point of a placed body that is extreme along a direction. */
+/** Returns a point of a placed body that is extreme along a direction. */
 function farthest(body: Drawn, pose: Pose, n: Vec): Vec {
   const { vertices } = body.body;
   let best = -Infinity;

@@ -1,4 +1,4 @@
-// The question elsewhere: as a command; `programs` has the others.
+// The question as a command; `programs` has other forms.
 
 import type { Slot, Take } from "./engine";
 import type { State } from "./state";
@@ -11,7 +11,7 @@ export const files = (state: State): Record<Slot, string> => ({
   fixed: state.parts.fixed.file.split("/").at(-1)!,
 });
 
-/** Nothing where no command asks the same. */
+/** Returns undefined if no command asks this question. */
 export function asCommand(state: State): string | undefined {
   const { moving, fixed } = files(state);
   const solids = isSolid(state.parts.moving.take) || isSolid(state.parts.fixed.take);

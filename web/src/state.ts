@@ -1,4 +1,4 @@
-// What is asked, as a value; and as the part of an address after `#`.
+// The question as a value, and as the part of an address after `#`.
 
 import type { Slot, Start, Take } from "./engine";
 import { EXAMPLES, FIRST, type Part } from "./examples";
@@ -7,46 +7,46 @@ import type { Pose, Vec } from "./math";
 export type Solver = "auto" | "cta" | "portal";
 export type Tab = "answer" | "motion" | "found" | "assembly";
 
-/** A turn about an axis through a point, and a way along it meanwhile: a hinge where there is none, a slide without a turn. */
+/** A rotation about an axis through a point with a translation along it: a hinge without a translation, a slide without a rotation. */
 export interface Screw {
   point: Vec;
   axis: Vec;
-  /** Degrees. */
+  /** In degrees. */
   angle: number;
   rise: number;
 }
 
 export interface State {
-  /** Files of `data/`, or names of files that somebody dropped. */
+  /** Files of `data/`, or names of files that the visitor dropped. */
   parts: Record<Slot, Part>;
   poses: Record<Slot, Pose>;
   direction: Vec;
   graze: number;
-  /** `null`: what the files ask for. */
+  /** `null` stands for the tolerance that follows from the files. */
   tolerance: number | null;
   ignore: boolean;
   solver: Solver;
-  /** Of the paper's algorithm: where it starts, and the gap at which it ends; `null`: at its own end. */
+  /** Start of the paper's algorithm, and the gap at which it ends; `null` for its own end. */
   start: Start;
   until: number | null;
-  /** Whether it is shown how far the bodies are apart where they are. */
+  /** Whether the distance of the bodies at their poses is shown. */
   near: boolean;
-  /** Where the moving body is shown, in multiples of the direction; `null`: at its start. */
+  /** The position at which the moving body is shown, in multiples of the direction; `null` for its start. */
   t: number | null;
   tab: Tab;
   motion: {
-    /** `null`: one that the page thinks of. */
+    /** `null` stands for a motion that the page chooses. */
     screw: Screw | null;
     /** The body that moves; the other one rests. */
     body: Slot;
-    /** A gap to be kept. */
+    /** A minimum gap. */
     keep: number;
-    /** From 0 to 1, where the moving body is shown. */
+    /** The time from 0 to 1 at which the moving body is shown. */
     time: number;
   };
   assembly: {
     direction: Vec;
-    /** `null`: from the precision of the files. */
+    /** `null` stands for the tolerance that follows from the precision of the files. */
     tolerance: number | null;
     ignore: boolean;
     /** The part whose removal map is shown. */
@@ -54,7 +54,7 @@ export interface State {
   };
 }
 
-/** Where a body stands as its file has it. */
+/** The pose of a body as in its file. */
 export const IN_FILE: Readonly<Pose> = [0, 0, 0, 0, 0, 0, 1];
 
 export const otherOf = (slot: Slot): Slot => (slot === "moving" ? "fixed" : "moving");
@@ -83,7 +83,7 @@ const TAKES: Take[] = ["convex", "hull", "solid", "open"];
 const SOLVERS: Solver[] = ["auto", "cta", "portal"];
 export const TABS: Tab[] = ["answer", "motion", "found", "assembly"];
 
-/** The state as text for an address. Numbers are written so that the same bits are read. */
+/** Writes the state as text for an address. Numbers keep their bits. */
 export function toHash(state: State): string {
   const fields: [string, string | undefined][] = [
     ["m", `${state.parts.moving.file}:${state.parts.moving.take}`],
@@ -125,7 +125,7 @@ function assemblyFields({ assembly: { direction, tolerance, ignore, part } }: St
   ];
 }
 
-/** The state that an address tells; what it leaves out, or says wrongly, is as in the first example. */
+/** Reads the state of an address. Missing or invalid fields are as in the first example. */
 export function fromHash(hash: string): State {
   const fields = new URLSearchParams(hash.replace(/^#/, "").replaceAll("+", "%2B"));
   const example = fields.get("example");

@@ -1,21 +1,21 @@
-// The slider along a way: from the start over the first contact to the last, or to the end of a motion.
+// The slider along a path: from the start through the first contact to the last, or to the end of a motion.
 
 import { h, refill } from "./dom";
 import type { PageCast } from "./answers";
 import { short } from "./math";
 import type { State } from "./state";
 
-/** What is shown of a way. */
+/** The marks of a path. */
 export interface Times {
   range: [number, number];
   at: number;
   text: string;
   marks: { t: number; text: string; kind: "low" | "stop" }[];
-  /** While they overlap. */
+  /** The range in which the bodies overlap. */
   span?: [number, number] | undefined;
 }
 
-/** Of a translation; `pass` is where the bodies have passed each other. */
+/** Returns the marks of a translation. `pass` is where the bodies have passed each other. */
 export function times(state: State, answer: PageCast | undefined, pass: number): Times {
   const { translation: first, exit, outcome } = answer?.record ?? {};
   const ends = [0, first ?? pass, exit ?? first ?? pass];
@@ -52,7 +52,7 @@ export class Timeline {
     this.slider.max = String(high);
     this.slider.value = String(at);
     this.value.textContent = text;
-    // A thumb's width lies outside of the way of its middle.
+    // The middle of the thumb stays half its width inside the track.
     const place = (t: number) => `calc(8px + (100% - 16px) * ${((t - low) / (high - low)).toFixed(5)})`;
     refill(this.marks,
       ...marks.flatMap(({ t, text, kind }) => [

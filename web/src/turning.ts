@@ -1,8 +1,8 @@
-// Bodies that turn: when they first meet about a hinge or along a screw, asked of a library of its own; handles in
-// the view, a slider in time.
+// Bodies that turn: their first contact about a hinge or along a screw, queried from a library of its own; handles in
+// the view, and a slider over time.
 //
-// Data flow: `State` -> the question, when it is another one -> the library's record, said and drawn; dragging a
-// handle, or a field, changes the state.
+// Data flow: `State` -> the question, if it has changed -> the record of the library, described and drawn. Dragging a
+// handle, or editing a field, changes the state.
 
 import type { PageMotion } from "./answers";
 import { h, refill } from "./dom";
@@ -22,17 +22,17 @@ import type { View } from "./view";
 import type { Drawn } from "./view/body";
 
 const KINDS = ["Hinge", "Screw", "Slide"] as const;
-/** Of a hinge that was a slide. */
+/** Angle of a hinge that was a slide before. */
 const USUAL_ANGLE = 90;
 
-/** What the page does for this part of it. */
+/** The functions of the page that this tab uses. */
 export interface Around {
   view: View;
   sources(): Partial<Record<Slot, Source>>;
   change(change: (state: State) => void): void;
-  /** Something is to be shown anew. */
+  /** Called when the view must be redrawn. */
   shown(): void;
-  /** Another pair of bodies, and what else is another then. */
+  /** Loads another pair of bodies, with other changes of the state. */
   begin(example: string, change: (state: State) => void): Promise<void>;
   copy(text: string | undefined, what: string): void;
 }
@@ -59,7 +59,7 @@ export class Turning {
   private error: string | undefined;
   private took = 0;
   private verdictSaid: { holds: boolean; text: string } | undefined;
-  /** The question, and what it is about, that was asked last. */
+  /** The last question, and the sources that it was about. */
   private asked: [text: string, moving: Source | undefined, fixed: Source | undefined] = ["", undefined, undefined];
   private asking = false;
   private fitted = false;
@@ -75,7 +75,7 @@ export class Turning {
     }, kind));
     this.movers = (["moving", "fixed"] as Slot[]).map((slot) => h("button", {
       class: "small",
-      // What was thought of for the other one stays.
+      // Only a motion that the page chose for the other body is replaced.
       onclick: () => this.around.change((state) => {
         state.motion.body = slot;
         state.motion.screw ??= this.screw ?? null;
@@ -100,8 +100,8 @@ export class Turning {
         h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr" },
           this.angle, this.rise),
         h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr; align-items: end" },
-          h("label", {}, "Gap to be kept", this.number("Gap to be kept", (_, { motion }) => motion.keep, (_, x, { motion }) => (motion.keep = Math.max(0, x)))),
-          h("label", { title: "How deep convex bodies may overlap; by half of it both solids are shrunk, without it as the files ask for" }, "Tolerance (may be empty)",
+          h("label", {}, "Minimum gap", this.number("Minimum gap", (_, { motion }) => motion.keep, (_, x, { motion }) => (motion.keep = Math.max(0, x)))),
+          h("label", { title: "Depth by which convex bodies may overlap. Both solids are shrunk by half of it; the default follows from the files" }, "Tolerance (may be empty)",
             this.number("Tolerance of motions", (_, { tolerance }) => tolerance, (_, x, state) => (state.tolerance = Math.max(0, x)), (state) => (state.tolerance = null)))),
         h("small", { style: "color: var(--soft)" }, "In the view drag the axis, its tip, the end of the way, or the rise. Positive angles turn counter-clockwise as seen against the axis.")),
       h("section", { class: "card" }, h("h3", {}, "Proof"), this.proof,
@@ -127,7 +127,7 @@ export class Turning {
     return input;
   }
 
-  /** Another screw. */
+  /** Sets another screw. */
   private set(change: (screw: Screw, state: State) => Screw) {
     this.around.change((state) => {
       const screw = state.motion.screw ?? this.screw;
@@ -160,7 +160,7 @@ export class Turning {
     this.examples.value = name;
   }
 
-  /** Everything into the picture. */
+  /** Fits everything into the picture. */
   fit(along = false) {
     const bodies = this.bodies();
     if (!bodies || !this.state || !this.screw) return;
@@ -168,7 +168,7 @@ export class Turning {
     this.around.shown();
   }
 
-  /** What the slider shows, while this is what is seen. */
+  /** Returns the marks of the slider if this tab is visible. */
   show(state: State, visible: boolean): Times | undefined {
     this.element.hidden = !visible;
     this.state = state;
@@ -183,7 +183,7 @@ export class Turning {
       this.fitted = true;
       this.fit();
     }
-    // What touches is told by the numbers of the bodies that were asked about.
+    // Highlights use the numbers of the bodies that the question was about.
     const { moving, fixed } = this.around.sources();
     if (moving !== this.asked[1] || fixed !== this.asked[2]) this.answer = undefined;
     void this.ask();
@@ -209,7 +209,7 @@ export class Turning {
     return { moving_pose: poses.moving, fixed_pose: poses.fixed, [`${body}_motion`]: motion, keep, tolerance };
   }
 
-  /** One question is on its way at a time; after it the one that is asked then. */
+  /** Sends a question. One is pending at a time; then the current question is sent. */
   private async ask(): Promise<void> {
     const { state, screw } = this;
     const { moving, fixed } = this.around.sources();
@@ -234,7 +234,7 @@ export class Turning {
     this.around.shown();
   }
 
-  /** The proof, made and checked. */
+  /** Builds the proof and checks it. */
   private async prove() {
     const { answer, asked: [text] } = this;
     if (!answer || !text) return;
@@ -247,7 +247,7 @@ export class Turning {
     } catch (error) {
       verdict = { holds: false, text: `✗ ${error instanceof Error ? error.message : String(error)}` };
     }
-    // Another question may have come.
+    // Another question may have been sent meanwhile.
     if (answer !== this.answer) return;
     this.verdictSaid = verdict;
     this.around.shown();
@@ -266,8 +266,8 @@ export class Turning {
     this.factsCard.hidden = !said.rows.length;
     refill(this.facts, ...said.rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
     this.proof.textContent = solids(state)
-      ? "A list of entries that covers all pairs of facets at all times, made when it is asked for; each is a split, or a plane between two parts for a while."
-      : "Planes between the bodies, each at a time with the gap that it leaves: two of them prove all that lies between their times. At the end stands how deep the bodies overlap at the upper bound.";
+      ? "A list of entries that covers all pairs of facets at all times, built on request. Each entry is a division, or a plane that separates two parts for a time."
+      : "Planes between the bodies, each at a time with the gap that it leaves: two of them prove the times between them. The last entry is the depth of the overlap at the upper bound.";
     this.verdict.className = this.verdictSaid ? `verdict ${this.verdictSaid.holds ? "yes" : "no"}` : "";
     this.verdict.textContent = this.verdictSaid?.text ?? "";
     if (!screw) return;
@@ -299,7 +299,7 @@ export class Turning {
     view.render();
   }
 
-  /** For tests. */
+  /** State for tests. */
   probe() {
     const { engine, answer, screw, asking, state } = this;
     const question = state && screw && this.question(state, screw);
@@ -307,7 +307,7 @@ export class Turning {
   }
 }
 
-/** Whether single precision holds it. */
+/** Checks whether the numbers fit single precision. */
 function drawable({ poses }: State, { point, axis, angle, rise }: Screw): boolean {
   return [...point, ...axis, angle, rise, ...poses.moving, ...poses.fixed, ...placed(poses.moving, point)].every((x) => Math.abs(x) < 1e20);
 }

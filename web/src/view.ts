@@ -1,7 +1,6 @@
-// The view: the bodies, the arrow and the contact in three dimensions. What it shows is made anew with
-// every answer, by the rooms of `view/`: `body`, `contact`, `arrow` and `ground` of what `shapes` has;
-// `framing` says from where it is seen, `overlay` puts words over it, `handles` move bodies, `drawing`
-// makes it a file.
+// The view: the bodies, the arrow and the contact in three dimensions. Its content is rebuilt for every answer, by
+// `body`, `contact`, `arrow` and `ground` with the elements of `shapes` (all in `view/`). `framing` chooses the camera,
+// `overlay` puts labels over the picture, `handles` move bodies, and `drawing` writes a file.
 
 import {
   AmbientLight, type BufferGeometry, Color, DirectionalLight, Group, PerspectiveCamera, Scene, type Vector3, WebGLRenderer,
@@ -24,7 +23,7 @@ import type { Handles, Tool } from "./view/handles";
 import { Overlay } from "./view/overlay";
 import { type Frame, type Label, clear, inPicture } from "./view/shapes";
 
-/** All of an answer; bodies to look through, and what others add; the body that rests, and what others add. */
+/** Everything of an answer; translucent bodies with additions of a tab; or the resting body with additions of a tab. */
 export type Look = "answer" | "ghosts" | "resting";
 
 export class View {
@@ -32,15 +31,15 @@ export class View {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 1e4);
   readonly renderer: WebGLRenderer;
   private readonly orbit: OrbitControls;
-  /** Read when a tool is first taken. */
+  /** Loaded when a tool is first used. */
   private handles: Handles | undefined;
   private reading: Promise<void> | undefined;
   private tool: [Tool, Slot] = ["look", "moving"];
   private readonly overlay: Overlay;
   private readonly ground = new Ground();
-  /** Made anew with every answer. */
+  /** Rebuilt for every answer. */
   private readonly shown = new Group();
-  /** What another part of the page adds. */
+  /** Additions of another tab. */
   readonly extra = new Group();
   readonly frame: Frame = { origin: [0, 0, 0], size: 1, colours: palette() };
   private state: State | undefined;
@@ -48,7 +47,7 @@ export class View {
   private arrow: Arrow | undefined;
   private labels: Label[] = [];
   private look: Look = "answer";
-  /** Words that another part of the page adds. */
+  /** Labels of another tab. */
   extraLabels: Label[] = [];
   private near: Nearness | undefined;
   private fitted = false;
@@ -96,7 +95,7 @@ export class View {
     this.tool = [tool, slot];
     if (!this.handles && tool === "look") return;
     await (this.reading ??= this.makeHandles());
-    // Another one may have been taken meanwhile.
+    // Another tool may have been chosen meanwhile.
     this.handles?.set(...this.tool, this.state);
     this.render();
   }
@@ -107,7 +106,7 @@ export class View {
     this.handles = new Handles({ scene, camera, canvas: this.renderer.domElement, orbit, render }, bodies, frame, (...moved) => this.onPose(...moved));
   }
 
-  /** How far the bodies are apart, as it is to be drawn. */
+  /** Sets the drawing of the distance of the bodies. */
   setNear(near: Nearness | undefined) {
     this.near = near;
   }
@@ -126,7 +125,7 @@ export class View {
     if (this.state) this.show(this.state, this.answer);
   }
 
-  /** Everything into the picture. `along`: seen along the direction. */
+  /** Fits everything into the picture; with `along` in a view along the direction. */
   fit(state: State, answer: PageCast | undefined, along = false) {
     [this.state, this.answer] = [state, answer];
     const { moving, fixed } = this.bodies;
@@ -136,7 +135,7 @@ export class View {
     this.show(state, answer);
   }
 
-  /** Balls into the picture, seen from a side. */
+  /** Fits balls into the picture, in a view from a direction. */
   aimAt(balls: Ball[], from: Vec) {
     this.fitted = true;
     Object.assign(this.frame, extent(balls));
@@ -156,7 +155,7 @@ export class View {
     clear(shown, this.kept());
     if (moving && fixed) {
       if (!drawable(state, answer, moving, fixed)) return this.render();
-      // An address may have begun with what cannot be drawn.
+      // The address may have started with a state that cannot be drawn.
       if (!this.fitted) return this.fit(state, answer);
     }
     const rests = this.look === "resting" ? otherOf(state.motion.body) : "fixed";
@@ -169,7 +168,7 @@ export class View {
     this.render();
   }
 
-  /** Where `t` is, where it starts, where it stops. */
+  /** Draws the moving body at `t`, at its start and at its stop. */
   private addMoving(moving: Drawn, state: State, answer: PageCast | undefined) {
     const { origin, colours } = this.frame;
     const add = (t: number, how: "solid" | "ghost" | "outline") => {
@@ -184,7 +183,7 @@ export class View {
     if (stop !== undefined && Math.abs(stop - t) > 1e-9 * (1 + Math.abs(stop))) add(stop, "ghost");
   }
 
-  /** The contact, or the plane between; the arrow. */
+  /** Draws the contact or the separating plane, and the arrow. */
   private addNotes(state: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn) {
     const { frame, shown } = this;
     const [first, between] = [touch(answer), plane(answer)];
@@ -205,7 +204,7 @@ export class View {
     this.labels.push(this.arrow.label);
   }
 
-  /** The tip of the arrow follows the pointer over a sphere about the moving body. */
+  /** Lets the tip of the arrow follow the pointer over a sphere about the moving body. */
   private arrowDrag(canvas: HTMLCanvasElement) {
     aim(canvas, this.camera, this.orbit, () => this.arrow, (way, done) => {
       const long = length(this.state!.direction);
@@ -214,12 +213,12 @@ export class View {
     });
   }
 
-  /** Where the tip of the arrow is, in pixels of the page: for tests. */
+  /** Returns the tip of the arrow in pixels of the page, for tests. */
   tipOnPage(): [number, number] | undefined {
     return this.arrow && onPage(this.renderer.domElement, this.camera, this.arrow.tip);
   }
 
-  /** What bodies hold stays in the graphics memory. */
+  /** Returns the geometries of the bodies, which stay in the graphics memory. */
   private kept(): Set<BufferGeometry> {
     return new Set(Object.values(this.bodies).flatMap(({ geometry, edges }) => [geometry, edges]));
   }
@@ -229,7 +228,7 @@ export class View {
     this.extraLabels = [];
   }
 
-  /** Half the extent of what is shown. */
+  /** Half the extent of the visible scene. */
   get size(): number {
     return this.frame.size;
   }
@@ -251,7 +250,7 @@ export class View {
     this.render();
   }
 
-  /** The picture as lines and areas: text of an SVG file. */
+  /** Returns the picture as the text of an SVG file. */
   async drawing(): Promise<string> {
     const { drawing } = await import("./view/drawing");
     const { scene, camera, labels, host, frame } = this;
@@ -259,7 +258,7 @@ export class View {
     return drawing({ scene, camera, labels, size: frame.size, wide, high, ground: getComputedStyle(host).backgroundColor, text: frame.colours.text });
   }
 
-  /** The picture as it is shown, on the page's ground. */
+  /** Returns the picture as it is shown, on the page's background. */
   picture(): Promise<Blob> {
     this.renderer.render(this.scene, this.camera);
     const source = this.renderer.domElement;

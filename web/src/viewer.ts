@@ -1,6 +1,6 @@
-// The viewer of an assembly's report: the parts, and how they come apart, step by step.
+// The viewer of an assembly's report: the parts, and the disassembly step by step.
 //
-// A script without modules, put into a page that holds its data: it works from a file, offline.
+// A script without modules in a page with its data, so that it works from a file and offline.
 
 import { type Move, Parts } from "./assembly/parts";
 import { Player } from "./assembly/player";
@@ -11,7 +11,7 @@ interface Data {
   unit: string;
   size: number;
   parts: { name: string; colour: [number, number, number]; fixed: boolean; vertices: string; triangles: string }[];
-  /** `legs`: how the parts are moved in the picture; `moves`: how many of them take the parts out. */
+  /** `legs` has the displacements of parts in the picture; `moves` is the number of those that take the parts out. */
   steps: { parts: number[]; legs: Move; moves: number; along: string; travel: number }[];
 }
 

@@ -1,4 +1,4 @@
-// An answer in words.
+// An answer as text.
 
 import type { Feature, PageCast, PageConvex, PageSolid } from "./answers";
 import { plane, touch } from "./engine";
@@ -6,14 +6,14 @@ import { length, short, shown } from "./math";
 import type { State } from "./state";
 
 export interface Said {
-  /** How it is to be taken: by a colour and a sign. */
+  /** The kind of message, shown by a colour and a sign. */
   kind: "stop" | "free" | "care";
   headline: string;
   sentence: string;
   rows: [string, string][];
 }
 
-/** A feature, by the numbers of its file. */
+/** Describes a feature, with the vertex numbers of its file. */
 export function feature(of: Feature): string {
   const { length } = of.vertices;
   const list = length > 8 ? `${of.vertices.slice(0, 8).join(" ")} … (${length} in all)` : of.vertices.join(" ");
@@ -21,7 +21,7 @@ export function feature(of: Feature): string {
   return of.kind === "edge" ? `edge ${of.vertices.join("–")}` : `face of vertices ${list}`;
 }
 
-/** A number that is not beyond a limit: a few digits where they are not, else a dozen, rounded down. */
+/** Formats a number without exceeding a limit: with a few digits if they do not exceed it, otherwise a dozen, rounded down. */
 function within(x: number, limit: number): string {
   const text = short(x);
   if (Number(text.replace("−", "-")) <= limit) return text;
@@ -29,7 +29,7 @@ function within(x: number, limit: number): string {
   return short(Math.floor(limit / step) * step, 12);
 }
 
-/** A translation up to a limit, and as a length where that is another number. */
+/** Formats a translation up to a limit, and as a length if that is another number. */
 function way(t: number, limit: number, state: State): string {
   const l = length(state.direction);
   const far = within(t, limit);
@@ -50,7 +50,7 @@ function convex(answer: PageConvex, state: State): Said {
     return {
       kind: "free",
       headline: "They never meet",
-      sentence: `Along d the bodies pass each other; a plane lies between their ways, at least ${short(between?.margin ?? 0)} wide.`,
+      sentence: `The bodies pass each other along d; the gap between their shadows is at least ${short(between?.margin ?? 0)} wide.`,
       rows: [["margin", short(between?.margin ?? 0, 12)], ["plane's normal", shown(between?.normal ?? [0, 0, 0])]],
     };
   }
@@ -69,9 +69,9 @@ function convex(answer: PageConvex, state: State): Said {
   if (record.outcome === "grazing") {
     return {
       kind: "care",
-      headline: "They slide along each other",
+      headline: "The bodies slide along each other",
       sentence:
-        `Their shadows overlap by ${short(record.overlap ?? 0)}, no more than the graze tolerance: nothing blocks. ` +
+        `Their shadows overlap by ${short(record.overlap ?? 0)}, at most the graze tolerance, so nothing blocks. ` +
         `If the overlap were real, they would touch at t = ${short(first.t)}.`,
       rows: [["sideways overlap", short(record.overlap ?? 0, 6)], ...rows],
     };
@@ -79,7 +79,7 @@ function convex(answer: PageConvex, state: State): Said {
   if (clearance.outcome === "behind") {
     return {
       kind: "free",
-      headline: "The contact lies behind",
+      headline: "The contact is behind the body",
       sentence: `Nothing stops the moving body ahead; the bodies meet from t = ${short(first.t)} to ${short(record.exit ?? first.t)}.`,
       rows,
     };
@@ -105,16 +105,16 @@ const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 function solid(answer: PageSolid, state: State): Said {
   const { tolerance: used = 0, exit_bounds: [, gone] = [0, 0], surfaces = [], ...record } = answer.record;
   const tolerance: [string, string] = ["tolerance", short(used, 3)];
-  const exit: [string, string][] = gone === null || gone <= 0 ? [] : [["parted for good after t", String(gone)]];
-  const open: [string, string][] = surfaces.length ? [["open surface", `${surfaces.join(" and ")}: blocks from both sides, rims included`]] : [];
+  const exit: [string, string][] = gone === null || gone <= 0 ? [] : [["no contact after t", String(gone)]];
+  const open: [string, string][] = surfaces.length ? [["open surface", `${surfaces.join(" and ")}: blocks from both sides, including its boundary`]] : [];
   const [first, margin] = [touch(answer), plane(answer)?.margin];
   if (record.outcome === "free") {
     return {
       kind: "free",
       headline: "Nothing stops it",
       sentence: margin
-        ? `The moving body can go as far as it likes: a plane along d lies between the bodies, with a gap of at least ${short(margin)}.`
-        : "The moving body can go as far as it likes.",
+        ? `The moving body can move without limit: a plane parallel to d separates the bodies, with a gap of at least ${short(margin)}.`
+        : "The moving body can move without limit.",
       rows: [...(margin ? [["margin", short(margin, 9)] as [string, string]] : []), ...exit, tolerance, ...open],
     };
   }
@@ -122,12 +122,12 @@ function solid(answer: PageSolid, state: State): Said {
     const depth = record.start_overlaps?.[0].least_tolerance ?? null;
     return {
       kind: "care",
-      headline: "They overlap where they are",
+      headline: "The bodies overlap at the start",
       sentence:
         depth === null
           ? surfaces.length
-            ? "A surface passes through what is there: less of the other body would not free it."
-            : "One body lies in the other, deeper than any tolerance reaches."
+            ? "A surface passes through the other body; no tolerance frees it."
+            : "One body is inside the other, deeper than any tolerance reaches."
           : depth < used
           ? `With a tolerance of ${short(depth)} they would not: one of ${short(used)} is more than the bodies are thick, and turns them inside out.`
           : `With a tolerance of ${short(depth)} they would not: that is how deep they are in each other.`,
@@ -141,7 +141,7 @@ function solid(answer: PageSolid, state: State): Said {
     sentence: `Free for ${way(Math.max(first.t, 0), shrunk, state)}; then ${kind(first.features.moving)} of the moving body meets ${kind(first.features.fixed)} of the fixed one.`,
     rows: [
       ["safe for t up to", String(record.distance)],
-      ["t, bodies as they are", short(first.t, 12)],
+      ["t, nominal bodies", short(first.t, 12)],
       ["proven", proven(record.translation_bounds)],
       ["t, bodies shrunk", short(record.shrunk_distance ?? first.t, 12)],
       ["proven", proven(record.shrunk_distance_bounds)],

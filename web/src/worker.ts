@@ -1,4 +1,4 @@
-// The worker: holds a library, the one that its name tells; answers one question after the other.
+// The worker: loads the library that its name specifies, and answers one question after the other.
 
 interface Library {
   memory: WebAssembly.Memory;
@@ -24,7 +24,7 @@ async function load(): Promise<Library> {
   const file = `${self.name}.wasm`;
   const response = await fetch(new URL(file, import.meta.url));
   if (!response.ok) throw new Error(`${file}: ${response.status} ${response.statusText}`);
-  // Not streamed: static servers are not agreed on the type of such files.
+  // Not streamed, because static servers disagree about the content type of such files.
   const { instance } = await WebAssembly.instantiate(await response.arrayBuffer());
   return instance.exports as unknown as Library;
 }
@@ -52,7 +52,7 @@ self.onmessage = async ({ data }: MessageEvent<Asked>) => {
   self.postMessage({ id: data.id, text, numbers, took }, { transfer: [numbers] });
 };
 
-/** Mostly that a file is too large for 32-bit memory. */
+/** The usual reason is that a file is too large for 32-bit memory. */
 function why(loaded: Library, error: unknown): string {
   const words = new Uint8Array(loaded.memory.buffer, loaded.last_words(), loaded.last_words_length());
   const said = new TextDecoder().decode(words) || String(error);
@@ -66,7 +66,7 @@ function answer(loaded: Library, { text, file }: Asked): [string, ArrayBuffer] {
   memory.set(question);
   if (file) memory.set(new Uint8Array(file), question.length);
   loaded.ask(question.length);
-  // Growing moves the memory: it is looked up again.
+  // The memory may have moved when it grew, so its buffer is looked up again.
   const { buffer } = loaded.memory;
   const at = loaded.text();
   const said = new Uint8Array(buffer, at, loaded.text_length());

@@ -141,7 +141,7 @@ test("numbers can be typed, and the proof is checked", async () => {
 test("a proof between solids is shown, checked, and no proof of anything else", async () => {
   await asked("#example=plate");
   await page.waitForSelector(".claims");
-  assert.match(await page.textContent(".claims"), /their shadows are apart/);
+  assert.match(await page.textContent(".claims"), /their shadows are disjoint/);
   await page.click("text=Verify");
   await page.waitForSelector(".verdict.yes");
   assert.match(await page.textContent(".verdict"), /entries checked/);

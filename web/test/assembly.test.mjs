@@ -111,7 +111,7 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
   const direction = await page.inputValue('[aria-label="Direction x of the assembly"]');
   assert.notEqual(Number(direction), 0);
   await page.click(".part:has-text('bolt_2')");
-  assert.match(await page.textContent(".part:has-text('bolt_2') small"), /^In its way: .*cover/);
+  assert.match(await page.textContent(".part:has-text('bolt_2') small"), /^Blocked by: .*cover/);
   await page.waitForSelector(".sphere");
   assert.match(await page.textContent(".assembly-panel"), /bolt_2 is free only in 1 single direction/);
   // The middle of the sphere is the way to the eye; the button, the tight fit.
@@ -148,7 +148,7 @@ test("d starts along what frees most; the whole is no group; what overlaps comes
   // Up they hold each other: the two together are all there is.
   await page.click(".assembly-panel button:text-is('+z') >> nth=-1");
   await page.waitForSelector("#assembly-headline:text-is('No part comes out alone along d')");
-  assert.match(await page.textContent(".assembly-panel .said"), /Everything is in the way of something/);
+  assert.match(await page.textContent(".assembly-panel .said"), /Every part is blocked/);
   assert.equal(await page.locator(".assembly-panel .said.stop").count(), 1);
   // Drawn into each other: that comes first, and is not good news.
   await drop(page, ".assembly-stage", { "tray.off": tray, "cube.off": boxes([[2, 2, 0.75], [4, 4, 4]]) });

@@ -17,7 +17,7 @@ const steps = (page) => page.locator('.found [aria-label="Steps"] button').count
 
 /** One of the things to look at, once it is shown. */
 async function look(page, k, example) {
-  await page.selectOption('[aria-label="What to look at"]', String(k));
+  await page.selectOption('[aria-label="Example of a search"]', String(k));
   await page.waitForFunction((name) => document.querySelector("#example").value === name, example);
   await page.waitForSelector(".found:not([aria-busy])");
 }

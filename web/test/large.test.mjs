@@ -115,7 +115,7 @@ test("a file beyond the limit is refused before it is read", async () => {
   await at.ask(page);
   await choose(page, "fixed", file);
   await page.waitForSelector(".refused");
-  assert.match(await page.textContent(".refused"), /^huge\.stl: 401 MiB; a page takes files up to 400 MiB, the command line larger ones/);
+  assert.match(await page.textContent(".refused"), /^huge\.stl: 401 MiB; the page accepts up to 400 MiB; use the command line for larger files/);
   assert.equal(await page.locator("#headline").count(), 0);
   await page.click("text=Leave it");
   await page.waitForSelector("#headline:text-is('Contact at t = 4.31674')");

@@ -19,7 +19,7 @@ test("it is read when it is asked for, said, drawn, and goes again", async () =>
   assert.ok(!page.read.some((url) => url.includes("colltrans_distance")));
   await page.click("text='Distance'");
   await page.waitForSelector("#near");
-  assert.equal(await page.textContent("#near"), "Where they are, they are 3.96811 apart.");
+  assert.equal(await page.textContent("#near"), "At their poses they are 3.96811 apart.");
   await page.waitForFunction(() => [...document.querySelectorAll(".labels span")].some((span) => span.textContent === "3.96811"));
   const rows = await page.$$eval("dt", (all) => all.map((dt) => dt.textContent));
   assert.deepEqual(rows.slice(0, 4), ["distance now", "proven", "moving, nearest", "fixed, nearest"]);
@@ -38,7 +38,7 @@ test("it follows the bodies, into each other too", async () => {
   await page.fill('[aria-label="moving position z"]', "4");
   await page.fill('[aria-label="moving position x"]', "2");
   await page.waitForFunction(() => window.colltrans.probe().near?.depth?.outcome === "overlapping");
-  assert.match(await page.textContent("#near"), /^Where they are, they overlap: the shortest way out is [\d.]+ long\.$/);
+  assert.match(await page.textContent("#near"), /^At their poses they overlap: the shortest way out is [\d.]+ long\.$/);
   await page.waitForFunction(() => [...document.querySelectorAll(".labels span")].some((span) => /^depth /.test(span.textContent)));
   // Another body, and another kind.
   await page.selectOption("#example", "shaft");

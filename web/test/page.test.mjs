@@ -70,7 +70,7 @@ test("a bad file gives its message, one that is not convex two ways on", async (
   await page.waitForFunction(() => document.querySelector("#headline")?.textContent === "Contact at t = 4.31674");
   await choose({ name: "bracket.off", mimeType: "", buffer: Buffer.alloc(0) });
   await page.waitForSelector(".refused");
-  assert.match(await page.textContent(".refused"), /^bracket\.off: it is empty/);
+  assert.match(await page.textContent(".refused"), /^bracket\.off: the file is empty/);
   await choose(join(data, "plate.off"));
   await page.waitForSelector("text=As a solid");
   assert.match(await page.textContent(".refused"), /not convex|topolog|sphere|genus|hole/i);
@@ -205,7 +205,7 @@ test("without WebGL it says so", async () => {
   const without = await launchPlain();
   const page = watch(await without.newPage());
   await page.goto(at.base);
-  await page.waitForSelector("text=draws with WebGL 2");
+  await page.waitForSelector("text=needs WebGL 2");
   assert.equal(await headline(page), "Contact at t = 4.31674");
   await page.fill('[aria-label="moving position z"]', "12.5");
   await page.waitForFunction(() => window.colltrans.probe().answer?.record.translation > 7);

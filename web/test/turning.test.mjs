@@ -132,7 +132,7 @@ test("handles: the angle, the axis, its point and the rise are dragged", async (
 
 test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps are kept", async () => {
   await example("bolt", "free");
-  assert.equal(await headline(), "It goes all the way");
+  assert.equal(await headline(), "The whole motion is free");
   await page.click(".turning button:text-is('Verify')");
   await page.waitForSelector(".turning .verdict:has-text('nothing on the whole way')");
   await example("askew", "contact");
@@ -147,9 +147,9 @@ test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps
     return !asking && answer?.record.time?.lower;
   });
   const before = (await probe()).answer.record.time.lower;
-  await page.fill('[aria-label="Gap to be kept"]', "1");
+  await page.fill('[aria-label="Minimum gap"]', "1");
   await page.waitForFunction((before) => window.colltrans.probe().turning.answer?.record.time?.lower < before, before);
-  await page.fill('[aria-label="Gap to be kept"]', "0");
+  await page.fill('[aria-label="Minimum gap"]', "0");
   // Into each other from the start; free the other way round.
   await page.fill('[aria-label="Angle"]', "-20");
   await outcome("free");

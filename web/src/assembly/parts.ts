@@ -1,4 +1,4 @@
-// The parts of an assembly in three dimensions, about its middle.
+// The parts of an assembly in three dimensions, relative to its middle.
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
@@ -12,18 +12,18 @@ import type { Vec } from "../math";
 export interface Part {
   name: string;
   colour: Vec;
-  /** About the middle of the assembly. */
+  /** Relative to the middle of the assembly. */
   vertices: Float32Array;
   triangles: Uint32Array;
 }
 
-/** Moves one after another, each of parts that move together; `way`: how far they are moved in the picture. */
+/** Consecutive moves, each of parts that move together. `way` is their displacement in the picture. */
 export type Move = { parts: number[]; way: Vec; turn?: Turn }[];
 
-/** What turns about an axis meanwhile: from `own` it is put on a `point` of the axis; angles are in turns. */
+/** A rotation about an axis during a move: the part is shifted by `own`, so that its axis is on `point`. Angles are in turns. */
 export type Turn = { own: Vec; point: Vec; axis: Vec; phase: number; turns: number };
 
-/** A colour for each part, spread by the golden angle; in a report, parts of one shape share one. */
+/** Returns a colour for each part, spread by the golden angle. In a report parts of one shape share a colour. */
 export function tint(part: number): Vec {
   const hue = (part * 0.381966011250105 + 0.58) % 1;
   const channel = (shift: number) => {
@@ -42,7 +42,7 @@ export class Parts {
   private readonly name = h("div", { class: "name", hidden: true });
   private names: string[] = [];
   private lit = -1;
-  /** Of the assembly as it belongs together, and of what the picture is wide enough for. */
+  /** Size of the assembled parts, and size for which the picture is wide enough. */
   private size = 1;
   private extent = 1;
   onClick: (part: number) => void = () => {};
@@ -66,7 +66,7 @@ export class Parts {
     canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
     canvas.addEventListener("click", (event) => {
       this.light(this.under(event));
-      // A drag ends with a click too.
+      // A drag ends with a click event too.
       if (Math.hypot(event.clientX - down[0]!, event.clientY - down[1]!) < 5) this.onClick(this.lit);
     });
     new ResizeObserver(() => this.resize()).observe(view);
@@ -92,7 +92,7 @@ export class Parts {
     this.resize();
   }
 
-  /** Everything into the picture, with what has been moved by now. */
+  /** Fits everything into the picture, including parts that have been moved. */
   fit() {
     const far = (1.6 * this.extent) / 2 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
     this.camera.position.set(0.62, -0.68, 0.45).normalize().multiplyScalar(far);
@@ -117,7 +117,7 @@ export class Parts {
     this.parts.push({ group, material, line });
   }
 
-  /** Everything where it is after `t` of the moves. */
+  /** Places all parts after `t` of the moves. */
   place(moves: Move[], t: number) {
     for (const { group } of this.parts) {
       group.position.set(0, 0, 0);
@@ -125,7 +125,7 @@ export class Parts {
     }
     moves.forEach((legs, k) => legs.forEach(({ parts, way, turn }, leg) => {
       const share = Math.min(1, Math.max(0, (t - k) * legs.length - leg));
-      // Slow at either end.
+      // Slow at both ends.
       const eased = share * share * (3 - 2 * share);
       for (const part of parts) {
         const group = this.parts[part]?.group;
@@ -141,7 +141,7 @@ export class Parts {
     this.render();
   }
 
-  /** What is moved out stays in the picture: from however far one looks, farther by as much as it takes. */
+  /** Keeps moved parts in the picture: increases the distance of the camera as needed. */
   private widen() {
     const moved = Math.max(0, ...this.parts.map(({ group }) => group.position.length()));
     const extent = Math.max(this.size, 1.6 * moved + this.size / 2);
@@ -152,11 +152,11 @@ export class Parts {
     orbit.update();
   }
 
-  /** How each part is shown: in full, or pale. */
+  /** Shows each part opaque or pale. */
   fade(pale: (part: number) => boolean) {
     this.parts.forEach(({ material, line }, k) => {
       const faded = pale(k);
-      // Its program is another one.
+      // The change of transparency needs another shader program.
       if (material.transparent !== faded) material.needsUpdate = true;
       material.transparent = faded;
       material.opacity = faded ? 0.22 : 1;
@@ -172,7 +172,7 @@ export class Parts {
     return hit ? meshes.indexOf(hit.object) : -1;
   }
 
-  /** Lights a part up and shows its name; -1: none. */
+  /** Highlights a part and shows its name; -1 for none. */
   light(part: number) {
     if (part === this.lit) return;
     this.lit = part;

@@ -1,4 +1,4 @@
-// The slider over the steps of a plan, and what each of them is.
+// The slider over the steps of a plan, with a description of each step.
 
 import { h } from "../dom";
 
@@ -11,7 +11,7 @@ export class Player {
   private idle = "";
   private running = 0;
 
-  /** `move`: what is shown at a step, between whole numbers on the way to the next. */
+  /** `move` shows a position: the number of finished steps, with a fraction for the current one. */
   constructor(private readonly move: (t: number) => void) {
     const jump = (by: 1 | -1) => () => {
       const t = this.t;
@@ -27,7 +27,7 @@ export class Player {
     this.play.addEventListener("click", () => (this.running ? this.stop() : this.start()));
   }
 
-  /** Another plan: what each step is, and what is said before the first. */
+  /** Shows another plan: the descriptions of its steps, and the text before the first one. */
   show(steps: string[], idle: string) {
     this.stop();
     [this.steps, this.idle] = [steps, idle];
@@ -41,7 +41,7 @@ export class Player {
     return this.steps.length ? this.slider.valueAsNumber : 0;
   }
 
-  /** At once. */
+  /** Jumps to a position. */
   set(t: number) {
     this.stop();
     this.slider.value = String(t);
@@ -54,7 +54,7 @@ export class Player {
     this.move(this.t);
   }
 
-  /** To a step, however far it is, while one looks. */
+  /** Animates to a step. */
   go(t: number, ms = Math.min(1800, this.lasts(t))) {
     this.stop();
     const from = this.t;
@@ -69,7 +69,7 @@ export class Player {
     this.running = requestAnimationFrame(move);
   }
 
-  /** Milliseconds for all steps on the way to one, each to be seen. */
+  /** Returns the duration of an animation to a step in milliseconds, with time for every step in between. */
   private lasts(t: number): number {
     return 900 * Math.max(Math.abs(t - this.t), 0.3);
   }

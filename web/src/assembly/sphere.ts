@@ -1,5 +1,5 @@
-// The removal map of some parts: how far they can go in every direction, on a sphere that turns with
-// the view and is clicked into. What is free is drawn with its exact borders, if these are told.
+// The removal map of a group: its free travel in every direction, on a sphere that turns with the view and can be
+// clicked. Free regions are drawn with exact borders if these are known.
 
 import { type Camera, Vector3 } from "three";
 import type { PageMap } from "../answers";
@@ -8,17 +8,17 @@ import { h } from "../dom";
 import { type Vec, dot, unit } from "../math";
 
 export interface RemovalMap extends Omit<PageMap, "directions" | "triangles"> {
-  /** Three numbers each. */
+  /** Three numbers for each direction. */
   directions: Float32Array;
-  /** Infinite where nothing is in the way. */
+  /** The free travel; infinite if nothing blocks. */
   distances: Float32Array;
-  /** Corners are directions. */
+  /** Corners are indices of directions. */
   triangles: Uint32Array;
 }
 
 const SIZE = 300;
 const RADIUS = SIZE / 2 - 8;
-/** Sides are drawn in so many steps. */
+/** Number of segments in which a side is drawn. */
 const SIDE = 6;
 
 const green = (dark: boolean) => (dark ? "#35d6a6" : "#12a37c");
@@ -29,7 +29,7 @@ export class Sphere {
     "aria-label": "Removal map: click for a direction, arrow keys turn the one that is chosen",
   });
   private map: RemovalMap | undefined;
-  /** The farthest that is not free. */
+  /** The largest finite travel. */
   private farthest = 1;
   private chosen: Vec = [0, 0, 1];
   private right: Vec = [1, 0, 0];
@@ -52,7 +52,7 @@ export class Sphere {
       event.preventDefault();
       const step = event.shiftKey ? 0.02 : 0.1;
       const [x, y] = turn;
-      // Known at once: the next key may come before the next frame.
+      // Set at once, because the next key may come before the next frame.
       this.chosen = unit([0, 1, 2].map((k) => this.chosen[k]! + step * (x * this.right[k]! + y * this.up[k]!)) as Vec);
       this.onDirection(this.chosen);
     });
@@ -62,7 +62,7 @@ export class Sphere {
     return [0, 1, 2].map((k) => x * this.right[k]! + y * this.up[k]! + z * this.towards[k]!) as Vec;
   }
 
-  /** An isolated direction that a click all but hits is meant. */
+  /** Snaps to an isolated direction that a click nearly hits. */
   private near(d: Vec): Vec {
     const close = this.map?.isolated.filter((v) => dot(v, d) > 0.996);
     return close?.sort((a, b) => dot(b, d) - dot(a, d))[0] ?? d;
@@ -74,7 +74,7 @@ export class Sphere {
     this.draw();
   }
 
-  /** As the camera stands now. */
+  /** Draws the sphere for the current camera. */
   draw() {
     const { map } = this;
     const axis = (x: number, y: number, z: number): Vec => new Vector3(x, y, z).applyQuaternion(this.camera.quaternion).toArray() as Vec;
@@ -117,7 +117,7 @@ export class Sphere {
     context.stroke();
     for (const d of map.isolated) this.dot(context, d, 5, colours.plane, colours.text);
     this.dot(context, this.chosen, 7, "rgba(0,0,0,0)", colours.normal, 3);
-    // To be read on light and on dark, and beside a dot.
+    // Legible on light and dark ground, and next to a dot.
     [context.fillStyle, context.strokeStyle, context.lineWidth] = ["#fff", "rgba(0,0,0,0.65)", 3];
     context.lineJoin = "round";
     context.font = "12px sans-serif";
@@ -129,7 +129,7 @@ export class Sphere {
     }
   }
 
-  /** An arc, by directions along it, as far as it is in front. */
+  /** Draws the visible part of an arc, given by directions along it. */
   private line(context: CanvasRenderingContext2D, along: Vec[]) {
     context.lineWidth = 3;
     context.beginPath();
@@ -145,7 +145,7 @@ export class Sphere {
     context.stroke();
   }
 
-  /** A convex piece, as far as it is in front; its sides are parts of great circles. */
+  /** Draws the visible part of a convex piece, whose sides are parts of great circles. */
   private fill(context: CanvasRenderingContext2D, corners: Vec[]) {
     const outline = corners.flatMap((a, k) => {
       const b = corners[(k + 1) % corners.length]!;
@@ -154,7 +154,7 @@ export class Sphere {
     if (outline.every(([, , z]) => z < 0)) return;
     context.beginPath();
     for (const [x, y, z] of outline) {
-      // What lies behind is on the rim.
+      // Points behind the sphere are moved to its outline.
       const s = z < 0 ? RADIUS / (Math.hypot(x - SIZE / 2, y - SIZE / 2) || 1) : 1;
       context.lineTo(SIZE / 2 + s * (x - SIZE / 2), SIZE / 2 + s * (y - SIZE / 2));
     }
@@ -167,7 +167,7 @@ export class Sphere {
     return [SIZE / 2 + RADIUS * dot(d, this.right), SIZE / 2 - RADIUS * dot(d, this.up), dot(d, this.towards)];
   }
 
-  /** What lies behind is drawn pale. */
+  /** Draws a dot; pale if it is behind the sphere. */
   private dot(context: CanvasRenderingContext2D, d: Vec, radius: number, fill: string, line: string, width = 1.2) {
     const [x, y, z] = this.place(d);
     context.globalAlpha = z < 0 ? 0.35 : 1;
@@ -179,7 +179,7 @@ export class Sphere {
     context.globalAlpha = 1;
   }
 
-  /** Green where all corners are free, if nothing better is known; else the lighter, the farther, by lightness alone. */
+  /** Returns a colour: green if all corners are free and no exact borders are known, otherwise lighter for larger travel. */
   private tint(far: number[], dark: boolean, exact: boolean): string {
     const free = far.filter((x) => x === Infinity).length;
     if (free === far.length && !exact) return green(dark);

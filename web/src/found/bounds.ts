@@ -1,4 +1,4 @@
-// What is proven after each step: the lower and the upper bound.
+// The proven lower and upper bound after each step.
 
 import { palette } from "../colours";
 import { refill, svg } from "../dom";
@@ -12,7 +12,7 @@ export class Bounds {
   readonly element = svg("svg", { class: "figure bounds-over-steps", viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": "Lower and upper bound over the steps" });
   onStep: (step: number) => void = () => {};
 
-  /** Values are lengths; `unit` is that of the direction. */
+  /** Shows the bounds. Values are lengths; `unit` is the length of the direction. */
   show({ steps }: Minimisation, step: number, answer: number | undefined, unit: number) {
     const colours = palette();
     const known = steps.map(({ cut, solved, shifted }) => cut ?? (solved ? { lower: shifted, upper: shifted } : undefined));
@@ -23,7 +23,7 @@ export class Bounds {
     const x = (k: number) => LEFT + ((k + 0.5) / steps.length) * (WIDE - LEFT - RIGHT);
     const y = (v: number) => HIGH - FOOT - ((Math.min(Math.max(v, low - room), high + room) - low + room) / (high - low + 2 * room || 1)) * (HIGH - TOP - FOOT);
     const marks: Element[] = [svg("line", { x1: LEFT, x2: WIDE - RIGHT, y1: HIGH - FOOT, y2: HIGH - FOOT, stroke: colours.grid, "stroke-width": 1 })];
-    if (!all.length) return refill(this.element, svg("text", { x: LEFT, y: HIGH / 2, "font-size": 12, fill: colours.text }, "No value was found: nothing is bounded."));
+    if (!all.length) return refill(this.element, svg("text", { x: LEFT, y: HIGH / 2, "font-size": 12, fill: colours.text }, "No value was found, so there are no bounds."));
     if (answer !== undefined) {
       const at = y(answer * unit);
       marks.push(svg("line", { x1: LEFT, x2: WIDE - RIGHT, y1: at, y2: at, stroke: colours.normal, "stroke-width": 1.2, "stroke-dasharray": "5 4" }));
@@ -38,7 +38,7 @@ export class Bounds {
     curve((one) => one.lower, colours.plane, "lower");
     const now = known[step];
     marks.push(svg("line", { x1: x(step), x2: x(step), y1: TOP - 4, y2: HIGH - FOOT, stroke: colours.text, "stroke-width": 1, "stroke-opacity": 0.5 }));
-    // Every step, as far as the numbers have room.
+    // Label every step if there is room.
     const every = Math.ceil(steps.length / 16);
     steps.forEach((_, k) => {
       if (k % every === 0 || k === steps.length - 1) marks.push(svg("text", { x: x(k), y: HIGH - 7, "font-size": 11, "text-anchor": "middle", fill: colours.text, "font-weight": k === step ? 700 : 400 }, String(k + 1)));

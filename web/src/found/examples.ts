@@ -1,18 +1,18 @@
-// What to look at: an example with many steps, and one for each of the paper's figures 1 to 10.
+// Examples to show: one with many steps, and one for each of the paper's figures 1 to 10.
 
 export interface Look {
   name: string;
   /** One of the page's examples. */
   example: string;
-  /** The paper's figure and section, if it is about one. */
+  /** Figure and section of the paper, if the example is about one. */
   figure?: string;
   text: string;
-  /** What is shown: the moment before which everything has happened; the graph as contours, or as a surface. */
+  /** The moment that is shown (everything before it has happened), and whether the graph has contours or is a surface. */
   at: "start" | "first touch" | "first shift" | "second step" | "end";
   surface?: boolean;
-  /** In the whole of the levels, or following what is left of them. */
+  /** Whether to show all levels instead of the remaining region. */
   whole?: boolean;
-  /** The sort of planar problem that is looked for. */
+  /** The kind of planar problem to search for. */
   touch?: "edges" | "vertex" | "separated";
   start?: "region";
 }

@@ -1,5 +1,5 @@
-// The graph of `phi` over pairs of levels: contours of the part that is left, or a surface to turn; with the steps
-// upon it.
+// The graph of `phi` over pairs of levels: contours of the remaining region, or a surface that can be turned, with the
+// steps on it.
 
 import { palette } from "../colours";
 import { h, refill, svg } from "../dom";
@@ -10,30 +10,30 @@ const SIZE = 340;
 const EDGE = 42;
 const INNER = SIZE - EDGE - 10;
 
-/** A part of the levels. */
+/** A rectangle of levels. */
 export type Window = [Two, Two];
 
 export interface Grid {
-  /** Where it is, and how many levels of either body. */
+  /** Its position, and the number of levels of each body. */
   window: Window;
   count: number;
-  /** By moving level, then fixed level; not a number where sections miss each other. */
+  /** Values by moving level, then fixed level; NaN if the sections miss each other. */
   values: Float64Array;
 }
 
-/** What is seen of a search. */
+/** The visible state of a search. */
 export interface Scene {
   found: Minimisation;
   step: number;
-  /** How much has happened in the step: what is drawn of the shift, and of the cut. */
+  /** Progress of the step, for drawing the shift and the cut. */
   shift: number;
   cut: number;
   window: Window;
-  /** Those behind come first. */
+  /** In drawing order, the back ones first. */
   grids: Grid[];
 }
 
-/** A word beside a point, which is left out where it would cover another. */
+/** A label next to a point; it is omitted if it would cover another one. */
 interface Word {
   at: Two;
   text: string;
@@ -80,7 +80,7 @@ export class Graph {
     });
   }
 
-  /** Contours, or the surface. */
+  /** Selects contours or the surface. */
   choose(surface: boolean) {
     this.surface = surface;
     this.contours.setAttribute("aria-pressed", String(!surface));
@@ -107,7 +107,7 @@ export class Graph {
         ...(scene.found.square ? [sign(colours.fixedMark, "N(p)")] : [])]));
   }
 
-  /** From a level of either body to the picture. */
+  /** Maps a pair of levels to the picture. */
   private place([[a, c], [b, d]]: Window): (p: Two) => Two {
     return ([x, y]) => [EDGE + ((x - a) / (b - a)) * INNER, 10 + INNER - ((y - c) / (d - c)) * INNER];
   }
@@ -136,7 +136,7 @@ export class Graph {
     const now = found.steps[step];
     if (now) {
       const next = found.steps[step + 1]?.region ?? (now.cut ? found.region : now.region);
-      // All around what is left has been cut off.
+      // Everything outside the remaining region has been cut off.
       const ring = [...now.region].reverse().map((p) => place(p).map((x) => x.toFixed(1)).join(" ")).join("L");
       if (ring) inner.push(svg("path", { d: `M0 0H${SIZE}V${SIZE}H0ZM${ring}Z`, "fill-rule": "evenodd", fill: lost, "fill-opacity": 0.5 }));
       if (now.cut && cut > 0) {
@@ -194,7 +194,7 @@ export class Graph {
     refill(this.marks, clip, svg("g", { "clip-path": "url(#levels)" }, ...inner), svg("rect", { x: EDGE, y: 10, width: INNER, height: INNER, fill: "none", stroke: colours.text, "stroke-opacity": 0.5, "pointer-events": "none" }), ...marks);
   }
 
-  /** Words beside their points, on the first of four sides that is free; none where none is. */
+  /** Places labels next to their points, on the first free side of four; omits a label if no side is free. */
   private lay(words: Word[], dots: Two[], text: (x: number, y: number, what: string, more: Record<string, string>) => void) {
     const taken = dots.map(([x, y]): [number, number, number, number] => [x - 4, y - 4, x + 4, y + 4]);
     for (const { at: [x, y], text: what, bold, italic } of words) {
@@ -209,18 +209,18 @@ export class Graph {
     }
   }
 
-  /** Where the line across a gradient through a point leaves the picture. */
+  /** Returns where the line through a point, perpendicular to a gradient, leaves the picture. */
   private chord(gradient: Two, at: Two, window: Window): Two[] {
     const place = this.place(window);
     const [x, y] = place(at);
     const [[a, c], [b, d]] = window;
-    // The line runs across the gradient; the picture stretches both axes by themselves.
+    // The line is perpendicular to the gradient in levels; the picture scales both axes separately.
     const way: Two = [-gradient[1] / (b - a), -gradient[0] / (d - c)];
     const l = Math.hypot(...way);
     return l > 0 ? [[x - (way[0] / l) * 500, y - (way[1] / l) * 500], [x + (way[0] / l) * 500, y + (way[1] / l) * 500]] : [];
   }
 
-  /** Down the gradient. */
+  /** Draws an arrow down the gradient. */
   private arrow(place: (p: Two) => Two, at: Two, gradient: Two, [[a, c], [b, d]]: Window, colour: string): SVGElement[] {
     const [u, v] = [gradient[0] / (d - c), gradient[1] / (b - a)];
     const l = Math.hypot(u, v);
@@ -260,14 +260,14 @@ export class Graph {
     context.beginPath();
     const lines = 14;
     for (let k = 1; k < lines; k++) {
-      // Closer to each other near the least value.
+      // Contours are denser near the minimum.
       const value = low + (high - low) * (k / lines) ** 1.6;
       for (let i = 0; i + 1 < count; i++) for (let j = 0; j + 1 < count; j++) this.crossings(context, at, [i, j], value, (u, v) => [left + u * wide, foot - v * tall]);
     }
     context.stroke();
   }
 
-  /** A contour through the square between four middles of cells. */
+  /** Draws a contour through the square between four centres of cells. */
   private crossings(context: CanvasRenderingContext2D, at: (i: number, j: number) => number, [i, j]: Two, value: number, place: (u: number, v: number) => Two) {
     const corners: [number, number][] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
     const heights = corners.map(([a, b]) => at(a, b));
@@ -286,7 +286,7 @@ export class Graph {
     }
   }
 
-  /** The convex function itself: what the minimisation goes down. */
+  /** Draws the convex function that the minimisation descends, as a surface. */
   private drawSurface({ found, step, grids }: Scene) {
     const grid = grids.at(-1);
     const colours = palette();
@@ -349,7 +349,7 @@ export class Graph {
   }
 }
 
-/** From the least value, dark, to the largest, pale; by lightness, so that everybody tells them apart. */
+/** Returns a colour from dark (minimum) to pale (maximum); it varies in lightness, so that everyone can distinguish the values. */
 function tint(share: number, dark: boolean): string {
   const s = Math.sqrt(Math.min(1, Math.max(0, share)));
   return dark ? `hsl(${215 - 20 * s} ${60 - 25 * s}% ${58 - 38 * s}%)` : `hsl(${220 - 25 * s} ${62 - 12 * s}% ${46 + 46 * s}%)`;

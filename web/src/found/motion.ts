@@ -1,10 +1,10 @@
-// The incremental case as a motion: the moving body goes around a little, and each search starts at the last solution.
+// The incremental case as a motion: the moving body goes around a small circle, and each search starts at the last solution.
 
 import { palette } from "../colours";
 import { h, refill, svg } from "../dom";
 import { type Pose, type Vec, add, lateral, times, unit } from "../math";
 
-/** Places on the way around. */
+/** Number of places on the circle. */
 const PLACES = 24;
 const [WIDE, HIGH] = [340, 126];
 
@@ -15,9 +15,9 @@ export class Motion {
   private readonly said = h("p", { class: "proof" });
   private counts: { near: number; all: number }[] = [];
   private stopped: (() => void) | undefined;
-  /** The motion starts: how the body is placed now, the direction, and how large it is. */
+  /** Starts the motion: returns the pose of the body, the direction, and the size of the body. */
   begin: () => { pose: Pose; direction: Vec; radius: number } | undefined = () => undefined;
-  /** The body goes there; comes back when the search has been shown. */
+  /** Moves the body; resolves when the search has been shown. */
   move: (pose: Pose) => Promise<void> = async () => {};
 
   constructor() {
@@ -28,7 +28,7 @@ export class Motion {
     this.picture.style.display = "none";
   }
 
-  /** What a place took: planar problems in `N(p)`, and from the centre. */
+  /** Adds the counts of a place: planar problems in `N(p)`, and from the centre. */
   count(near: number, all: number) {
     if (this.stopped) this.counts.push({ near, all });
   }
@@ -61,7 +61,7 @@ export class Motion {
     }
   }
 
-  /** Bars of both counts. */
+  /** Draws bars of both counts. */
   draw() {
     const colours = palette();
     const most = Math.max(1, ...this.counts.map(({ near, all }) => Math.max(near, all)));

@@ -1,4 +1,4 @@
-// What of a search is drawn in the view: sections where they start and touch, and portals upon the bodies.
+// Drawings of a search in the view: sections at their start and contact, and portals on the bodies.
 
 import { BufferGeometry, DoubleSide, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { palette } from "../colours";
@@ -9,7 +9,7 @@ import { type Drawn, corner } from "../view/body";
 import { above, ball } from "../view/shapes";
 import type { Portal, Two } from "./recording";
 
-/** Two sections, and how far the moving one has gone, in multiples of the direction. */
+/** Two sections, and the translation of the moving one in multiples of the direction. */
 export interface Sections {
   moving: Vec[];
   fixed: Vec[];
@@ -26,7 +26,7 @@ function polygon(view: View, corners: Vec[], colour: string, opacity: number) {
   view.extra.add(new Mesh(new BufferGeometry().setFromPoints(triangles), sheet), line);
 }
 
-/** The sections, and the way of the moving one. */
+/** Draws the sections and the displacement of the moving one. */
 export function drawSections(view: View, { moving, fixed, t }: Sections, direction: Vec) {
   const colours = palette();
   polygon(view, fixed, colours.fixedMark, 0.6);
@@ -40,8 +40,8 @@ export function drawSections(view: View, { moving, fixed, t }: Sections, directi
   }
 }
 
-/** The three vertices of each body that a portal is made of: those of the moving one where they touch. Of the
- * portal that the proof was made of, the proof tells them. */
+/** Draws the three vertices of each body that form a portal; those of the moving body at the contact. For the portal of
+ * the proof, the proof names them. */
 export function drawPortal(view: View, { pairs }: Portal, proven: Two[], [moving, fixed]: [Drawn, Drawn], pair: Pair, t: number) {
   const colours = palette();
   const told = pairs.filter((one) => one !== undefined);

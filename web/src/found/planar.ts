@@ -1,4 +1,4 @@
-// The planar problem of a step: both sections seen along the direction. And sections of bodies as they are drawn.
+// The planar problem of a step: both sections projected along the direction. Also sections of drawn bodies.
 
 import { palette } from "../colours";
 import { svg } from "../dom";
@@ -8,7 +8,7 @@ import { type Two, below } from "./recording";
 
 const [WIDE, HIGH] = [340, 230];
 
-/** The corners of a body's section at a level along an axis of the world, once around, in the world. */
+/** Returns the corners of a body's section at a level along an axis of the world, in order and in the world. */
 export function section({ vertices, triangles }: Body, pose: Pose, axis: Vec, level: number): Vec[] {
   const back: Pose = [0, 0, 0, -pose[3], -pose[4], -pose[5], pose[6]];
   const [x, y, z] = turned(back, axis);
@@ -17,7 +17,7 @@ export function section({ vertices, triangles }: Body, pose: Pose, axis: Vec, le
   for (let k = 0; k < triangles.length; k += 3) {
     for (let e = 0; e < 3; e++) {
       const [v, w] = [triangles[k + e]!, triangles[k + ((e + 1) % 3)]!];
-      // Every edge is met from both sides: once is enough.
+      // Every edge occurs twice; use it once.
       if (v > w) continue;
       const [a, b] = [height(v), height(w)];
       if (a < 0 === b < 0) continue;
@@ -27,7 +27,7 @@ export function section({ vertices, triangles }: Body, pose: Pose, axis: Vec, le
     }
   }
   if (points.length < 3) return [];
-  // In order around, by the hull of what is seen across the plane.
+  // Sort the corners by the hull of their projection across the plane.
   const n = unit([x, y, z]);
   const first = unit(cross(n, Math.abs(n[0]) < 0.6 ? [1, 0, 0] : [0, 1, 0]));
   const second = cross(n, first);
@@ -38,7 +38,7 @@ export function section({ vertices, triangles }: Body, pose: Pose, axis: Vec, le
 export class Planar {
   readonly element = svg("svg", { class: "figure", viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": "Both sections in the shadow plane" });
 
-  /** Both sections; `h` up, `g` to the right. `touches`: they do, as the search says. */
+  /** Shows both sections; `h` points up, `g` to the right. `touches` is the result of the search. */
   show([moving, fixed]: [Vec[], Vec[]], [a, b]: [Vec, Vec], direction: Vec, touches: boolean) {
     const { element } = this;
     const colours = palette();
@@ -74,7 +74,7 @@ export class Planar {
   }
 }
 
-/** The common part of two convex polygons, both counter-clockwise. */
+/** Returns the intersection of two convex polygons, both counter-clockwise. */
 function intersection(p: Two[], q: Two[]): Two[] {
   let left = p;
   q.forEach((a, k) => {

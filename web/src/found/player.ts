@@ -1,8 +1,8 @@
-// The scrubber: where in a search one looks, and playing it.
+// The slider over the moments of a search, and its playback.
 
 import { h } from "../dom";
 
-/** Milliseconds for what happens in one moment. */
+/** Duration of a moment in milliseconds. */
 const PACE = 1100;
 
 export class Player {
@@ -11,7 +11,7 @@ export class Player {
   private readonly button = h("button", { class: "small main play" }, "Play");
   private readonly told = h("p", { class: "now", "aria-live": "polite" });
   private playing = 0;
-  /** From 0, when nothing has happened, to the number of moments. */
+  /** Position, from 0 to the number of moments. */
   at = 0;
   private count = 0;
   onChange: () => void = () => {};
@@ -25,7 +25,7 @@ export class Player {
       h("div", { class: "row" }, step("‹", "One back", -1), this.button, step("›", "One on", +1), this.slider), this.told);
   }
 
-  /** Another search of so many moments. */
+  /** Starts another search with `count` moments. */
   reset(count: number, at: number) {
     this.stop();
     this.count = count;
@@ -33,7 +33,7 @@ export class Player {
     this.set(at);
   }
 
-  /** Which moment is shown, and how much of it has happened. */
+  /** Returns the current moment and its progress. */
   get now(): [number, number] {
     const moment = Math.max(0, Math.min(this.count, Math.ceil(this.at)) - 1);
     return [moment, Math.min(1, this.at - moment)];
@@ -55,7 +55,7 @@ export class Player {
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
     let last = performance.now();
     const frame = (now: number) => {
-      // Where nothing is to move, one moment after the other is shown.
+      // Without an animation the moments are shown one after the other.
       const over = (now - last) / PACE;
       if (!still || over >= 1) {
         this.set(Math.min(still ? Math.floor(this.at + 1e-9) + 1 : this.at + over, this.count));

@@ -1,4 +1,4 @@
-// A recording of a search, in steps, and these in moments that can be played.
+// A recording of a search as steps, and these as moments that can be played.
 
 import type { PageEvent } from "../answers";
 import { type Vec, add, times } from "../math";
@@ -6,21 +6,21 @@ import { type Vec, add, times } from "../math";
 export type Two = [number, number];
 export type Touch = "edges" | "vertex" | "separated" | "hidden";
 
-/** One planar problem, the cut that followed, and what was left of the levels before it. */
+/** A planar problem, the cut after it, and the region of levels before it. */
 export interface Step {
   levels: Two;
   value: number;
   touch: Touch;
   meets: boolean;
   gradient: Two;
-  /** Where the cell shift goes, and the value there. */
+  /** The end of the cell shift, and its value. */
   best: Two;
   shifted: number;
-  /** Where the same features touch: levels; empty if the sections miss each other. */
+  /** The levels at which the same features touch; empty if the sections miss each other. */
   cell: Two[];
-  /** Whether the best point was seen to solve the problem. */
+  /** Whether the best point was found to solve the problem. */
   solved: boolean;
-  /** Of the levels, before the cut. */
+  /** The region of levels before the cut. */
   region: Two[];
   cut?: { gradient: Two; origin: Two; limit: number; lower: number; upper: number };
 }
@@ -29,13 +29,13 @@ export interface Minimisation {
   axes: [Vec, Vec];
   ranges: [Two, Two];
   steps: Step[];
-  /** What is left in the end. */
+  /** The region at the end. */
   region: Two[];
   /** The neighbourhood `N(p)` that is searched first. */
   square?: { center: Two; half: number };
 }
 
-/** The minimisation over pairs of levels, if there was one. */
+/** Returns the minimisation over pairs of levels, if there was one. */
 export function minimisation(events: PageEvent[]): Minimisation | undefined {
   const begun = events.find((event) => "sections" in event);
   if (!begun || !("sections" in begun)) return undefined;
@@ -59,7 +59,7 @@ export function minimisation(events: PageEvent[]): Minimisation | undefined {
   return { axes: begun.sections as [Vec, Vec], ranges: begun.ranges as [Two, Two], steps, region };
 }
 
-/** The part of a convex polygon where `gradient . (p - origin) <= limit`. */
+/** Returns the part of a convex polygon where `gradient . (p - origin) <= limit`. */
 export function below(polygon: Two[], gradient: Two, origin: Two, limit: number): Two[] {
   const value = (p: Two) => gradient[0] * (p[0] - origin[0]) + gradient[1] * (p[1] - origin[1]) - limit;
   const left: Two[] = [];
@@ -75,14 +75,14 @@ export function below(polygon: Two[], gradient: Two, origin: Two, limit: number)
   return left;
 }
 
-/** The levels of the least value that was found. */
+/** Returns the levels of the least value that was found. */
 export function least({ steps }: Minimisation): { at: Two; value: number } | undefined {
   const met = steps.filter((step) => step.meets && Number.isFinite(step.shifted));
   const best = met.reduce<Step | undefined>((a, b) => (!a || b.shifted < a.shifted ? b : a), undefined);
   return best && { at: best.best, value: best.shifted };
 }
 
-/** A portal with the support points computed for it, and of its corners the vertices of both bodies. */
+/** A portal with the support points computed for it, and the vertices of both bodies at its corners. */
 export interface Portal {
   corners: [Vec, Vec, Vec];
   pairs: (Two | undefined)[];
@@ -95,7 +95,7 @@ export interface Portals {
   loose: Vec[];
 }
 
-/** The portals in their order. */
+/** Returns the portals in order. */
 export function portals(events: PageEvent[]): Portals | undefined {
   let frame: [Vec, Vec, Vec] | undefined;
   let steps: Portal[] = [];
@@ -103,7 +103,7 @@ export function portals(events: PageEvent[]): Portals | undefined {
   const pairs = new Map<string, Two>();
   for (const event of events) {
     if ("begun" in event) {
-      // Begun again in a turned frame: what was before is of no use for the picture.
+      // The search restarted in a rotated frame; earlier portals do not fit the picture.
       [frame, steps, loose] = [event.begun as [Vec, Vec, Vec], [], []];
     } else if ("support" in event) {
       pairs.set(event.support.join(), event.pair as Two);
@@ -117,16 +117,16 @@ export function portals(events: PageEvent[]): Portals | undefined {
   return frame && { frame, steps, loose };
 }
 
-/** A point of the shadow frame, in the world. */
+/** Converts a point of the shadow frame to the world. */
 export const inWorld = (frame: [Vec, Vec, Vec], v: Vec): Vec =>
   add(add(times(frame[0], v[0]), times(frame[1], v[1])), times(frame[2], v[2]));
 
-/** What is shown at a time: one thing happens in each. */
+/** A moment, in which one thing happens. */
 export type Moment =
   | { kind: "sections" | "touch" | "shift" | "cut" | "solved"; step: number }
   | { kind: "portal"; portal: number };
 
-/** All of a search in its order. */
+/** Returns all moments of a search in order. */
 export function moments(found: Minimisation | undefined, refined: Portals | undefined): Moment[] {
   const all: Moment[] = [];
   found?.steps.forEach((one, step) => {

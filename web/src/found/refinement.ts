@@ -1,4 +1,4 @@
-// Portal refinement: the difference of both bodies seen along the direction, and the portals upon it.
+// Portal refinement: the Minkowski difference projected along the direction, and the portals on it.
 
 import { palette } from "../colours";
 import { svg } from "../dom";
@@ -12,10 +12,10 @@ const SIZE = 340;
 export class Refinement {
   readonly element = svg("svg", { class: "figure", viewBox: `0 0 ${SIZE} ${SIZE}`, role: "img", "aria-label": "M seen along d" });
 
-  /** The outline of M, of the bodies that were seen last. */
+  /** The outline of M for the last bodies. */
   private known: { key: string; rim: Two[] } | undefined;
 
-  /** Up to this portal; none yet is -1. What is to be said of it. */
+  /** Shows the portals up to an index (-1 for none) and returns a description. */
   show({ frame, steps, loose }: Portals, portal: number, bodies: [Drawn, Drawn], pair: Pair): string {
     const { element: picture } = this;
     const colours = palette();

@@ -1,11 +1,11 @@
-// Motions to begin with: of pairs of bodies that the page knows.
+// Example motions of pairs of bodies of the page.
 
 import { AT_HOME, type Pose } from "../math";
 import type { Screw } from "../state";
 
 export interface Example {
   title: string;
-  /** Of `EXAMPLES`. */
+  /** A key of `EXAMPLES`. */
   pair: string;
   moving: Pose;
   fixed: Pose;

@@ -12,13 +12,13 @@ export interface Grip {
   at: Vec;
 }
 
-/** What a screw is when a handle is dragged along a ray of the world from the eye. */
+/** Returns the screw after a handle is dragged along a ray of the world from the eye. */
 function dragged(name: Grip["name"], from: Screw, began: Vec, origin: Vec, way: Vec, fine: number, size: number): Screw | undefined {
   const axis = unit(from.axis);
   const round = (v: Vec) => v.map((x) => Math.round(x * fine) / fine || 0) as Vec;
   switch (name) {
     case "point": {
-      // In the plane through it that faces the eye.
+      // In the plane through the point that faces the eye.
       const eye = unit(sub(began, origin));
       const along = dot(way, eye);
       if (along < 1e-3) return undefined;
@@ -34,7 +34,7 @@ function dragged(name: Grip["name"], from: Screw, began: Vec, origin: Vec, way: 
       return { ...from, axis: rounded(unit(sub(add(near, times(way, depth * side)), from.point)), 0.003) };
     }
     case "angle": {
-      // Around the axis, at the height of the handle; turns are counted on from the last angle.
+      // Around the axis, at the height of the handle; turns are counted from the last angle.
       const along = dot(way, axis);
       if (Math.abs(along) < 0.05) return undefined;
       const hit = add(origin, times(way, dot(sub(began, origin), axis) / along));
@@ -45,7 +45,7 @@ function dragged(name: Grip["name"], from: Screw, began: Vec, origin: Vec, way: 
       return { ...from, angle: Math.round(from.angle + turn) };
     }
     case "rise": {
-      // Along the axis, at the point of it that is nearest to the ray.
+      // Along the axis, at its point that is nearest to the ray.
       const across = dot(way, axis);
       const square = 1 - across * across;
       if (square < 1e-3) return undefined;
@@ -69,7 +69,7 @@ export class Grips {
     });
   }
 
-  /** Where a handle is, in pixels of the page. */
+  /** Returns the position of a handle, in pixels of the page. */
   onPage(name: Grip["name"]): [number, number] | undefined {
     const grip = this.grips.find((one) => one.name === name);
     return grip && this.pixels(grip);
@@ -79,7 +79,7 @@ export class Grips {
     return onPage(this.view.renderer.domElement, this.view.camera, this.view.toScene(at));
   }
 
-  /** The nearest handle that is under a pointer. */
+  /** Returns the nearest handle under a pointer. */
   private under(event: PointerEvent): Grip | undefined {
     const reach = event.pointerType === "touch" ? 34 : 18;
     const far = (grip: Grip) => {
@@ -105,7 +105,7 @@ export class Grips {
       const next = dragged(grip.name, this.screw!, at, origin, way, fine, view.size);
       if (!next) return;
       this.onScrew(next);
-      // It is where it was drawn last.
+      // The handle is where it was drawn last.
       at = this.grips.find((one) => one.name === grip.name)?.at ?? at;
     };
     const up = () => {
@@ -126,7 +126,7 @@ export class Grips {
   }
 }
 
-/** A point as far from the axis as a body is large, where its middle lies on the axis. */
+/** Returns a point at the distance of the body's radius from the axis, if the body's middle is on the axis. */
 export function arm(screw: Screw, middle: Vec, radius: number): Vec {
   const axis = unit(screw.axis);
   const off = sub(middle, screw.point);

@@ -1,5 +1,5 @@
-// What is seen of a motion: the moving body where it is, starts, touches and ends, the way of a point of it, the
-// axis with its handles, the contact.
+// The drawing of a motion: the moving body at the current time, the start, the contact and the end, the path of one of
+// its points, the axis with its handles, and the contact.
 
 import { MeshBasicMaterial, MeshLambertMaterial, type Object3D } from "three";
 import type { PageMotion } from "../answers";
@@ -14,12 +14,12 @@ import { type Label, above, ball, dashes, inPicture, line, rod } from "../view/s
 import { type Grip, arm } from "./grips";
 import { carried, poseAt } from "./screw";
 
-/** Pieces in which a way of a turn is drawn. */
+/** Number of segments in which the path of a rotation is drawn. */
 const PIECES = 48;
-/** Turns of a way that are drawn as such: more would be a tangle. */
+/** Maximum number of turns of a drawn path; more would be illegible. */
 const MOST_TURNS = 12;
 
-/** Everything into `view.extra`; what comes back are the handles. */
+/** Draws everything into `view.extra` and returns the handles. */
 export function draw(view: View, state: State, screw: Screw, answer: PageMotion | undefined, bodies: Record<Slot, Drawn>): Grip[] {
   const { frame } = view;
   const { size, colours } = frame;
@@ -35,7 +35,7 @@ export function draw(view: View, state: State, screw: Screw, answer: PageMotion 
   if (stop !== undefined && Math.abs(stop - time) > 1e-9) body(stop, "ghost");
   const parts: Object3D[] = [];
   const labels: Label[] = [];
-  // The way of a point, dashed where the body does not come.
+  // The path of a point, dashed where the body does not get.
   const middle = screw.angle ? arm(screw, placed(start, mover.middle), mover.radius) : placed(start, mover.middle);
   const turns = Math.min(Math.abs(screw.angle) / 360, MOST_TURNS);
   const count = Math.max(2, Math.ceil(PIECES * Math.max(turns, 0.25)));
@@ -72,7 +72,7 @@ export function draw(view: View, state: State, screw: Screw, answer: PageMotion 
   return grips;
 }
 
-/** What touches, where the bodies are then. */
+/** Draws the features in contact at the poses of the contact. */
 function contact(view: View, poses: Record<Slot, Pose>, { record: { point, normal }, lit }: PageMotion, { moving, fixed }: Record<Slot, Drawn>, labels: Label[]): Object3D[] {
   if (!point || !normal) return [];
   const { frame } = view;
@@ -93,7 +93,7 @@ function contact(view: View, poses: Record<Slot, Pose>, { record: { point, norma
   ];
 }
 
-/** What is to be in the picture: both bodies, the one that moves on its way, and the axis' point. */
+/** Returns balls around everything to be in the picture: both bodies, the moving one along its path, and the point of the axis. */
 export function seen({ poses, motion: { body } }: State, screw: Screw, bodies: Record<Slot, Drawn>): Ball[] {
   const [mover, rests] = [bodies[body], otherOf(body)];
   const middle = placed(poses[body], mover.middle);
@@ -104,11 +104,11 @@ export function seen({ poses, motion: { body } }: State, screw: Screw, bodies: R
   ];
 }
 
-/** Across the axis, a little from above it. */
+/** Returns the direction of a view across the axis, slightly from above. */
 export function side(screw: Screw, along: boolean): Vec {
   const axis = unit(screw.axis);
   if (along) return times(axis, 1);
-  // The way of a turn is seen best from its axis; that it rises, from its side.
+  // The path of a rotation is best visible along its axis, its rise from the side.
   const views: Vec[] = [[-0.62, -0.68, 0.4], [0.62, -0.68, 0.4], [-0.62, 0.68, 0.4], [0.62, 0.68, 0.4], [0.25, -0.45, 0.86]];
   const score = (v: Vec) => {
     const share = Math.abs(v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2]);

@@ -1,4 +1,4 @@
-// A screw as a function of time, as pictures need it, and one to begin with. Answers are the library's.
+// A screw as a function of time, for pictures, and an initial screw. Answers come from the library.
 
 import { type Pose, type Vec, add, cross, length, placed, sub, times, turned, unit } from "../math";
 import type { Slot } from "../engine";
@@ -7,14 +7,14 @@ import type { Drawn } from "../view/body";
 
 export const RADIANS = Math.PI / 180;
 
-/** A point, carried by a screw to a time; an axis without a direction moves nothing. */
+/** Moves a point by a screw to a time. An axis without a direction moves nothing. */
 export function carried({ point, axis, angle, rise }: Screw, v: Vec, time: number): Vec {
   if (!length(axis)) return v;
   const turn = rotation(axis, angle * time);
   return add(add(point, turned(turn, sub(v, point))), times(unit(axis), rise * time));
 }
 
-/** The pose of a body that begins with one. */
+/** Returns the pose of a body at a time, from its pose at the start. */
 export function poseAt(screw: Screw, start: Pose, time: number): Pose {
   const at = carried(screw, [start[0], start[1], start[2]], time);
   if (!length(screw.axis)) return start;
@@ -34,7 +34,7 @@ function rotation(axis: Vec, degrees: number): Pose {
   return [0, 0, 0, ...times(unit(axis), Math.sin(half)), Math.cos(half)];
 }
 
-/** A hinge about which a body swings to where the other one is, and on. */
+/** Returns a hinge about which a body swings to the other one and beyond. */
 export function hinge(poses: Record<Slot, Pose>, bodies: Record<Slot, Drawn>, body: Slot): Screw {
   const [from, to] = [body, otherOf(body)].map((slot) => placed(poses[slot], bodies[slot].middle)) as [Vec, Vec];
   const way = sub(to, from);
@@ -42,7 +42,7 @@ export function hinge(poses: Record<Slot, Pose>, bodies: Record<Slot, Drawn>, bo
   const fine = 10 ** Math.ceil(1.5 - Math.log10(size));
   const round = (v: Vec) => v.map((x) => Math.round(x * fine) / fine || 0) as Vec;
   if (length(way) < 1e-3 * size) return { point: round(from), axis: [0, 0, 1], angle: 90, rise: 0 };
-  // Level, across the way; a quarter of a turn brings the middles together.
+  // The axis is horizontal and perpendicular to the way; a quarter turn brings the middles together.
   const d = unit(way);
   const axis: Vec = Math.hypot(d[0], d[1]) > 0.1 ? unit(cross(d, [0, 0, 1])) : [0, 1, 0];
   const level = axis.map((x) => Math.round(x * 1e4) / 1e4 || 0) as Vec;

@@ -1,4 +1,4 @@
-// An answer about a motion in words.
+// An answer about a motion as text.
 
 import type { PageMotion, PageProve } from "../answers";
 import { type Vec, short, shown } from "../math";
@@ -8,7 +8,7 @@ import { type Said, feature } from "../words";
 
 const kind = (of: { kind: string }) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 
-/** How far a screw has gone at a time. */
+/** Describes the position on a screw at a time. */
 export function gone({ angle, rise }: Screw, time: number): string {
   const ways = [angle || !rise ? `${short(angle * time)}°` : "", rise ? `${short(rise * time)} along the axis` : ""];
   return ways.filter(Boolean).join(", ");
@@ -37,17 +37,17 @@ export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
     case "grazing":
       return {
         kind: "care", headline: `They graze at ${gone(screw, time!.lower)}`,
-        sentence: `They come nearer than rounding can tell. They do not ${near} before; whether they do then, and what comes later, is not said. A tolerance lets them go on.`, rows,
+        sentence: `They come closer than rounding can resolve. They do not ${near} before; later times are not examined. A tolerance lets them continue.`, rows,
       };
     case "undecided":
       return {
         kind: "care", headline: `Free until ${gone(screw, time!.lower)}, then open`,
-        sentence: `The search took its maximum number of steps. Proven: they do not ${near} before. Whether they do later is open.`, rows,
+        sentence: `The search took its maximum number of steps. Proven: they do not ${near} before. Later contacts are open.`, rows,
       };
     case "overlapping":
-      return { kind: "care", headline: "They overlap where they begin", sentence: keep ? "Or they are nearer than the gap to be kept." : "Nothing is said of later times.", rows };
+      return { kind: "care", headline: "They overlap at the start", sentence: keep ? "Or they are closer than the minimum gap." : "Later times are not examined.", rows };
     default:
-      return { kind: "free", headline: "It goes all the way", sentence: `Proven: at no time of the motion do they ${near}.`, rows };
+      return { kind: "free", headline: "The whole motion is free", sentence: `Proven: at no time of the motion do they ${near}.`, rows };
   }
 }
 
@@ -59,5 +59,5 @@ export function judged(told: PageProve, planes: boolean): { holds: boolean; text
   return { holds: true, text: `✓ it holds: ${what}; ${free}${typeof upper === "number" ? `, contact by ${upper}` : ""}` };
 }
 
-/** Whether a body is asked as one that is not convex. */
+/** Checks whether a body is used as a solid. */
 export const solids = (state: State) => Object.values(state.parts).some(({ take }) => isSolid(take));

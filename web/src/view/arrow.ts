@@ -1,4 +1,4 @@
-// The arrow of the direction, from the middle of the moving body: its tip is there to be dragged.
+// The arrow of the direction, from the middle of the moving body; its tip can be dragged.
 
 import { Group, MeshLambertMaterial, type Vector3 } from "three";
 import { type Pose, type Vec, add, placed, times, unit } from "../math";
@@ -20,7 +20,7 @@ export function arrow(frame: Frame, moving: Drawn, fixed: Drawn, pose: Pose, dir
   const [base, tip] = [at(0), at(reach)];
   const look = { color: colours.way, emissive: colours.way, emissiveIntensity: 0.2 };
   const group = new Group().add(rod(base, tip, colours.way, 0.0065 * size), ball(tip, 0.024 * size, new MeshLambertMaterial(look)));
-  // It is seen through the body it starts in.
+  // The arrow is visible through the body in which it starts.
   above(group);
   return { group, base, tip, label: { text: "d", start: base, end: tip, kind: "way" } };
 }

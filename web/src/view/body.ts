@@ -1,4 +1,4 @@
-// A body as it is drawn: its geometry about its own middle, and where that is in the picture.
+// A drawn body: its geometry relative to its own middle, and its place in the picture.
 
 import {
   BufferAttribute, BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshLambertMaterial,
@@ -16,13 +16,13 @@ export interface Drawn {
   edges: BufferGeometry;
 }
 
-/** The bodies there are. */
+/** The bodies that are loaded. */
 export type Bodies = Partial<Record<Slot, Drawn>>;
 
-/** Opaque; translucent; edges alone. */
+/** Opaque, translucent, or edges only. */
 export type How = "solid" | "ghost" | "outline";
 
-/** Edges of bodies with more of them than this are faint. */
+/** Number of edges above which edges are drawn faint. */
 const MANY = 2e3;
 const OPACITY: Record<How, { few: number; many: number }> = {
   solid: { few: 0.85, many: 0.25 }, ghost: { few: 0.5, many: 0.1 }, outline: { few: 0.28, many: 0.06 },
@@ -40,26 +40,26 @@ export function drawn(body: Body): Drawn {
     }
     return new BufferAttribute(points, 3);
   };
-  // Corners are not shared: every facet has its own shade.
+  // Corners are not shared, so that every facet has its own shade.
   const geometry = new BufferGeometry().setAttribute("position", relative(triangles));
   const edges = new BufferGeometry().setAttribute("position", relative(body.edges));
   return { body, middle, radius, geometry, edges };
 }
 
-/** Gives back what a body holds of the graphics memory. */
+/** Frees the graphics memory of a body. */
 export function forget(body: Drawn | undefined) {
   body?.geometry.dispose();
   body?.edges.dispose();
 }
 
-/** Where a body is, its geometry being about its middle. */
+/** Returns the matrix of a body at a pose; its geometry is relative to its middle. */
 export function matrixOf(pose: Pose, middle: Vec, origin: Vec, shift: Vec = [0, 0, 0]): Matrix4 {
   const at = sub(add(placed(pose, middle), shift), origin);
   const turn = new Quaternion(pose[3], pose[4], pose[5], pose[6]).normalize();
   return new Matrix4().compose(new Vector3(...at), turn, new Vector3(1, 1, 1));
 }
 
-/** Its facets, unless it is an outline, then its edges; `userData` tells of what. */
+/** Draws the facets of a body unless it is an outline, and its edges. `userData` has the body. */
 export function placedBody(body: Drawn, matrix: Matrix4, colour: string, how: How, colours: Palette): Group {
   const group = new Group();
   group.userData = { body, how };
@@ -80,13 +80,13 @@ export function placedBody(body: Drawn, matrix: Matrix4, colour: string, how: Ho
   return group;
 }
 
-/** A vertex of a placed body. */
+/** Returns a vertex of a placed body. */
 export function corner({ body }: Drawn, pose: Pose, v: number): Vec {
   const { vertices } = body;
   return placed(pose, [vertices[3 * v]!, vertices[3 * v + 1]!, vertices[3 * v + 2]!]);
 }
 
-/** The largest `n . x` of a placed body. */
+/** Returns the largest `n . x` of a placed body. */
 export function highest(body: Body, pose: Pose, n: Vec): number {
   const back: Pose = [0, 0, 0, -pose[3], -pose[4], -pose[5], pose[6]];
   const [x, y, z] = turned(back, n);

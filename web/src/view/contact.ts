@@ -1,5 +1,5 @@
-// Where the bodies touch, and what proves it: point, normal, supporting plane, features, the pairs of
-// vertices of the upper bound; or the plane between bodies that never meet.
+// The contact and its proof: point, normal, supporting plane, features, the pairs of vertices of the upper bound; or the
+// plane between bodies that never meet.
 
 import {
   BufferGeometry, CircleGeometry, CylinderGeometry, Group, type Matrix4, Mesh, MeshBasicMaterial, type Object3D, PlaneGeometry,
@@ -37,7 +37,7 @@ export function contact(frame: Frame, first: Touch, proof: PageCast["proof"], st
   return { parts, label: { text: "n", start: point, end: back(0.62), kind: "normal" } };
 }
 
-/** The supporting plane that proves the lower bound. */
+/** Draws the supporting plane that proves the lower bound. */
 export function disc(at: Vector3, normal: Vec, radius: number, colour: string): Object3D[] {
   const disc = new Mesh(new CircleGeometry(radius, 72), sheet(colour, 0.2));
   disc.position.copy(at);
@@ -49,7 +49,7 @@ export function disc(at: Vector3, normal: Vec, radius: number, colour: string): 
   return [disc, loop(rim, colour, 0.8)];
 }
 
-/** The three pairs of vertices that prove the upper bound, at the contact. */
+/** Draws the three pairs of vertices that prove the upper bound, at the contact. */
 function witness(frame: Frame, pairs: Certificate["pairs"], along: Vec, poses: Poses, { moving, fixed }: Both): Object3D[] {
   const { colours } = frame;
   const triangles: [Vec[], string][] = [
@@ -62,7 +62,7 @@ function witness(frame: Frame, pairs: Certificate["pairs"], along: Vec, poses: P
   });
 }
 
-/** The vertex, edge or face that touches. */
+/** Draws the vertex, edge or face in contact. */
 export function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, matrix: Matrix4, colour: string, size: number): Group {
   const group = new Group();
   group.matrixAutoUpdate = false;
@@ -90,7 +90,7 @@ export function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, mat
   return group;
 }
 
-/** Corners of the triangles of a face, about the body's middle. */
+/** Returns the corners of the triangles of a face, relative to the body's middle. */
 function faceOf({ body: { faces }, geometry }: Drawn, face: number | undefined): Vector3[] {
   const position = geometry.getAttribute("position");
   const corners: Vector3[] = [];
@@ -101,7 +101,7 @@ function faceOf({ body: { faces }, geometry }: Drawn, face: number | undefined):
   return corners;
 }
 
-/** The plane between bodies that never meet. */
+/** Draws the plane between bodies that never meet. */
 export function gap(frame: Frame, normal: Vec, margin: number, state: State, { moving, fixed }: Both): Object3D[] {
   const { size, colours } = frame;
   const middle = placed(state.poses.fixed, fixed.middle);

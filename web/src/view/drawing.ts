@@ -1,7 +1,7 @@
-// The picture as areas and lines: text of an SVG file.
+// The picture as areas and lines: the text of an SVG file.
 //
-// The data's way: the scene's triangles and lines -> the page (`Eye`), with what they look like (`Light`) -> a
-// `Sheet` of them -> the module of drawings, which finds what hides what.
+// Data flow: triangles and lines of the scene -> the page (`Eye`), with their colours (`Light`) -> a `Sheet` of them ->
+// the module `picture`, which finds the hidden parts.
 
 import {
   type AmbientLight, type BufferGeometry, Color, type DirectionalLight, DoubleSide, type Line, type LineBasicMaterial,
@@ -12,9 +12,9 @@ import type { Drawn } from "./body";
 import { placeOf } from "./overlay";
 import type { Label } from "./shapes";
 
-/** Triangles of a file. */
+/** Maximum number of triangles of a file. */
 const MOST_DRAWN = 40_000;
-/** Lengths along the view that are no difference, as a part of the size of what is shown. */
+/** Differences of depth up to this fraction of the size are ignored. */
 const SLACK = 2e-4;
 
 export interface Picture {
@@ -39,7 +39,7 @@ export async function drawing({ scene, camera, labels, size, wide, high, ground,
   if (triangles > MOST_DRAWN) throw new Error(`${Math.round(triangles)} triangles are too many for an SVG file: the PNG has them`);
   const [eye, slack, sheet] = [new Eye(camera, wide, high), SLACK * size, new Sheet()];
   const light = new Light(scene, eye);
-  /** Of each body, the number of its first triangle. */
+  /** For each body the number of its first triangle. */
   const firsts = new Map<Object3D, number>();
   let first = 0;
   for (const mesh of meshes) {
@@ -63,14 +63,14 @@ export async function drawing({ scene, camera, labels, size, wide, high, ground,
 
 const countOf = (geometry: BufferGeometry): number => (geometry.index ?? geometry.getAttribute("position")).count;
 
-/** A point of the page in pixels; q is the inverse of its distance along the view: planes of the scene are planes there. */
+/** A point of the page in pixels; q is the inverse of its distance along the view, so that planes stay planes. */
 interface Point {
   x: number;
   y: number;
   q: number;
 }
 
-/** Triangles and segments on the page, as the module of drawings reads them (`crates/colltrans-wasm/src/picture/scene.rs`). */
+/** Triangles and segments on the page, in the format of the module `picture` (`crates/colltrans-wasm/src/picture/scene.rs`). */
 class Sheet {
   private readonly styles: Record<"areas" | "lines", Map<string, number>> = { areas: new Map(), lines: new Map() };
   private readonly corners: number[] = [];
@@ -79,7 +79,7 @@ class Sheet {
   private readonly ofEnds: number[] = [];
   private readonly beside: number[] = [];
 
-  /** `number`: what lines that are its edges know it by. */
+  /** `number` identifies the triangle for the lines that are its edges. */
   triangle(corners: Point[], look: { fill: string; opacity: number; above: boolean }, number: number) {
     for (const { x, y, q } of corners) this.corners.push(x, y, q);
     this.ofCorners.push(this.style("areas", look), number);
@@ -111,11 +111,11 @@ class Sheet {
   }
 }
 
-/** Who looks: from the world to the page. */
+/** The projection from the world to the page. */
 class Eye {
   constructor(readonly camera: PerspectiveCamera, private readonly wide: number, private readonly high: number) {}
 
-  /** The corners of a triangle or the ends of a segment, before the eye. */
+  /** Clips the corners of a triangle or the ends of a segment to the space in front of the eye. */
   before(points: Vector3[], closed: boolean): Vector3[] {
     const near = this.camera.near;
     return points.flatMap((a, k) => {
@@ -125,7 +125,7 @@ class Eye {
     });
   }
 
-  /** Pixels of a length at a depth. */
+  /** Returns the pixels of a length at a depth. */
   scale(q: number): number {
     return (this.camera.projectionMatrix.elements[5]! * q * this.high) / 2;
   }
@@ -135,7 +135,7 @@ class Eye {
     return { x: ((1 - (e[0]! * x) / z) / 2) * this.wide, y: ((1 + (e[5]! * y) / z) / 2) * this.high, q: 1 / (-z - nearer) };
   }
 
-  /** Points of an object, as the eye has them: x right, y up, z backwards. */
+  /** Returns points of an object in the frame of the eye: x right, y up, z backwards. */
   sees({ geometry, matrixWorld }: Mesh | Line): Vector3[] {
     const position = geometry.getAttribute("position");
     const all = Array.from({ length: position.count }, (_, k) =>
@@ -145,7 +145,7 @@ class Eye {
   }
 }
 
-/** Shades as the renderer of the view has them, after Lambert. */
+/** Shades of the view's renderer, after Lambert. */
 class Light {
   private ambient = 0;
   private readonly suns: { toward: Vector3; intensity: number }[] = [];
@@ -169,7 +169,7 @@ class Light {
   }
 }
 
-/** What looks at the eye, and both sides of sheets. */
+/** Adds the triangles that face the eye, and both sides of sheets. */
 function addMesh(sheet: Sheet, mesh: Mesh, eye: Eye, light: Light, slack: number, first: number) {
   const material = mesh.material as MeshLambertMaterial;
   const closed = (mesh.parent?.userData.body as Drawn | undefined)?.body.facts.closed;
@@ -189,7 +189,7 @@ function addMesh(sheet: Sheet, mesh: Mesh, eye: Eye, light: Light, slack: number
   }
 }
 
-/** `first`: the number of the first triangle of the body whose edges the lines are. */
+/** Adds a line. `first` is the number of the first triangle of the body whose edges the lines are. */
 function addLine(sheet: Sheet, line: Line, eye: Eye, first: number) {
   const points = eye.sees(line);
   const apart = line.type === "LineSegments";
@@ -204,13 +204,13 @@ function addLine(sheet: Sheet, line: Line, eye: Eye, first: number) {
   const { color, opacity, dashSize } = line.material as LineBasicMaterial & Partial<LineDashedMaterial>;
   const near = segments.reduce((most, { ends }) => Math.max(most, ends[0]!.q, ends[1]!.q), 0);
   const dash = dashSize && eye.scale(near) * dashSize;
-  // The grid on the ground is below all.
+  // The grid on the ground is below everything.
   const below = apart && !line.parent?.userData.body;
   const look = { colour: color.getStyle(), opacity, dash, below };
   for (const { ends, edge } of segments) sheet.segment(ends, look, beside?.[edge] ?? []);
 }
 
-/** Of each edge the triangles that meet there. */
+/** Returns for each edge the triangles that meet there. */
 function trianglesBeside({ vertices, triangles, edges }: Body, first: number): number[][] {
   const key = (a: number, b: number) => Math.min(a, b) * (vertices.length / 3) + Math.max(a, b);
   const beside = new Map<number, number[]>();

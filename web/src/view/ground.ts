@@ -1,4 +1,4 @@
-// A grid under everything, with its mesh in round numbers.
+// A grid under everything, with a mesh of round numbers.
 
 import { BufferGeometry, LineBasicMaterial, LineSegments, type Vector3 } from "three";
 import type { Slot } from "../engine";
@@ -7,9 +7,9 @@ import { type Bodies, highest } from "./body";
 import { type Frame, inPicture } from "./shapes";
 
 export class Ground {
-  /** The width of a mesh. */
+  /** The mesh width. */
   step = 1;
-  /** Where it lies, and for what. */
+  /** The position of the grid, and the objects for which it was computed. */
   private known: { of: unknown[]; low: number } = { of: [], low: 0 };
 
   grid(frame: Frame, bodies: Bodies, state: State): LineSegments {

@@ -1,4 +1,4 @@
-// Handles that move or turn a body, about its middle; read when they are first asked for.
+// Handles that move or turn a body about its middle; loaded on demand.
 
 import { Object3D, type PerspectiveCamera, type Scene } from "three";
 import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -21,7 +21,7 @@ interface Stage {
 
 export class Handles {
   private readonly gizmo: TransformControls;
-  /** Stands for the middle of the body. */
+  /** Represents the middle of the body. */
   private readonly handle = new Object3D();
   private tool: Tool = "look";
   private held: Slot = "moving";
@@ -53,7 +53,7 @@ export class Handles {
     this.place(state);
   }
 
-  /** Puts them to where the body is. */
+  /** Places the handles at the body. */
   place(state: State | undefined) {
     this.state = state;
     const body = this.bodies[this.held];

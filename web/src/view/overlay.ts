@@ -1,20 +1,20 @@
-// Words over the picture: its labels, and in a corner the axes of the world as they are seen.
+// Labels over the picture, and in a corner the axes of the world.
 
 import { type Camera, Vector3 } from "three";
 import { h, svg } from "../dom";
 import type { Label } from "./shapes";
 
-/** Pixels from the end of what a label belongs to. */
+/** Distance of a label from its object, in pixels. */
 const AWAY = 18;
 
-/** The middle of a label on the page; none for what is behind the eye. */
+/** Returns the centre of a label on the page; undefined if it is behind the eye. */
 export function placeOf({ start, end }: Label, camera: Camera, wide: number, high: number): [number, number] | undefined {
   const at = end.clone().project(camera);
   if (at.z > 1) return undefined;
   const from = start.clone().project(camera);
   const [x, y] = [((at.x + 1) / 2) * wide, ((1 - at.y) / 2) * high];
   const [u, v] = [((at.x - from.x) / 2) * wide, ((from.y - at.y) / 2) * high];
-  // What is seen from its end has its word above.
+  // An arrow that points to the eye has its label above.
   const l = Math.hypot(u, v);
   return l > 4 ? [x + (AWAY * u) / l, y + (AWAY * v) / l] : [x, y - AWAY];
 }
@@ -44,7 +44,7 @@ export class Overlay {
     this.placeAxes(camera, note);
   }
 
-  /** Those that point away first. */
+  /** Axes that point away come first. */
   private placeAxes(camera: Camera, note: string) {
     const turn = camera.quaternion.clone().invert();
     const axes = [["x", 1, 0, 0], ["y", 0, 1, 0], ["z", 0, 0, 1]] as const;

@@ -1,7 +1,7 @@
-// What pictures are made of: lines, rods, balls, sheets; and the frame they are drawn in.
+// The elements of pictures: lines, rods, balls, sheets, and the frame in which they are drawn.
 //
-// Coordinates of a picture are those of the world less `origin`, a point near the bodies: single
-// precision then shows parts that lie far from where their coordinates begin.
+// Coordinates of a picture are those of the world minus `origin`, a point near the bodies. Single precision then
+// suffices for parts far from the origin of their coordinates.
 
 import {
   BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Line, LineBasicMaterial, LineDashedMaterial, LineLoop,
@@ -12,12 +12,12 @@ import { type Vec, sub } from "../math";
 
 export interface Frame {
   origin: Vec;
-  /** Half the extent of what is shown: widths are parts of it. */
+  /** Half the extent of the visible scene; widths are fractions of it. */
   size: number;
   colours: Palette;
 }
 
-/** A word beside the picture, a little farther out than the end of what starts somewhere. */
+/** A label, slightly beyond the end of a segment. */
 export interface Label {
   text: string;
   start: Vector3;
@@ -40,7 +40,7 @@ export function dashes(points: Vector3[], colour: string, opacity: number, dash:
   return new Line(new BufferGeometry().setFromPoints(points), new LineDashedMaterial(look)).computeLineDistances();
 }
 
-/** A rod with a head. */
+/** Builds a rod with a head. */
 export function rod(from: Vector3, to: Vector3, colour: string, width: number): Group {
   const group = new Group();
   const way = to.clone().sub(from);
@@ -63,26 +63,26 @@ export function ball(at: Vector3, radius: number, material: Material): Mesh {
   return mesh;
 }
 
-/** Of a translucent sheet; what lies behind it is drawn first. */
+/** Returns the material of a translucent sheet; objects behind it are drawn first. */
 export function sheet(colour: string, opacity: number): MeshBasicMaterial {
   return new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
 }
 
-/** Nothing hides it. */
+/** Draws an object above everything. */
 export function above(object: Object3D) {
   object.traverse((part) => {
     part.renderOrder = 5;
     const { material } = part as Partial<Mesh>;
     for (const one of material ? ([material].flat() as Material[]) : []) {
       one.depthTest = false;
-      // So that it is drawn after what is translucent.
+      // So that it is drawn after translucent objects.
       one.transparent = true;
     }
   });
 }
 
-/** Empties a group, and gives back the graphics memory of all but what is kept. Materials go when the next picture
- * has been drawn: what it shows instead has the same programs, which would be compiled again. */
+/** Empties a group and frees the graphics memory, except of kept geometries. Materials are freed after the next picture,
+ * because it uses the same programs, which would be compiled again. */
 export function clear(group: Group, kept = new Set<BufferGeometry>()) {
   const materials: Material[] = [];
   group.traverse((object) => {

@@ -1,20 +1,19 @@
-// How soon the page answers, with no other test beside it. Whoever else uses the machine makes times longer
-// and none shorter: so of several times of the same the least, or the middle one, tells of the page; the
-// greatest of the machine. Where a program that computes gets less than nine tenths of a processor, bounds
-// are wider, as each of them says.
+// Response times of the page, measured without other tests. Other programs on the machine only make times longer.
+// Therefore the minimum or the median of several times describes the page, and the maximum the machine. If a
+// computing program gets less than nine tenths of a processor, the limits are wider, as stated with each of them.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { site } from "../browser.mjs";
 
-/** Milliseconds that a frame takes at 60 in a second. */
+/** Milliseconds of a frame at 60 frames a second. */
 const FRAME = 1_000 / 60;
 
 let at;
 before(async () => (at = await site()));
 after(() => at?.close());
 
-/** The file of an ellipsoid with 10,002 vertices, as triangles. */
+/** Builds the file of an ellipsoid with 10,002 vertices, as triangles. */
 function ellipsoid(...axes) {
   const [rings, around] = [101, 100];
   const vertex = (i, j) => {
@@ -34,7 +33,7 @@ function ellipsoid(...axes) {
   return `OFF\n${vertices.length} ${faces.length} 0\n${vertices.join("\n")}\n${faces.map((f) => `3 ${f.join(" ")}`).join("\n")}\n`;
 }
 
-/** Of a program that computes, the part of the time in which it has a processor. */
+/** Measures the share of a processor that a computing program gets. */
 function share() {
   const [began, used] = [performance.now(), process.cpuUsage()];
   while (performance.now() - began < 60);
@@ -42,29 +41,29 @@ function share() {
   return (user + system) / 1_000 / (performance.now() - began);
 }
 
-/** Whether others left less than nine tenths of a processor to it, at the one time or the other. */
+/** Checks whether other programs left less than nine tenths of a processor, before or after. */
 const isBusy = (...shares) => Math.min(...shares) < 0.9;
 
-/** The time that a part of all does not go beyond. */
+/** Returns the quantile of the times. */
 const within = (times, share) => times.toSorted((a, b) => a - b)[Math.ceil(share * times.length) - 1];
 const told = (times) => `half within ${within(times, 0.5).toFixed(2)} ms, 99 % within ${within(times, 0.99).toFixed(2)}, all within ${within(times, 1).toFixed(2)}`;
 
-test("convex bodies of 10,000 vertices: every change is answered within a frame", async () => {
+test("casts of bodies with 10,000 vertices are answered within a frame", async () => {
   const page = await at.open();
   for (const [slot, axes] of [["moving", [1, 1.3, 0.8]], ["fixed", [3, 2, 1]]]) {
     const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click(`[aria-label="Choose a file for the ${slot} body"]`)]);
     await chooser.setFiles({ name: `${slot}.off`, mimeType: "", buffer: Buffer.from(ellipsoid(...axes)) });
     await page.waitForFunction((slot) => window.colltrans.probe().view.bodyOf(slot).body.facts.vertices >= 10_000, slot);
   }
-  // A body that is read stands where its file has it, here in the other one.
+  // A body takes the pose of its file, here inside the other body.
   for (const [axis, value] of [["x", 6], ["y", 1], ["z", 9]]) await page.fill(`[aria-label="moving position ${axis}"]`, String(value));
   await page.fill('[aria-label="Direction x"]', "-0.6");
   await page.fill('[aria-label="Direction y"]', "-0.1");
   await page.waitForFunction(() => window.colltrans.probe().answer?.record.outcome === "contact");
 
-  // What the library takes, in its worker: 1,000 poses and directions, none like the one before. A program
-  // that waits for a processor is seldom interrupted within a tenth of a millisecond: 99 of 100 are within a
-  // frame where one is free, 9 of 10 where none is.
+  // Times of the library in its worker, for 1,000 different poses and directions. A waiting program is rarely
+  // interrupted within a tenth of a millisecond: 99 of 100 times are within a frame if a processor is free, 9 of 10
+  // if none is.
   const before = share();
   const { took, outcomes } = await page.evaluate(async () => {
     const { engine, state } = window.colltrans.probe();
@@ -86,9 +85,9 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
   assert.ok(outcomes.contact > 100 && outcomes.separated > 100, JSON.stringify(outcomes));
   assert.ok(within(took, isBusy(before, share()) ? 0.9 : 0.99) < FRAME, told(took));
 
-  // From a number that is typed to its answer on the page, there and back between both threads. Each change
-  // waits until the one before is drawn, as somebody would see it: pictures are computed on the processor here.
-  // Half of them are within a frame; where no processor is left free both threads wait for one, and a tenth is.
+  // Times from typing a number to its answer on the page, through both threads. Each change waits until the previous
+  // one is drawn, which the processor does here. Half of the times are within a frame; if no processor is free, both
+  // threads wait for one, and a tenth is.
   const changes = await page.evaluate(async () => {
     const { probe } = window.colltrans;
     const field = document.querySelector('[aria-label="Direction x"]');
@@ -115,7 +114,7 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
   const least = `${within(changes, 0.1).toFixed(2)} ms for a tenth; ${told(changes)}`;
   assert.ok(within(changes, isBusy(before, share()) ? 0.1 : 0.5) < FRAME, least);
 
-  // And of the arrow, while it is dragged.
+  // Times of dragging the arrow.
   await page.click("button:text-is('Fit')");
   const [x, y] = await page.evaluate(() => window.colltrans.probe().view.tipOnPage());
   await page.mouse.move(x, y);
@@ -130,11 +129,10 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
   await page.context().close();
 });
 
-test("the first answer is there within a second of loading", async () => {
-  // From the beginning of the navigation until the answer is known, nothing being cached. The least of up to
-  // five loads, for each of them takes the same work, and what other programs add is not the page's. Where
-  // they never leave a processor free, no time tells of the page: then it is the processor time of the
-  // page's process, all threads of it.
+test("first answer is available within a second of loading", async () => {
+  // Time from the start of the navigation to the answer, without a cache. The minimum of up to five loads counts,
+  // because each of them takes the same work and other programs only add to it. If no processor is ever free, the
+  // processor time of the page's process, over all threads, counts instead.
   const loads = [];
   const browser = await at.browser.newBrowserCDPSession();
   while (loads.length < 5 && !(loads.at(-1)?.wall < 1_000)) {

@@ -1,4 +1,4 @@
-// The page's answers in a browser, held against the same code built natively. Needs `npm run build` before, and the example `native`.
+// Answers of the page in a browser, compared with the same code built natively. Needs `npm run build` and the example `native`.
 
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
@@ -14,7 +14,7 @@ before(async () => {
 });
 after(() => at?.close());
 
-/** The page of all tests, asked anew. */
+/** The page of all tests, which is reset for each of them. */
 const asked = (hash) => at.ask(page, hash);
 
 const headline = (page) => page.textContent("#headline");
@@ -25,22 +25,22 @@ test("it opens solved, without a complaint, and is small", async () => {
   assert.deepEqual(page.complaints, []);
   const first = await page.evaluate(() => window.colltrans.probe().firstAnswer);
   console.log(`first answer ${Math.round(first)} ms after the page began to load`);
-  // What the first answer and the view took; the other parts of the page are read when they are opened.
+  // Sizes of the files for the first answer and the view; the other parts load when they are opened.
   const code = readdirSync(dist).filter((file) => [".js", ".wasm", ".css", ".html"].includes(extname(file)));
   const read = new Set(page.read.map((url) => new URL(url).pathname.split("/").at(-1) || "index.html"));
   const size = (file) => brotliCompressSync(readFileSync(join(dist, file))).length;
   const loaded = code.filter((file) => read.has(file)).map((file) => [file, size(file)]);
   const total = loaded.reduce((sum, [, n]) => sum + n, 0);
   console.log(`${loaded.map(([file, n]) => `${file} ${n}`).join(", ")}: ${total} bytes with brotli`);
-  // Of 400,000 that were asked: 398,681 before convex solids were told by their hulls, 413,636 since, 420,512 with rims,
-  // 431,144 with what proves their hulls' answers, 431,272 with outlines and numbers in as few bytes as they take,
-  // 432,088 with answers made where they stay, 451,404 with points and segments against parts and bounds about the input,
-  // 449,698 with the library as crates and its modules shortened by wasm-opt.
+  // Size limits of the library in bytes over time, of 400,000 that were the target: 398,681; 413,636 with hulls of convex
+  // solids; 420,512 with circular edges; 431,144 with proofs for answers from hulls; 431,272 with outlines and compressed
+  // relocations; 432,088 with answers built in place; 451,404 with points and segments against solids and bounds about the
+  // input; 449,698 with the library as crates and modules shortened by wasm-opt.
   assert.ok(total < 452_000, `${total} bytes`);
   assert.ok(!read.has("colltrans_assembly.wasm"));
 });
 
-test("1,000 answers are the native ones, bit for bit", async () => {
+test("1,000 answers equal native answers bit for bit", async () => {
   const pairs = [
     ["dodecahedron.off", "convex", "bracket.obj", "convex", 8],
     ["ellipsoid_a.obj", "convex", "ellipsoid_b.off", "convex", 8],
@@ -54,7 +54,7 @@ test("1,000 answers are the native ones, bit for bit", async () => {
     questions.push({ file: moving, question: { do: "load", slot: "moving", name: moving, take: takeMoving } });
     questions.push({ file: fixed, question: { do: "load", slot: "fixed", name: fixed, take: takeFixed } });
     for (let k = 0; k < 200; k++) {
-      // Every fourth one in round numbers: ties, slides, faces upon faces.
+      // Every fourth setting has round numbers, for ties, slides and coplanar faces.
       const round = k % 4 === 0;
       const coordinate = () => (round ? Math.round(2 * random()) : random());
       const direction = [coordinate(), coordinate(), round ? -1 : coordinate()];
@@ -83,8 +83,8 @@ test("1,000 answers are the native ones, bit for bit", async () => {
   const outcomes = new Map();
   answers.forEach((text, k) => {
     if (questions[k].question.do !== "cast") return;
-    // Byte for byte: numbers are written with as many digits as it takes to read the same bits.
-    // How many iterations planar problems take is no part of the answer: it has been one more here than natively.
+    // Answers are compared byte for byte, because numbers have enough digits to restore their bits.
+    // The number of iterations is not compared: it has differed by one between the browser and the native program.
     const [here, there] = [text, expected[k]].map((line) => line.replace(/"iterations":\d+/g, ""));
     assert.equal(here, there, JSON.stringify(questions[k].question));
     const answer = JSON.parse(text);
@@ -98,9 +98,9 @@ test("1,000 answers are the native ones, bit for bit", async () => {
   }
 });
 
-test("dragging the arrow's tip changes the answer", async () => {
+test("dragging the tip of the arrow changes the answer", async () => {
   await asked();
-  // Once the picture is drawn the arrow is where it is said to be.
+  // The tip has its position once the picture is drawn.
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   const old = await answered(page);
   const [x, y] = await page.evaluate(() => window.colltrans.probe().view.tipOnPage());
@@ -111,7 +111,7 @@ test("dragging the arrow's tip changes the answer", async () => {
   await page.waitForFunction((t) => window.colltrans.probe().answer?.record.translation !== t, old.record.translation);
   const direction = await page.evaluate(() => window.colltrans.probe().state.direction);
   assert.notDeepEqual(direction, [-0.3, 0.1, -1]);
-  // The address tells it, and leads back to the same answer.
+  // The address contains the direction and restores the same answer.
   await page.waitForFunction((d) => decodeURIComponent(location.hash).includes(`d=${d.join(",")}`), direction);
   const now = await answered(page);
   const again = await at.open(new URL(page.url()).hash);
@@ -120,7 +120,7 @@ test("dragging the arrow's tip changes the answer", async () => {
   await again.context().close();
 });
 
-test("numbers can be typed, and the proof is checked", async () => {
+test("typed numbers change the question, and the proof is checked", async () => {
   await asked();
   await page.fill('[aria-label="moving position z"]', "12.5");
   await page.waitForFunction(() => window.colltrans.probe().answer?.record.translation > 7);
@@ -138,7 +138,7 @@ test("numbers can be typed, and the proof is checked", async () => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("a proof between solids is shown, checked, and no proof of anything else", async () => {
+test("proof between solids is shown and checked, and rejected for another question", async () => {
   await asked("#example=plate");
   await page.waitForSelector(".claims");
   assert.match(await page.textContent(".claims"), /their shadows are disjoint/);

@@ -1,4 +1,4 @@
-// The page's part for assemblies, in a browser, held against the same code built natively and by hand.
+// The assembly tab in a browser, compared with the same code built natively and with results by hand.
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
@@ -28,7 +28,7 @@ async function choose(page, files) {
   await chooser.setFiles(files);
 }
 
-test("files are chosen, refused and dropped; the page stays alive", async () => {
+test("files are chosen, rejected and dropped while frames continue", async () => {
   await choose(page, [{ name: "bad.off", mimeType: "", buffer: Buffer.from("OFF\n1 0 0\n0 zero 0\n") }]);
   await page.waitForSelector(".assembly-panel [role=alert]");
   assert.match(await page.textContent(".assembly-panel [role=alert]"), /^bad\.off: line 3/);
@@ -37,7 +37,7 @@ test("files are chosen, refused and dropped; the page stays alive", async () => 
   await choose(page, ["housing.off", "shaft.off"].map((name) => join(gearbox, name)));
   await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 2 && window.colltrans.probe().assembly.fit);
   await page.waitForSelector("text=1 of 2 parts come out along d");
-  // With what takes long the frames go on.
+  // Frames continue during slow computations.
   await page.evaluate(() => {
     const { probe } = window.colltrans;
     window.drawn = 0;
@@ -60,13 +60,13 @@ test("files are chosen, refused and dropped; the page stays alive", async () => 
   assert.deepEqual(page.complaints, []);
 });
 
-test("the gearbox: the plan, its slider, and the native answers", async () => {
+test("gearbox plan, slider and answers equal native answers", async () => {
   assert.match(await page.textContent("#assembly-headline"), /^4 of 16 parts come out along d$/);
   await planned(page);
   const { facts, plan, fit } = await probe(page);
   assert.equal(facts.parts.length, 16);
   assert.equal(fit.tolerance, 0.1);
-  // A ball bearing is not parted by straight moves.
+  // Straight moves do not take a ball bearing apart.
   const stuck = plan.stuck.flatMap(({ parts }) => parts);
   assert.ok(stuck.length > 0 && stuck.every((name) => name.startsWith("bearing")), stuck.join());
   await page.click('[aria-label="Step on"]');
@@ -79,7 +79,7 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   const sheets = (await readFile(await report.path(), "utf8")).match(/class="sheet step"/g);
   assert.equal(sheets.length, plan.stages.length);
   assert.equal(await isCut(page, ".assembly-view canvas"), false);
-  // The same questions natively: what the page has asked by itself, and two more.
+  // The native answers to the same questions: those that the page has sent, and two more.
   const files = facts.parts.map(({ name }) => `${name}.off`);
   const more = [[0.3, -0.2, 1], [0, 0, -1]].map((direction) => ({ do: "along", direction }));
   const questions = [
@@ -87,7 +87,7 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
     ...[{ do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "plan" }, ...more].map((q) => JSON.stringify(q)),
   ];
   const [, nativeFit, nativePlan, ...native] = answers("assembly", questions).slice(files.length);
-  // Bit for bit: of numbers, strictly equal are those with the same bits.
+  // Strictly equal numbers have the same bits.
   assert.deepStrictEqual([fit, plan], [nativeFit, nativePlan].map((text) => JSON.parse(text)));
   const told = await page.evaluate(async (more) => {
     const { engine } = window.colltrans.probe().assembly;
@@ -99,7 +99,7 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("dragging the arrow, picking a part, clicking into its map", async () => {
+test("arrow, part and map can be dragged, picked and clicked", async () => {
   await planned(page);
   await page.click("button:text-is('Assembled')");
   const [x, y] = (await probe(page)).tip;
@@ -114,7 +114,7 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
   assert.match(await page.textContent(".part:has-text('bolt_2') small"), /^Blocked by: .*cover/);
   await page.waitForSelector(".sphere");
   assert.match(await page.textContent(".assembly-panel"), /bolt_2 is free only in 1 single direction/);
-  // The middle of the sphere is the way to the eye; the button, the tight fit.
+  // The centre of the sphere points to the eye; the button is the tight fit.
   await page.click(".sphere");
   await page.waitForFunction((old) => document.querySelector('[aria-label="Direction x of the assembly"]').value !== old, direction);
   const looked = (await page.evaluate(() => window.colltrans.probe().state.assembly.direction));
@@ -124,7 +124,7 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
   await page.locator(".sphere").focus();
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => window.colltrans.probe().state.assembly.direction[2] < 1);
-  // The address leads back.
+  // The address restores the state.
   await page.waitForFunction(() => {
     const fields = new URLSearchParams(location.hash.slice(1));
     return fields.has("apart") && fields.get("ad") === window.colltrans.probe().state.assembly.direction.join(",");
@@ -135,7 +135,7 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
   await again.context().close();
 });
 
-test("d starts along what frees most; the whole is no group; what overlaps comes first", async () => {
+test("initial direction frees most parts, and overlaps are reported first", async () => {
   const page = await opened();
   // A box that is open along y, and a cube in it.
   const tray = boxes([[0, 0, 0], [6, 6, 1]], [[0, 0, 5], [6, 6, 6]], [[0, 0, 1], [1, 6, 5]], [[5, 0, 1], [6, 6, 5]], [[1, 0, 1], [5, 1, 5]]);
@@ -145,12 +145,12 @@ test("d starts along what frees most; the whole is no group; what overlaps comes
   assert.equal(await page.textContent("#assembly-headline"), "1 of 2 parts come out along d");
   assert.equal(await page.locator("#assembly-overlaps").count(), 0);
   assert.equal(await page.locator(".assembly-panel .said.free").count(), 1);
-  // Up they hold each other: the two together are all there is.
+  // Upwards they hold each other, and the two together are the whole assembly.
   await page.click(".assembly-panel button:text-is('+z') >> nth=-1");
   await page.waitForSelector("#assembly-headline:text-is('No part comes out alone along d')");
   assert.match(await page.textContent(".assembly-panel .said"), /Every part is blocked/);
   assert.equal(await page.locator(".assembly-panel .said.stop").count(), 1);
-  // Drawn into each other: that comes first, and is not good news.
+  // Overlapping parts are reported first, as a problem.
   await drop(page, ".assembly-stage", { "tray.off": tray, "cube.off": boxes([[2, 2, 0.75], [4, 4, 4]]) });
   await page.waitForSelector("#assembly-overlaps");
   assert.match(await page.textContent("#assembly-overlaps"), /^1 pair overlaps with this tolerance, and moves as one: cube and tray/);
@@ -160,7 +160,7 @@ test("d starts along what frees most; the whole is no group; what overlaps comes
 });
 
 test("on a phone, and without WebGL", async () => {
-  // A part that there is none of is not waited for.
+  // A part that does not exist is not waited for.
   const page = await opened("&apart=99", { viewport: { width: 360, height: 640 }, hasTouch: true });
   await page.waitForSelector(".assembly-panel :text('Pick a part')");
   assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 360);

@@ -1,5 +1,5 @@
-// The drawing as SVG against the picture. What hides what, against each triangle at each sample, is tested where it
-// is found out: crates/colltrans-picture.
+// The drawing as SVG, compared with the picture. Hidden parts are tested in crates/colltrans-picture, against each
+// triangle at each sample.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -11,7 +11,7 @@ before(async () => {
 });
 after(() => at?.close());
 
-test("the drawing of bodies that are not convex is as the picture is", async () => {
+test("drawing of solids equals the picture", async () => {
   const page = await at.open("#example=plate&t=6");
   for (const hash of ["#example=bracket", "#example=plate&t=6", "#example=shaft", "#example=shaft&t=20&d=1,0.2,0.3"]) {
     await at.ask(page, hash);
@@ -19,7 +19,7 @@ test("the drawing of bodies that are not convex is as the picture is", async () 
       const { view } = window.colltrans.probe();
       const text = await view.drawing();
       const drawing = new DOMParser().parseFromString(text, "image/svg+xml");
-      // Words are beside the picture on the page.
+      // Labels are outside the picture on the page.
       drawing.querySelectorAll("text").forEach((word) => word.remove());
       const image = new Image();
       image.src = `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(drawing))}`;
@@ -38,7 +38,7 @@ test("the drawing of bodies that are not convex is as the picture is", async () 
         if (!isGround) all++;
         if ([0, 1, 2].some((c) => Math.abs(shown[k + c] - drawn[k + c]) > 60)) other++;
       }
-      // An edge that nothing is before is one piece.
+      // A completely visible edge is one piece.
       const edges = [...drawing.querySelectorAll("path[stroke-linecap=round]")].map((path) => path.getAttribute("d").split("M").slice(1));
       const broken = edges.flat().filter((piece) => {
         const [x, y, u, v] = piece.match(/-?[\d.]+/g).map(Number);

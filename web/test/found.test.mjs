@@ -1,5 +1,4 @@
-// How an answer was found, in a browser: the search as it is played, and the paper's figures. Needs `npm run build`
-// before.
+// The search behind an answer, in a browser: its playback, and the paper's figures. Needs `npm run build`.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -15,19 +14,19 @@ after(() => at?.close());
 const probe = (page, of) => page.evaluate((of) => window.colltrans.probe().found?.[of], of);
 const steps = (page) => page.locator('.found [aria-label="Steps"] button').count();
 
-/** One of the things to look at, once it is shown. */
+/** Selects an example and waits until it is shown. */
 async function look(page, k, example) {
   await page.selectOption('[aria-label="Example of a search"]', String(k));
   await page.waitForFunction((name) => document.querySelector("#example").value === name, example);
   await page.waitForSelector(".found:not([aria-busy])");
 }
 
-test("it is read when it is opened", async () => {
+test("tab loads when it is opened", async () => {
   assert.ok(!page.read.some((url) => /found/.test(url)));
   await page.click("#tab-found");
   await page.waitForSelector(".stack .pick");
   assert.ok(page.read.some((url) => url.endsWith("colltrans_found.wasm")));
-  // The least value of the graph that is drawn is near the answer, and none is below it.
+  // The minimum of the drawn graph is close to the answer and not below it.
   const { least, t } = await page.evaluate(async () => {
     const { found: { engine, found }, answer, state } = window.colltrans.probe();
     const pair = { moving_pose: state.poses.moving, fixed_pose: state.poses.fixed, direction: state.direction };
@@ -43,7 +42,7 @@ test("it is read when it is opened", async () => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("the first to look at takes more than ten steps; they are played to the end, and bounds close in", async () => {
+test("first example plays more than ten steps while bounds converge", async () => {
   await look(page, 0, "thirteen");
   const count = await steps(page);
   assert.ok(count >= 10, `${count} steps`);
@@ -56,13 +55,13 @@ test("the first to look at takes more than ten steps; they are played to the end
     assert.ok(region.length >= 3);
     if (solved) assert.ok(Math.abs(shifted / unit - t) < 1e-9, `${shifted / unit} ${t}`);
     if (!cut) continue;
-    // What is infinite comes as null.
+    // Infinite values are sent as null.
     const [lower, upper] = [cut.lower ?? -Infinity, cut.upper ?? Infinity];
     assert.ok(lower >= low - 1e-12 && upper <= high + 1e-12 && lower <= t * unit + 1e-9 && upper >= t * unit - 1e-9, `${lower} ${upper} ${t * unit}`);
     [low, high] = [lower, upper];
   }
   assert.ok(found.steps.at(-1).solved);
-  // Sections, contact, shift, cut of each step in this order; then the hand-over.
+  // Sections, contact, shift and cut of each step in this order, then the hand-over.
   const order = ["sections", "touch", "shift", "cut", "solved", "portal"];
   moments.slice(1).forEach((moment, k) => {
     const last = moments[k];
@@ -75,14 +74,14 @@ test("the first to look at takes more than ten steps; they are played to the end
   await page.waitForFunction((at) => window.colltrans.probe().found.at > at + 0.5, before);
   await page.click(".play");
   assert.equal(await page.textContent(".play"), "Play");
-  // At the end the hand-over is said.
+  // The last text describes the hand-over.
   await page.locator('[aria-label="Where in the search"]').fill(String(moments.length));
   await page.waitForFunction(() => /^Hand-over/.test(document.querySelector(".player .now").textContent));
   assert.match(await page.textContent(".bounds-over-steps"), /upper .*, lower .*, gap /);
   assert.deepEqual(page.complaints, []);
 });
 
-test("the picture follows what is left, and its numbers do not cover each other", async () => {
+test("graph follows the remaining region without overlapping labels", async () => {
   const boxes = () => page.$$eval(".stack svg > text", (all) => all.filter((text) => /^(\d{1,2}|q|N\(p\))$/.test(text.textContent) && !text.getAttribute("text-anchor")).map((text) => {
     const { left, right, top, bottom } = text.getBoundingClientRect();
     return [left, right, top + 3, bottom - 3];
@@ -103,7 +102,7 @@ test("the picture follows what is left, and its numbers do not cover each other"
   assert.deepEqual(page.complaints, []);
 });
 
-test("each of the paper's figures has its example, its section and what it is about", async () => {
+test("each figure of the paper has an example with its section", async () => {
   const examples = { 3: "cubes", 4: "corner", 5: "beside", 7: "thirteen" };
   for (let figure = 1; figure <= 9; figure++) {
     await look(page, figure, examples[figure] ?? "cubes");
@@ -121,7 +120,7 @@ test("each of the paper's figures has its example, its section and what it is ab
   assert.deepEqual(page.complaints, []);
 });
 
-test("from one solution to the next: N(p), and a motion that ends where it began", async () => {
+test("neighbourhood search and motion from one solution to the next", async () => {
   const pose = () => page.evaluate(() => window.colltrans.probe().state.poses.moving.join());
   await look(page, 10, "thirteen");
   const start = await page.evaluate(() => window.colltrans.probe().state.poses.moving.join());
@@ -132,8 +131,8 @@ test("from one solution to the next: N(p), and a motion that ends where it began
   assert.ok(Number(near) < Number(all), `${near} of ${all}`);
   assert.match(await pose(), /^3,1\.1,10,/);
   assert.ok(start.length);
-  // What it saves is said of the bracket too, where a direction is changed a little.
-  // Where nothing was asked before there is no p, and no graph.
+  // The savings are reported for the bracket too after a small change of the direction.
+  // Without a previous question there is no p, and no graph.
   await at.ask(page, "#example=bracket&tab=found", ['[aria-label="Where the search starts"]']);
   await page.selectOption('[aria-label="Where the search starts"]', "center");
   await page.click("#tab-answer");
@@ -151,7 +150,7 @@ test("from one solution to the next: N(p), and a motion that ends where it began
   assert.deepEqual(page.complaints, []);
 });
 
-test("where the paper's algorithm starts and ends is chosen, in the address and the command", async () => {
+test("start and end of the algorithm are in the address and the command", async () => {
   await at.ask(page, "#example=thirteen");
   await page.click("#tab-answer");
   const planar = () => page.evaluate(() => window.colltrans.probe().answer.record.steps.planar_problems);
@@ -166,7 +165,7 @@ test("where the paper's algorithm starts and ends is chosen, in the address and 
   assert.deepEqual(page.complaints, []);
 });
 
-test("on a phone nothing is wider than the screen, in the dark too", async () => {
+test("phone layout fits the screen in both colour schemes", async () => {
   const phone = await at.open("#example=thirteen&tab=found", { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true, colorScheme: "dark" }, [".stack .pick"]);
   assert.ok(await phone.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
   await phone.tap('[aria-label="One on"]');

@@ -1,5 +1,5 @@
-// The report of an assembly whose names want to be programs, opened as a file: none of them runs. Needs
-// the example `report`.
+// The report of an assembly with names that try to be programs, opened as a file: none of them runs. Needs the
+// example `report`.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -18,7 +18,7 @@ const HOSTILE = [
   "javascript:window.hit=1",
 ];
 
-test("names in a report are text", async () => {
+test("names in a report are escaped", async () => {
   const folder = mkdtempSync(join(tmpdir(), "hostile-"));
   copyFileSync(join(data, "gearbox_small/bolt_0.off"), join(folder, "a.off"));
   const browser = await launch();
@@ -30,7 +30,7 @@ test("names in a report are text", async () => {
       const page = watch(await browser.newPage({ viewport: { width: 1100, height: 900 } }));
       await page.goto(pathToFileURL(join(folder, "report.html")).href);
       await page.waitForSelector("#viewer canvas");
-      // Also what the viewer says of its steps and of the part under the pointer.
+      // Including the descriptions of steps and of the part under the pointer.
       await page.locator('#viewer [aria-label="Steps of the plan"]').press("End");
       const box = await page.locator("#viewer canvas").boundingBox();
       await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
@@ -38,7 +38,7 @@ test("names in a report are text", async () => {
       assert.equal(await page.evaluate(() => window.hit), undefined);
       assert.equal(await page.locator("img, iframe, [onload], [onerror], [onmouseover]").count(), 0);
       assert.equal(await page.locator("script").count(), 2, "the viewer and its data");
-      // Each is there, as it is written.
+      // Every name is present literally.
       const text = await page.textContent("body");
       assert.ok(text.includes(unit.replace("\0", "\ufffd")) || text.includes(unit.replaceAll(/[\0\x1b]/g, "\ufffd")), unit);
       assert.equal(await page.title(), HOSTILE[0]);

@@ -1,4 +1,4 @@
-// Everything that a pointer does, by keys; and that what is in focus stays in focus.
+// Everything that a pointer does works with keys, and the focus stays where it is.
 
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
@@ -16,7 +16,7 @@ before(async () => {
 after(() => at?.close());
 afterEach(() => assert.deepEqual(page.complaints, []));
 
-/** What is in focus, as it is named. */
+/** Returns the name of the focused element. */
 const focused = () => page.evaluate(() => {
   const { activeElement: e } = document;
   return e?.getAttribute("aria-label") ?? (e?.id || e?.textContent?.trim()) ?? "";
@@ -26,7 +26,7 @@ const probed = (what) => page.evaluate((what) => {
   return { t: state.t, d: state.direction, first: answer?.record.translation, eye: view.camera.position.toArray(), tab: state.tab }[what];
 }, what);
 
-test("focus goes over the page in the order in which it is read", async () => {
+test("focus moves over the page in reading order", async () => {
   const seen = [];
   for (let k = 0; k < 40; k++) {
     await page.keyboard.press("Tab");
@@ -40,11 +40,11 @@ test("focus goes over the page in the order in which it is read", async () => {
     "Question", "Direction x", "Direction y", "Direction z", "+x",
   ];
   order.forEach((name, k) => assert.match(seen[k], name instanceof RegExp ? name : new RegExp(`^${name.replace("+", "\\+")}$`), `${k}: ${seen.join(", ")}`));
-  // The other tabs are reached by arrow keys.
+  // Arrow keys reach the other tabs.
   assert.ok(!seen.includes("tab-found"));
 });
 
-test("numbers: up and down, with shift by ten times as much", async () => {
+test("arrow keys change numbers, with Shift by ten times as much", async () => {
   await at.ask(page);
   const field = page.locator('[aria-label="Direction x"]');
   await field.focus();
@@ -89,7 +89,7 @@ test("the way: its slider, its marks, playing", async () => {
   assert.equal(await probed("t"), stopped);
 });
 
-test("the view: arrow keys move and turn it, Escape puts the handles away", async () => {
+test("arrow keys move and turn the view, Escape hides the handles", async () => {
   await at.ask(page);
   await page.focus("#view canvas");
   const eyes = [await probed("eye")];
@@ -106,7 +106,7 @@ test("the view: arrow keys move and turn it, Escape puts the handles away", asyn
   assert.equal(await focused(), "fixed");
   await page.keyboard.press("Escape");
   assert.equal(await page.locator("#tools [aria-pressed=true]").textContent(), "Turn view");
-  // What is dragged over the page covers it until it is dropped or given up.
+  // The drop zone covers the page until the drop or its cancellation.
   await page.evaluate(() => {
     const dataTransfer = new DataTransfer();
     dataTransfer.items.add(new File(["x"], "x.off"));
@@ -137,7 +137,7 @@ test("cards and buttons", async () => {
   assert.equal(await page.getAttribute("html", "data-theme"), "dark");
 });
 
-test("how it was found: steps and the graph keep the focus", async () => {
+test("steps and graph of a search keep the focus", async () => {
   await page.context().close();
   page = await at.open("#tab=found", {}, [".stack .pick", ".steps button"]);
   const step = page.locator(".found .steps").first().locator("button").nth(1);
@@ -145,14 +145,14 @@ test("how it was found: steps and the graph keep the focus", async () => {
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.querySelector(".found .steps button:nth-child(2)").getAttribute("aria-pressed") === "true");
   assert.equal(await focused(), "2");
-  // The first step is not in the part that is left.
+  // The first step is not in the remaining region.
   await page.uncheck(".zoom input");
   await page.locator('.stack [aria-label="step 1"]').focus();
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.querySelector(".found .steps button").getAttribute("aria-pressed") === "true");
 });
 
-test("tabs: arrow keys, the first and the last", async () => {
+test("arrow keys, Home and End switch tabs", async () => {
   await at.ask(page);
   await page.focus("#tab-answer");
   for (const [key, tab] of [["ArrowRight", "motion"], ["ArrowRight", "found"], ["Home", "answer"], ["ArrowLeft", "assembly"], ["ArrowRight", "answer"], ["End", "assembly"], ["ArrowLeft", "found"]]) {
@@ -165,7 +165,7 @@ test("tabs: arrow keys, the first and the last", async () => {
 
 test("assemblies: parts, the sphere, the steps", async () => {
   await page.click("#tab-assembly");
-  // Without the balls of its bearing, whose plan takes six times as long as that of all else.
+  // Without the balls of its bearing, whose plan takes six times as long as that of all other parts.
   const names = readdirSync(gearbox).filter((name) => !name.startsWith("bearing_ball"));
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("text=Choose files…")]);
   await chooser.setFiles(names.map((name) => join(gearbox, name)));
@@ -194,7 +194,7 @@ test("assemblies: parts, the sphere, the steps", async () => {
   await page.focus('[aria-label="Steps of the plan"]');
   await page.keyboard.press("End");
   assert.match(await page.textContent(".assembly-stage output"), /^Step (\d+) of \1:/);
-  // A row is a stage, and leads to its end.
+  // A row is a stage, and jumps to its end.
   await page.focus(".assembly-panel ol button");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => {

@@ -1,4 +1,4 @@
-// Files as large as scans are, and larger than is taken: the page stays alive, says what it does, and answers.
+// Files as large as scans, and files that are too large: the page stays responsive, shows its progress, and answers.
 
 import assert from "node:assert/strict";
 import { closeSync, ftruncateSync, mkdtempSync, openSync, rmSync, writeFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { site } from "../browser.mjs";
 
-/** COLLTRANS_FACETS=1000000 takes longer, by the same way. */
+/** COLLTRANS_FACETS=1000000 takes longer with the same steps. */
 const FACETS = Number(process.env.COLLTRANS_FACETS ?? 200_000);
 
 let at, page, folder;
@@ -21,7 +21,7 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true });
 });
 
-/** A binary STL file of a ball with `waves` around it, closed, with so many facets. */
+/** Builds a binary STL file of a closed ball with `waves` around it and a number of facets. */
 function ball(facets, waves) {
   const around = 2 * Math.round(Math.sqrt(facets) / 2);
   const rings = Math.round(facets / 2 / around) + 1;
@@ -47,7 +47,7 @@ function ball(facets, waves) {
   return bytes;
 }
 
-/** How much of a processor the page's own thread has used from now on, in milliseconds. */
+/** Returns a function with the processor time that the page's own thread has used since, in milliseconds. */
 async function processor(page) {
   const session = await page.context().newCDPSession(page);
   await session.send("Performance.enable", { timeDomain: "threadTicks" });
@@ -80,13 +80,13 @@ test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, th
   });
   const began = performance.now();
   await choose(page, "moving", file);
-  // What is wrong with it is said after all of it was read; what was there is not answered instead.
+  // The error is reported after the whole file has been read; no answer about the old body replaces it.
   await page.waitForSelector(".refused", { timeout: 60_000 });
   assert.match(await page.textContent(".refused"), /^waves\.stl: .*convex/);
   assert.equal(await page.locator("#headline").count(), 0);
   await page.click("text=As a solid");
   await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid", undefined, { timeout: 60_000 });
-  // It stands where its file has it, until it is moved.
+  // The body takes the pose of its file, until it is moved.
   assert.deepEqual(await page.evaluate(() => window.colltrans.probe().state.poses.moving), [0, 0, 0, 0, 0, 0, 1]);
   for (const [axis, place] of Object.entries({ x: 6, y: 1, z: 9 })) await page.fill(`[aria-label="moving position ${axis}"]`, String(place));
   await page.waitForFunction(() => window.colltrans.probe().answer?.record.outcome === "blocked", undefined, { timeout: 60_000 });
@@ -100,14 +100,14 @@ test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, th
   assert.ok(Math.abs(triangles / FACETS - 1) < 0.02, `${triangles}`);
   assert.equal(outcome, "blocked");
   assert.deepEqual(notices, ["Reading the mesh"]);
-  // Nothing of what reads and builds runs where frames are made: what does only draws the result.
+  // Reading and building never run on the thread of the frames, which only draws the result.
   assert.ok(worked < 2_000, `${worked} ms`);
-  // Whoever else uses the machine makes all of it longer.
+  // Other programs on the machine make all of it longer.
   assert.ok(longest < took / 2, `${longest} ms of ${took}`);
   assert.deepEqual(page.complaints, []);
 });
 
-test("a file beyond the limit is refused before it is read", async () => {
+test("file beyond the limit is rejected before it is read", async () => {
   const file = join(folder, "huge.stl");
   const handle = openSync(file, "w");
   ftruncateSync(handle, 401 * 2 ** 20);

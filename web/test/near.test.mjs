@@ -1,5 +1,5 @@
-// How far the bodies are apart where they are, in a browser, held against the same code built natively. Needs `npm run
-// build` before, and the example `native`.
+// The distance of the bodies at their poses in a browser, compared with the same code built natively. Needs `npm run
+// build` and the example `native`.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -15,7 +15,7 @@ after(() => at?.close());
 const near = () => page.evaluate(() => window.colltrans.probe().near);
 const labels = () => page.$$eval(".labels span:not([hidden])", (all) => all.map((span) => span.textContent));
 
-test("it is read when it is asked for, said, drawn, and goes again", async () => {
+test("distance is loaded on demand, described, drawn and removed", async () => {
   assert.ok(!page.read.some((url) => url.includes("colltrans_distance")));
   await page.click("text='Distance'");
   await page.waitForSelector("#near");
@@ -30,7 +30,7 @@ test("it is read when it is asked for, said, drawn, and goes again", async () =>
   assert.deepEqual(page.complaints, []);
 });
 
-test("it follows the bodies, into each other too", async () => {
+test("distance follows the bodies into an overlap", async () => {
   await page.click("text='Distance'");
   await page.waitForSelector("#near");
   await page.fill('[aria-label="moving position z"]', "12.5");
@@ -40,13 +40,13 @@ test("it follows the bodies, into each other too", async () => {
   await page.waitForFunction(() => window.colltrans.probe().near?.depth?.outcome === "overlapping");
   assert.match(await page.textContent("#near"), /^At their poses they overlap: the shortest way out is [\d.]+ long\.$/);
   await page.waitForFunction(() => [...document.querySelectorAll(".labels span")].some((span) => /^depth /.test(span.textContent)));
-  // Another body, and another kind.
+  // Another body of another kind.
   await page.selectOption("#example", "shaft");
   await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid" && window.colltrans.probe().near?.distance.outcome === "meeting");
   assert.deepEqual(page.complaints, []);
 });
 
-test("its answers are the native ones, bit for bit, and as the schema says", async () => {
+test("distance answers equal native answers and match the schema", async () => {
   const pairs = [
     ["dodecahedron.off", "convex", "bracket.obj", "convex", 6],
     ["bolt.stl", "solid", "plate.off", "solid", 8],

@@ -1,4 +1,4 @@
-// The page in a browser: files, addresses, examples, and what it does without. Needs `npm run build` before.
+// The page in a browser: files, addresses, examples, and missing features. Needs `npm run build`.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -20,7 +20,7 @@ after(async () => {
 const headline = (page) => page.textContent("#headline");
 const answered = (page) => page.evaluate(() => window.colltrans.probe().answer);
 
-test("what a direction cannot be is said; another address is answered", async () => {
+test("invalid direction is reported, and another address is answered", async () => {
   page = await at.open("#d=0,0,0", {}, ["text=No answer", "#tools button"]);
   assert.match(await page.textContent(".said"), /direction/);
   await at.ask(page);
@@ -28,7 +28,7 @@ test("what a direction cannot be is said; another address is answered", async ()
   assert.deepEqual(page.complaints, []);
 });
 
-test("the view is saved as pixels and as a drawing, the shadows too", async () => {
+test("view is saved as pixels and as a drawing, and so are the shadows", async () => {
   await at.ask(page);
   await page.click("summary:has-text('Share')");
   for (const [button, name, begins] of [["Save the view (PNG)", "contact.png", "\u0089PNG"], ["Save the view (SVG)", "contact.svg", "<svg"], ["Save the shadows (SVG)", "shadows.svg", "<?xml"]]) {
@@ -41,7 +41,7 @@ test("the view is saved as pixels and as a drawing, the shadows too", async () =
   assert.deepEqual(page.complaints, []);
 });
 
-test("a bad file gives its message, one that is not convex two ways on", async () => {
+test("invalid file shows its error, and a file that is not convex two alternatives", async () => {
   await at.ask(page);
   const choose = async (file) => {
     const [chooser] = await Promise.all([
@@ -56,7 +56,7 @@ test("a bad file gives its message, one that is not convex two ways on", async (
   await page.waitForSelector(".refused");
   assert.match(await page.textContent(".refused"), /^bad\.off: line 5: /);
   await page.waitForFunction(() => document.querySelector(".refused").getBoundingClientRect().bottom <= innerHeight);
-  // What was there is not what is asked about, until one goes back to it.
+  // The old body is not part of the question until it is restored.
   await page.waitForSelector(".said h2:text-is('No answer')");
   assert.match(await page.textContent(".said"), /bad\.off: line 5/);
   assert.equal(await answered(page), undefined);
@@ -79,7 +79,7 @@ test("a bad file gives its message, one that is not convex two ways on", async (
   assert.deepEqual(page.complaints, []);
 });
 
-test("dropped files stand where they have themselves, and are answered together or not at all", async () => {
+test("dropped files take the poses of their files and are answered together", async () => {
   await at.ask(page);
   const cube = (z) => boxes([[0, 0, z], [1, 1, z + 1]]);
   const state = () => page.evaluate(() => window.colltrans.probe().state);
@@ -100,16 +100,16 @@ test("dropped files stand where they have themselves, and are answered together 
   const given = await state();
   assert.deepEqual([given.poses.moving, given.poses.fixed], [[0, 0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0, 1]]);
   assert.equal(await headline(page), "Contact at t = 3");
-  // No answer is about bodies that nobody gave together.
+  // No answer refers to bodies that were not opened together.
   const shown = await page.evaluate(() => (cancelAnimationFrame(window.looking), window.shown));
   assert.ok(shown.every((said) => !/^(upper|lower)/.test(said.split(" ")[0]) || said === "upper.off lower.off 3"), [...new Set(shown)].join("; "));
   assert.ok(shown.every((said) => !said.includes("lower.off") || said.startsWith("upper.off")), [...new Set(shown)].join("; "));
-  // Moved and turned, and back as in the files.
+  // Moved and rotated, then reset to the poses of the files.
   await page.fill('[aria-label="moving position x"]', "30");
   await page.waitForSelector("#headline:text-is('They never meet')");
   await page.click("button:text-is('as in the files')");
   await page.waitForSelector("#headline:text-is('Contact at t = 3')");
-  // A file that is refused takes the answer with it, and one that takes its place stands where it has itself.
+  // A rejected file removes the answer, and its replacement takes the pose of its file.
   await page.fill('[aria-label="moving position x"]', "0.25");
   await drop(page, "[data-slot=moving]", { "no.off": "OFF\n" });
   await page.waitForSelector(".said h2:text-is('No answer')");
@@ -121,7 +121,7 @@ test("dropped files stand where they have themselves, and are answered together 
   assert.deepEqual(page.complaints, []);
 });
 
-test("an address that asks for a file: it is given, and taken as the address says", async () => {
+test("address with a file of the visitor determines how the file is used", async () => {
   const page = await at.open("#m=plate.STL:convex&f=mine.off:solid", {}, ["text=No answer", "#tools button"]);
   assert.match(await page.textContent(".said"), /mine\.off is not among the examples/);
   assert.equal(await page.locator("button:text-is('Leave it')").count(), 0);
@@ -134,14 +134,14 @@ test("an address that asks for a file: it is given, and taken as the address say
   await chooser.setFiles({ name: "mine.off", mimeType: "", buffer: readFileSync(join(data, "plate.off")) });
   await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid");
   assert.equal(await page.evaluate(() => window.colltrans.probe().state.parts.fixed.take), "solid");
-  // It is there still when another address asks about it, and when one goes back.
+  // The file is still available for another address and for the back button.
   await page.waitForFunction(() => location.hash.includes("f=mine.off"));
   await page.evaluate(() => (location.hash = `${location.hash.replace(/&d=[^&]*/, "")}&d=0,0.5,-1`));
   await page.waitForFunction(() => window.colltrans.probe().state.direction[1] === 0.5 && window.colltrans.probe().answer?.kind === "solid");
   await page.goBack();
   await page.waitForFunction(() => window.colltrans.probe().state.direction[1] === 0.1 && window.colltrans.probe().answer?.kind === "solid");
   assert.equal(await page.locator(".refused").count(), 0);
-  // A file that is not there takes the answer about the one before with it.
+  // A missing file removes the answer about the previous one.
   await page.evaluate(() => (location.hash = "#m=gone.off:convex"));
   await page.waitForSelector("text=No answer");
   assert.equal(await answered(page), undefined);
@@ -149,7 +149,7 @@ test("an address that asks for a file: it is given, and taken as the address say
   await page.context().close();
 });
 
-test("an example is chosen again, or another: nothing stays of what was checked", async () => {
+test("choosing an example resets the check of the proof", async () => {
   await at.ask(page, "#example=__proto__");
   const chosen = () => page.inputValue("#example");
   assert.equal(await chosen(), "bracket");
@@ -161,7 +161,7 @@ test("an example is chosen again, or another: nothing stays of what was checked"
   await page.waitForFunction(() => document.querySelector("#headline")?.textContent === "Contact at t = 4.31674");
   assert.equal(await page.locator(".verdict").count(), 0);
   assert.equal(await chosen(), "bracket");
-  // Of two that are chosen at once the last is shown.
+  // Of two examples chosen at the same time the last one is shown.
   const late = page.waitForResponse("**/data/gear_hull.stl");
   let go;
   const last = new Promise((resolve) => (go = resolve));
@@ -182,10 +182,10 @@ test("an example is chosen again, or another: nothing stays of what was checked"
   assert.deepEqual(page.complaints, []);
 });
 
-test("numbers beyond what a picture or the library holds are said, and nothing stays of them", async () => {
+test("numbers out of range are reported and reset", async () => {
   const page = await at.open("#mp=1e200,1,9,0,0,0,1", {}, ["text=No answer", "#tools button"]);
   const field = page.locator('[aria-label="moving position x"]');
-  // A picture holds less than the library, which holds less than a number.
+  // A picture holds a smaller range than the library, which holds a smaller range than a number.
   for (const [number, said] of [["1e50", "never meet"], ["1e308", "No answer"], ["6", "Contact at t"]]) {
     await field.fill(number);
     await page.waitForSelector(`.said h2:has-text('${said}')`);
@@ -201,7 +201,7 @@ test("numbers beyond what a picture or the library holds are said, and nothing s
   await page.context().close();
 });
 
-test("without WebGL it says so", async () => {
+test("missing WebGL is reported", async () => {
   const without = await launchPlain();
   const page = watch(await without.newPage());
   await page.goto(at.base);
@@ -212,7 +212,7 @@ test("without WebGL it says so", async () => {
   await without.close();
 });
 
-test("nothing is wider than a phone", async () => {
+test("phone layout fits the screen", async () => {
   const page = await at.open("", { viewport: { width: 360, height: 640 } });
   for (const [width, height] of [[360, 640], [390, 844], [844, 390], [768, 1024]]) {
     await page.setViewportSize({ width, height });
@@ -223,7 +223,7 @@ test("nothing is wider than a phone", async () => {
   await page.context().close();
 });
 
-test("without a network after loading, everything of the first part works on", async () => {
+test("first tab works without a network after loading", async () => {
   const page = await at.open();
   await page.context().setOffline(true);
   await page.fill('[aria-label="moving position z"]', "12.5");
@@ -231,7 +231,7 @@ test("without a network after loading, everything of the first part works on", a
   await page.click("text=Verify");
   await page.waitForSelector(".verdict.yes");
   assert.deepEqual(page.complaints, []);
-  // What has not been read yet says so, once, and the rest stays.
+  // A part that is not loaded reports this once, and everything else stays.
   await page.click("#tab-assembly");
   await page.waitForSelector("text=This part of the page could not be read");
   await page.waitForSelector("#tab-answer[aria-selected=true]");

@@ -1,12 +1,11 @@
-// What the page is answered is what docs/answers.schema.json says. Needs the
-// example `native` (`.ci/run web` builds it).
+// Answers to the page match docs/answers.schema.json. Needs the example `native` (`.ci/run web` builds it).
 
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
 import { answers, conform, data } from "../browser.mjs";
 
-/** Its answers; each is what the schema calls `page_` and what was asked. */
+/** Returns the answers of the module; each must match the schema `page_` of its question. */
 function told(module, questions) {
   const lines = questions.map(({ file, ...question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
   return answers(module, lines).map((line, k) => {
@@ -23,7 +22,7 @@ test("convex bodies: contact, grazing, separated; proofs", () => {
   const bodies = [load("moving", "dodecahedron.off", "convex"), load("fixed", "bracket.obj", "hull")];
   const asked = [
     pair([6, 1, 9], [-0.3, 0.1, -1]), pair([6, 1, 9], [1, 0, 0]), pair([0, 0, 0], [0, 0, 1]), pair([0, 0, -20], [0, 0, -1]),
-    // However much their shadows overlap, it is tolerated.
+    // Any overlap of the shadows is within this tolerance.
     pair([6, 1, 9], [-0.3, 0.1, -1], { graze: 100 }),
   ];
   const casts = told("page", [...bodies, ...asked.map((one) => ({ do: "cast", ...one }))]).slice(2);
@@ -36,7 +35,7 @@ test("convex bodies: contact, grazing, separated; proofs", () => {
   assert.equal(told("page", [...bodies, { do: "verify", ...asked[0], proof: lie }])[2].holds, false);
 });
 
-test("how it was found", () => {
+test("searches match the schema", () => {
   const bodies = ["dodecahedron.off", "bracket.obj"].map((name, k) => ({ do: "place", slot: ["moving", "fixed"][k], name, take: "convex", file: name }));
   const asked = pair([6, 1, 9], [-0.3, 0.1, -1]);
   const search = { do: "search", ...asked, solver: "cta", start: "center", until: "exit", after: pair([6, 1, 9], [-0.3, 0.101, -1]) };
@@ -48,7 +47,7 @@ test("how it was found", () => {
   assert.equal(told("found", [...bodies, grid])[2].values, 4);
 });
 
-test("solids and open surfaces: free, blocked, overlapping; proofs", () => {
+test("answers about solids and open surfaces match the schema", () => {
   const pairs = [["bolt.stl", "solid", "plate.off", "solid"], ["dodecahedron.off", "convex", "plate.off", "solid"], ["bolt.stl", "solid", "plate.off", "open"]];
   const seen = new Set();
   for (const [moving, how, fixed, as] of pairs) {
@@ -63,7 +62,7 @@ test("solids and open surfaces: free, blocked, overlapping; proofs", () => {
   for (const one of ["blocked", "free", "free by a plane", "overlapping"]) assert.ok(seen.has(one), [...seen].join());
 });
 
-test("what has no answer", () => {
+test("errors match the schema", () => {
   const refused = told("page", [load("moving", "plate.off", "convex"), { do: "cast" }, { do: "cast", ...pair([0, 0, 0], [0, 0, 1]) }, { do: "dance" }]);
   assert.ok(refused.every(({ error }) => error));
   assert.ok(refused[0].instead.includes("solid"));

@@ -1,4 +1,4 @@
-// The question as an address, and as a command line, without a browser.
+// The question as an address and as a command, without a browser.
 
 import assert from "node:assert/strict";
 import { dirname, join } from "node:path";
@@ -11,17 +11,17 @@ const contents = ["share", "programs", "state", "examples"].map((name) => `expor
 const { outputFiles } = await build({ stdin: { contents, resolveDir, loader: "ts" }, bundle: true, format: "esm", write: false });
 const { EXAMPLES, asCommand, asPython, asRust, fromExample, fromHash, toHash, turningCommand } = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
 
-test("an address leads back to the same bits", () => {
+test("address restores the same bits", () => {
   for (const name of Object.keys(EXAMPLES)) assert.deepEqual(fromHash(toHash(fromExample(name))), fromExample(name));
   const state = fromHash("#m=a b,+%26=#:%25.stl:hull&d=1e-7,-0.1,1e21&graze=1e-9&tol=0&ignore=1&solver=cta&t=-2.5&tab=assembly&ad=1,2,3&atol=0.1&aignore=1&apart=3");
   assert.deepEqual(fromHash(toHash(state)), state);
-  // What is wrong in it is as in the first example.
+  // Invalid fields are as in the first example.
   for (const wrong of ["#example=toString", "#example=__proto__", "#d=1,2&mp=1&solver=x&tab=y&t=Infinity", "#m=x:y&f=:solid", "#%%%"]) {
     assert.deepEqual(fromHash(wrong), fromExample("bracket"));
   }
 });
 
-test("the same question as a command line, or none where none asks the same", () => {
+test("command asks the same question, or there is none", () => {
   assert.equal(asCommand(fromExample("slide")), "colltrans cast bracket.obj bracket.obj --direction=1,0,0 --moving-pose=-9,2,0,0,0,0,1");
   assert.equal(asCommand(fromHash("#example=plate&tol=0.01&ignore=1")),
     "colltrans clearance bolt.stl --from plate.off --direction=0,0,-1 --moving-pose=0,0,7,0,0,0,1 --tolerance=0.01 --ignore-start-overlaps");
@@ -32,7 +32,7 @@ test("the same question as a command line, or none where none asks the same", ()
   assert.equal(asCommand(fromHash("#m=bolt.stl:hull&f=plate.off:solid")), undefined);
 });
 
-test("a motion as an address and as a command line", () => {
+test("motion is restored from its address and its command", () => {
   const state = fromHash("#example=bracket&tab=motion&screw=1,2e-7,-3,0,-1,0.1,-120.5,4&keep=0.25&time=0.5&fp=0,0,1,0,0,0,1&tol=1e-3");
   assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, body: "moving", keep: 0.25, time: 0.5 });
   assert.deepEqual(fromHash(toHash(state)), state);

@@ -1,5 +1,5 @@
-// Bodies that turn, in a browser, held against the same code built natively. Needs `npm run build` before, and the
-// example `native`.
+// Bodies that turn, in a browser, compared with the same code built natively. Needs `npm run build` and the example
+// `native`.
 
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -22,7 +22,7 @@ const probe = () => page.evaluate(() => {
   const { turning: { answer, screw, question }, state } = window.colltrans.probe();
   return { answer, screw, question, time: state.motion.time };
 });
-/** Where a handle is on the screen, once the view is at rest. */
+/** Returns the position of a handle on the screen, once the view is at rest. */
 const grip = (name) => page.evaluate(async (name) => {
   const read = () => window.colltrans.probe().turning.grip(name);
   let last;
@@ -48,7 +48,7 @@ async function example(name, is) {
   await outcome(is);
 }
 
-test("it is read when it is opened; a hinge is thought of, and its first contact said and drawn", async () => {
+test("tab loads when it is opened and shows a hinge with its first contact", async () => {
   assert.ok(!page.read.some((url) => /turning|colltrans_motion|tabs/.test(url)));
   await page.click("#tab-motion");
   await outcome("contact");
@@ -65,12 +65,12 @@ test("it is read when it is opened; a hinge is thought of, and its first contact
     const [x, y] = await page.evaluate((name) => window.colltrans.probe().turning.grip(name), name);
     assert.ok(x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height, `${name} ${x} ${y}`);
   }
-  // The panel of casts is away, but for the bodies.
+  // The panel of casts is hidden, except for the bodies.
   assert.ok(!(await page.isVisible("#headline")) && (await page.isVisible('[aria-label="Choose a file for the moving body"]')));
   assert.deepEqual(page.complaints, []);
 });
 
-test("the slider is the time; at the contact the body is where the library says", async () => {
+test("slider is the time, and the body is at the contact pose", async () => {
   await page.click(".marks button:text-is('first contact')");
   const { answer, time, screw } = await page.waitForFunction(() => window.colltrans.probe().state.motion.time > 0).then(probe);
   assert.equal(time, answer.record.time.lower);
@@ -89,7 +89,7 @@ test("the slider is the time; at the contact the body is where the library says"
   there.forEach((s, k) => assert.ok(Math.abs(s - drawn.at[k]) < 1e-9, `${there} ${drawn.at}`));
 });
 
-test("the proof is made and checked", async () => {
+test("proof is built and checked", async () => {
   await page.click(".turning button:text-is('Verify')");
   await page.waitForSelector(".turning .verdict.yes:has-text('it holds')");
   const { answer: { record: { time, planes } } } = await probe();
@@ -97,7 +97,7 @@ test("the proof is made and checked", async () => {
   assert.equal(said, `✓ it holds: ${planes} planes checked; nothing before ${time.lower}, contact by ${time.upper}`);
 });
 
-test("handles: the angle, the axis, its point and the rise are dragged", async () => {
+test("handles change the angle, the axis, its point and the rise", async () => {
   let last = (await probe()).screw;
   for (const [name, field, by] of [["angle", "angle", [0, -40]], ["axis", "axis", [30, 10]], ["point", "point", [-20, 25]]]) {
     await drag(name, by);
@@ -114,14 +114,14 @@ test("handles: the angle, the axis, its point and the rise are dragged", async (
   await page.click("text='Fit'");
   await page.waitForFunction(() => window.colltrans.probe().turning.grip("rise"));
   const ends = [await grip("point"), await grip("rise")];
-  // On along the axis as it is seen.
+  // Further along the axis as it is shown.
   await drag("rise", [0, 1].map((k) => 0.3 * (ends[1][k] - ends[0][k])));
   await page.waitForFunction((rise) => window.colltrans.probe().turning.screw.rise > rise, rise);
   await page.click(".turning button:text-is('Hinge')");
   await page.waitForFunction(() => window.colltrans.probe().turning.screw.rise === 0);
-  // They are in the address, which asks the same when it is opened.
+  // The values are in the address, which restores the question.
   const { question } = await probe();
-  await page.waitForTimeout(400); // It follows by a quarter of a second.
+  await page.waitForTimeout(400); // The address follows after a quarter of a second.
   assert.match(new URL(page.url()).hash, /tab=motion.*screw=/);
   const other = await at.open(new URL(page.url()).hash, {}, [".turning h2"]);
   await other.waitForFunction(() => window.colltrans.probe().turning?.answer);
@@ -130,7 +130,7 @@ test("handles: the angle, the axis, its point and the rise are dragged", async (
   assert.deepEqual(page.complaints, []);
 });
 
-test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps are kept", async () => {
+test("bolt screws out of its plate only along its axis, and gaps are respected", async () => {
   await example("bolt", "free");
   assert.equal(await headline(), "The whole motion is free");
   await page.click(".turning button:text-is('Verify')");
@@ -141,7 +141,7 @@ test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps
   await page.waitForSelector(".turning .verdict:has-text('contact by')");
   await example("shaft", "contact");
   await example("hinge", "contact");
-  await page.waitForTimeout(400); // The last answer, a contact too, stays until there is another one.
+  await page.waitForTimeout(400); // The last answer, also a contact, stays until the next one.
   await page.waitForFunction(() => {
     const { asking, answer } = window.colltrans.probe().turning;
     return !asking && answer?.record.time?.lower;
@@ -150,13 +150,13 @@ test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps
   await page.fill('[aria-label="Minimum gap"]', "1");
   await page.waitForFunction((before) => window.colltrans.probe().turning.answer?.record.time?.lower < before, before);
   await page.fill('[aria-label="Minimum gap"]', "0");
-  // Into each other from the start; free the other way round.
+  // Overlapping at the start; free in the opposite direction.
   await page.fill('[aria-label="Angle"]', "-20");
   await outcome("free");
   assert.deepEqual(page.complaints, []);
 });
 
-test("either body moves; a slide is a motion too", async () => {
+test("either body moves, and a slide is a motion", async () => {
   await example("hinge", "contact");
   const moved = () => page.evaluate(() => {
     const { view } = window.colltrans.probe();
@@ -166,7 +166,7 @@ test("either body moves; a slide is a motion too", async () => {
   assert.equal(await moved(), "moving");
   const { answer, screw } = await probe();
   await page.click(".turning button:text-is('The fixed one')");
-  // The same seen from it: it turns the other way.
+  // Relative to the other body, it turns in the opposite direction.
   await page.fill('[aria-label="Angle"]', String(-screw.angle));
   await page.waitForFunction((last) => {
     const { turning } = window.colltrans.probe();
@@ -188,7 +188,7 @@ test("either body moves; a slide is a motion too", async () => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("what has no answer is said: an axis without a direction, too many turns", async () => {
+test("invalid motions are reported", async () => {
   const said = (text) => page.waitForFunction((text) => document.querySelector(".turning .said.care")?.textContent.includes(text), text);
   await page.fill('[aria-label="Angle"]', "1e9");
   await said("radians");
@@ -200,7 +200,7 @@ test("what has no answer is said: an axis without a direction, too many turns", 
   assert.deepEqual(page.complaints, []);
 });
 
-test("casts are as they were when one goes back", async () => {
+test("casts are unchanged after a return to their tab", async () => {
   await page.click("#tab-answer");
   await page.waitForFunction(() => document.querySelector("#headline") && !document.querySelector(".marks")?.textContent.includes("end"));
   assert.equal(await page.evaluate(() => window.colltrans.probe().view.extra.children.length), 0);
@@ -212,7 +212,7 @@ test("casts are as they were when one goes back", async () => {
   });
 });
 
-test("on a phone it is all there", async () => {
+test("phone layout shows everything", async () => {
   const phone = await at.open("#example=bracket&tab=motion", { viewport: { width: 390, height: 844 }, hasTouch: true, colorScheme: "dark" }, [".turning h2"]);
   await phone.waitForFunction(() => window.colltrans.probe().turning?.answer);
   const wide = await phone.evaluate(() => document.documentElement.scrollWidth);
@@ -221,7 +221,7 @@ test("on a phone it is all there", async () => {
   await phone.context().close();
 });
 
-test("its answers are the native ones, bit for bit, and as the schema says", async () => {
+test("motion answers equal native answers and match the schema", async () => {
   const pairs = [
     ["dodecahedron.off", "convex", "bracket.obj", "convex", 5],
     ["bolt.stl", "solid", "plate.off", "solid", 7],

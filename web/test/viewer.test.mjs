@@ -9,9 +9,9 @@ import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { data, isCut, launch, program, watch } from "../browser.mjs";
 
-test("a report shows its plan from all sides", async () => {
+test("viewer shows the plan of a report", async () => {
   const folder = mkdtempSync(join(tmpdir(), "report-"));
-  // Without the balls of its bearing, whose plan takes six times as long as that of all else.
+  // Without the balls of its bearing, whose plan takes six times as long as that of all other parts.
   const names = readdirSync(join(data, "gearbox_small")).filter((name) => !name.startsWith("bearing_ball"));
   const parts = names.map((name) => join(data, "gearbox_small", name));
   execFileSync(program("report"), ["0.1", join(folder, "report.html"), ...parts]);

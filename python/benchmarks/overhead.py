@@ -1,8 +1,9 @@
-"""What Python costs over the bare library: one call, and many.
+"""Measures the overhead of Python over the bare library, for single calls and for many rows.
 
-``python python/benchmarks/overhead.py [ROWS]`` with the package installed and Rust at hand. The
-bare library runs the same casts (``crates/colltrans-python/examples/bare.rs``), in turns with
-Python. CPU time, the least of the turns; ``wall`` is the wall time of two threads.
+``python python/benchmarks/overhead.py [ROWS]`` needs the installed package and a Rust toolchain.
+The bare library runs the same casts (``crates/colltrans-python/examples/bare.rs``), alternating
+with Python. Times are CPU times, the minimum of the repetitions; ``wall`` is the wall time of two
+threads.
 """
 
 import json
@@ -25,7 +26,7 @@ TURNS = 5
 
 
 def settings(vertices, rows):
-    """Two bodies of points on a sphere, one turned about anyhow and dropped onto the other."""
+    """Draws two hulls of points on a sphere; one, rotated at random, moves down to the other."""
     random = np.random.default_rng(7)
     clouds = random.normal(size=(2, vertices, 3))
     clouds /= np.linalg.norm(clouds, axis=-1, keepdims=True)
@@ -36,7 +37,7 @@ def settings(vertices, rows):
 
 
 def program():
-    """The bare library's, built."""
+    """Builds the program of the bare library and returns its path."""
     build = ["cargo", "build", "--release", "--example", "bare", "--message-format=json"]
     told = subprocess.run(build, cwd=CRATE, check=True, capture_output=True, text=True).stdout
     messages = map(json.loads, told.splitlines())
@@ -44,7 +45,7 @@ def program():
 
 
 def bare(files, threads, count):
-    """Nanoseconds of CPU and of wall time a cast of the library alone, without its start."""
+    """Returns nanoseconds of CPU and wall time of a cast of the bare library, without its start."""
 
     def cpu(repeats):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -59,7 +60,7 @@ def bare(files, threads, count):
 
 
 def many(bodies, rows, threads):
-    """The same of Python's."""
+    """Returns the same for Python."""
 
     poses, directions = map(np.ascontiguousarray, (rows[:, :7], rows[:, 7:]))
 

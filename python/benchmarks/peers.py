@@ -1,19 +1,18 @@
-"""One cast by this package and by what is used in its place today: time, error, what is missed.
+"""Compares casts by this package and by other packages: time, error, missed contacts.
 
-``pip install './python[peers]'``, then ``python python/benchmarks/peers.py [ROWS]``. All answer
-the same settings: two polytopes, one turned about anyhow above the other and moved down, some past
-it. They take turns: each row is asked of all, one after the other, in an order that goes round;
-and of each twice, so that a time is *in turns*, after the others have had the caches, and *hot*,
-right after the same row. Of the others only Bullet casts convex bodies (``convexSweepTest``, in
-Python by panda3d); each of the rest runs the best loop that its distance query allows, conservative
-advancement: move on by the distance over the part of the direction along its normal, until it is
-below a billionth, the bodies part, or 100 steps are done. python-fcl's own continuous collision has
-rows of its own.
+``pip install './python[peers]'``, then ``python python/benchmarks/peers.py [ROWS]``. All packages
+answer the same rows: two polytopes, one rotated at random above the other and moved down, in some
+rows past it. Each row is answered by all packages in turn, in an order that rotates, and twice by
+each: a time is *in turns* if the other packages used the caches before, and *hot* right after the
+same row. Only Bullet casts convex bodies too (``convexSweepTest``, in Python by panda3d). The other
+packages use conservative advancement, the best loop that their distance query allows: move by the
+distance divided by the component of the direction along the normal, until the distance is below
+1e-9, the bodies separate, or 100 steps are done. The continuous collision of python-fcl has its own
+rows.
 
-The reference is this package's answer with its proof: the error is against its certified
-bounds. *missed* are contacts that were not found, *invented* those that are none, *off* those
-found but wrong by more than 1e-6 (the bodies have radius 1), *stuck* the loops that did not
-end.
+The reference is the answer of this package with its proof: errors are relative to its certified
+bounds. *missed* contacts were not found, *invented* contacts do not exist, *off* contacts are wrong
+by more than 1e-6 (the bodies have radius 1), and *stuck* loops did not end.
 """
 
 import sys
@@ -30,7 +29,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def settings(vertices, rows):
-    """Points on two spheres, and for each row where the moving one is and how it is turned."""
+    """Draws points on two spheres, and for each row a pose of the moving one."""
     random = np.random.default_rng(11)
     clouds = random.normal(size=(2, vertices, 3))
     clouds /= np.linalg.norm(clouds, axis=-1, keepdims=True)
@@ -40,7 +39,7 @@ def settings(vertices, rows):
 
 
 def advance(distance):
-    """Conservative advancement along DOWN: the translation, None for a miss, NaN if stuck."""
+    """Advances conservatively along DOWN; returns the translation, None if missed, NaN if stuck."""
     t = 0.0
     for _ in range(STEPS):
         gap, normal = distance(t)
@@ -56,12 +55,12 @@ def advance(distance):
 
 
 def between(from_moving, from_fixed, gap):
-    """The normal from the moving body to the fixed one, by their nearest points."""
+    """Returns the unit vector between the nearest points, from the moving body to the fixed one."""
     return (np.asarray(from_fixed) - np.asarray(from_moving)) / max(gap, 1e-300)
 
 
 def polygons(body):
-    """The triangles of a body, by its own vertices."""
+    """Returns the triangles of a body as indices of its vertices."""
     return np.array([(f[0], *f[k : k + 2]) for f in body.faces for k in range(1, len(f) - 1)])
 
 
@@ -300,7 +299,7 @@ PEERS = {
 
 
 def judged(found, known):
-    """How a row went: its error if both found a contact, else a word."""
+    """Returns the error of a row if both found a contact, otherwise a word for its result."""
     if found is not None and np.isnan(found):
         return "stuck"
     if not isinstance(known, Contact):

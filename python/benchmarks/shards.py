@@ -1,10 +1,10 @@
-"""What queries in files cost: CPU a row, and memory, over many rows.
+"""Measures queries in files: CPU time for a row, and memory, over many rows.
 
-``python python/benchmarks/shards.py ROWS [FOLDER]`` writes shards of 500,000 rows of random
-settings of two polytopes of 128 vertices, answers them by ``local`` and by ``ray`` (where it is
-installed) on two threads, and prints CPU time a row against the bare ``contact_range_many``, rows a
-second of wall time, and the largest resident memory of any process. The files of both have the same
-bytes, or it fails.
+``python python/benchmarks/shards.py ROWS [FOLDER]`` writes shards of 500,000 rows with random poses
+of two polytopes of 128 vertices, and answers them with the engines ``local`` and ``ray`` (if it is
+installed) on two threads. It prints the CPU time for a row compared with ``contact_range_many``
+alone, the rows answered in a second of wall time, and the largest resident memory of any process.
+It fails if the files of both engines differ in any byte.
 """
 
 import filecmp
@@ -57,7 +57,7 @@ def write(folder, count):
 
 
 def family(root):
-    """A process and all below it, with their CPU seconds and resident bytes."""
+    """Returns a process and its descendants, with their CPU seconds and resident bytes."""
     parents, found = {}, {}
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
@@ -78,7 +78,7 @@ def family(root):
 
 
 def run(folder, engine):
-    """CPU seconds of all processes, wall seconds, and the largest resident memory over time."""
+    """Runs an engine; returns CPU seconds of all processes, wall seconds and peak memory."""
     words = [str(folder / "in"), str(folder / engine), "--bodies", str(folder / "bodies.parquet")]
     command = [sys.executable, "-m", "colltrans.bulk", *words, "--engine", engine, "--threads", "2"]
     began = time.perf_counter()

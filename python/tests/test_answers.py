@@ -36,7 +36,7 @@ from colltrans import (
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 
 
-def test_outcomes_match_by_name_and_place() -> None:
+def test_outcomes_match_by_field_name_and_by_position() -> None:
     match cast(CUBE, CUBE, [1, 0, 0], moving_pose=[-3, 0.5, 0.25]):
         case Contact(translation, normal, point):
             assert (translation, normal.tolist(), point[0]) == (2.0, [1, 0, 0], 0.0)
@@ -54,7 +54,7 @@ def test_outcomes_match_by_name_and_place() -> None:
             raise AssertionError(other)
 
 
-def test_clearances_have_distances() -> None:
+def test_a_clearance_gives_its_distance_as_a_length() -> None:
     def toward(direction: list[float], z: float = 1.0) -> object:
         return clearance(CUBE, CUBE, direction, moving_pose=[0, 0, z])
 
@@ -73,7 +73,7 @@ def test_clearances_have_distances() -> None:
             raise AssertionError(other)
 
 
-def test_points_features_and_the_pose_before() -> None:
+def test_a_contact_gives_points_features_and_its_pose() -> None:
     contact = cast(CUBE, CUBE, [2, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(contact, Contact)
     assert contact.translation == 1.0
@@ -87,7 +87,7 @@ def test_points_features_and_the_pose_before() -> None:
     assert contact.steps.started_from == "scratch"
 
 
-def test_a_proof_proves_its_own_query_only() -> None:
+def test_a_proof_of_another_query_is_refused() -> None:
     contact = cast(CUBE, CUBE, [1, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(contact, Contact)
     proof = contact.certificate
@@ -129,7 +129,7 @@ def test_every_answer_of_many_is_proven() -> None:
                 assert query.verify(apart.certificate) > 0
 
 
-def test_ranges_depths_and_intersections() -> None:
+def test_range_depth_and_intersection_have_expected_values() -> None:
     found = contact_range(CUBE, CUBE, [0.5, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(found, ContactRange) and found.interval == (4.0, 8.0)
     assert found.last.turned.query.direction.tolist() == [-0.5, 0, 0]
@@ -146,7 +146,7 @@ def test_ranges_depths_and_intersections() -> None:
             raise AssertionError(other)
 
 
-def test_queries_are_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
+def test_a_saved_query_replays_with_the_same_answer(cli: Path, tmp_path: Path) -> None:
     settings = draw(seed=7, count=60)
     bodies = settings.bodies()
     for i in range(len(settings)):
@@ -171,7 +171,7 @@ def test_queries_are_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
         Cast.from_json("[]")
 
 
-def test_what_a_query_was_can_be_asked() -> None:
+def test_a_query_gives_its_arguments() -> None:
     answer = cast(CUBE, CUBE, [1, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(answer, Contact)
     query = answer.query
@@ -192,7 +192,7 @@ def test_what_a_query_was_can_be_asked() -> None:
         ({"solver": "newton"}, 'unknown solver "newton"; known solvers: auto, cta, portal'),
     ],
 )
-def test_queries_that_are_refused(arguments: dict[str, Any], match: str) -> None:
+def test_invalid_queries_are_refused(arguments: dict[str, Any], match: str) -> None:
     all_arguments: dict[str, Any] = {"direction": [1, 0, 0], **arguments}
     for question in (cast, contact_range, clearance, directional_depth, intersects, Cast):
         with pytest.raises(QueryError, match=match):
@@ -201,12 +201,12 @@ def test_queries_that_are_refused(arguments: dict[str, Any], match: str) -> None
         Tracker().clearance(CUBE, CUBE, **all_arguments)
 
 
-def test_bodies_that_are_none_are_refused() -> None:
+def test_arguments_that_are_not_bodies_are_refused() -> None:
     with pytest.raises(TypeError, match="ConvexPolyhedron"):
         cast(CUBE, "cube", [1, 0, 0])  # type: ignore[arg-type]
 
 
-def test_a_tracker_says_what_a_cast_says() -> None:
+def test_a_tracker_answers_as_a_cast() -> None:
     settings = draw(seed=8, count=300)
     bodies = settings.bodies()
     tracker = Tracker()
@@ -227,7 +227,7 @@ def test_a_tracker_says_what_a_cast_says() -> None:
     assert tracker.steps.started_from == "scratch"
 
 
-def test_a_tracker_follows_its_bodies_beyond_their_names() -> None:
+def test_a_tracker_keeps_its_bodies_alive() -> None:
     tracker = Tracker()
     for seed in range(50):
         random = np.random.default_rng(seed)
@@ -238,7 +238,7 @@ def test_a_tracker_follows_its_bodies_beyond_their_names() -> None:
         assert isinstance(found, Contact) and found.certificate.verify() >= 0
 
 
-def test_answers_go_from_thread_to_thread() -> None:
+def test_answers_can_be_used_on_other_threads() -> None:
     found: list[object] = []
 
     def ask() -> None:

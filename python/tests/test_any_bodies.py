@@ -35,7 +35,7 @@ PLATE = Solid.read(ROOT / "data/plate.off")
 BOLT = Solid.read(ROOT / "data/bolt.stl")
 
 
-def test_one_call_takes_both_kinds() -> None:
+def test_convex_bodies_and_solids_share_each_call() -> None:
     assert clearance(CUBE, CUBE, DOWN, moving_pose=[0, 0, 3]).distance == pytest.approx(2)
     pairs: list[tuple[Any, Any]] = [(BOLT, PLATE), (CUBE, PLATE), (BOLT, CUBE)]
     for moving, fixed in pairs:
@@ -49,7 +49,7 @@ def test_one_call_takes_both_kinds() -> None:
     assert type(within).__name__ != "SolidOverlapping"
 
 
-def test_choices_of_the_other_kind_are_refused() -> None:
+def test_options_of_the_other_kind_of_body_are_refused() -> None:
     with pytest.raises(QueryError, match="tolerance and ignore_start_overlaps are for solids"):
         clearance(CUBE, CUBE, DOWN, tolerance=1e-6)  # type: ignore[call-overload]
     with pytest.raises(QueryError, match="graze_tolerance and solver are for convex bodies"):
@@ -75,7 +75,7 @@ def poses(n: int) -> Any:
     return np.hstack([random.uniform(-4, 4, size=(n, 3)) + [0, 0, 6], turns])
 
 
-def test_columns_of_solids_are_the_single_answers() -> None:
+def test_columns_of_solids_equal_single_answers() -> None:
     n = 60
     starts, index = poses(n), np.arange(n) % 2
     tolerances = np.where(np.arange(n) % 3 == 0, 1e-6, 1e-3)
@@ -102,7 +102,7 @@ def test_columns_of_solids_are_the_single_answers() -> None:
     assert columns.to_arrow().column_names[:2] == ["outcome", "distance"]
 
 
-def test_bad_rows_of_solids_are_errors() -> None:
+def test_invalid_rows_of_solids_become_errors() -> None:
     starts = poses(8)
     starts[1, 0], starts[2, 3:] = np.nan, 7
     directions = np.tile(DOWN, (8, 1))
@@ -149,7 +149,7 @@ QUERIES = {
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are sent another way")
 @pytest.mark.parametrize("query", QUERIES)
-def test_interrupting_ends_queries_about_large_solids(query: str) -> None:
+def test_a_signal_interrupts_queries_of_large_solids(query: str) -> None:
     program = LONG.replace("QUERY", QUERIES[query])
     command = [sys.executable, "-c", program, "150"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:

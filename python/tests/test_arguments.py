@@ -111,7 +111,7 @@ INSTEAD: list[tuple[Callable[[], Any], type[Exception], list[str]]] = [
 
 
 @pytest.mark.parametrize(("call", "kind", "words"), INSTEAD)
-def test_what_is_confused_is_refused_with_what_is_accepted(
+def test_confused_arguments_are_refused_with_the_accepted_forms(
     call: Callable[[], Any], kind: type[Exception], words: list[str]
 ) -> None:
     with pytest.raises(kind) as refused:
@@ -122,7 +122,7 @@ def test_what_is_confused_is_refused_with_what_is_accepted(
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.filterwarnings("ignore:the matrix subclass")
-def test_every_form_of_an_array_says_the_same(form: Any) -> None:
+def test_every_form_of_an_array_gives_the_same_answer(form: Any) -> None:
     start, direction = np.array([-3.0, 0, 0]), np.array([2.0, 0, 0])
     turned = np.array([[0.0, -1, 0, -3], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
     quaternion = np.array([-3.0, 0, 0, 0, 0, 0, 1])
@@ -144,7 +144,7 @@ MATRICES = [np.eye(3, 4), np.eye(4)]
 
 
 @pytest.mark.parametrize("matrix", MATRICES)
-def test_matrices_are_taken_entry_by_entry(matrix: NDArray[Any]) -> None:
+def test_matrices_are_read_entry_by_entry(matrix: NDArray[Any]) -> None:
     random = np.random.default_rng(3)
     for _ in range(50):
         turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
@@ -158,7 +158,7 @@ def test_matrices_are_taken_entry_by_entry(matrix: NDArray[Any]) -> None:
         assert repr(one) == repr(many[0]) == repr(cast(CUBE, CUBE, [0, 0, 1], moving_pose=pose))
 
 
-def test_anything_with_a_matrix_is_a_pose() -> None:
+def test_objects_with_a_matrix_are_accepted_as_poses() -> None:
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     whole = np.eye(4)
     whole[:3, :3] = turn
@@ -171,7 +171,7 @@ def test_anything_with_a_matrix_is_a_pose() -> None:
         assert repr(cast_many(CUBE, CUBE, [1, 0, 0], moving_pose=stack)[4]) == repr(known)
 
 
-def test_scipys_rotations_are_poses() -> None:
+def test_scipy_rotations_are_accepted_as_poses() -> None:
     transform = pytest.importorskip("scipy.spatial.transform")
     turns = transform.Rotation.random(20, random_state=1)
     rows = cast_many(CUBE, CUBE, [0, 0, 1], moving_pose=turns)
@@ -179,7 +179,7 @@ def test_scipys_rotations_are_poses() -> None:
         assert repr(rows[i]) == repr(cast(CUBE, CUBE, [0, 0, 1], moving_pose=turns[i]))
 
 
-def test_a_pose_takes_another_back() -> None:
+def test_a_pose_times_its_inverse_is_the_identity() -> None:
     pose = Pose([1, 2, 3, 0, 0, 0.6, 0.8])
     assert np.allclose((pose @ pose.inverse()).as_matrix(), np.eye(4), atol=1e-15)
     assert np.array_equal(Pose(pose).as_matrix(), pose.as_matrix())
@@ -213,20 +213,20 @@ REFUSED: list[Any] = [
 
 
 @pytest.mark.parametrize("direction", REFUSED)
-def test_what_is_no_vector_is_refused(direction: Any) -> None:
+def test_invalid_vectors_are_refused(direction: Any) -> None:
     with pytest.raises(InputError, match="direction"):
         cast(CUBE, CUBE, direction)
 
 
 @pytest.mark.parametrize("pose", [p for p in REFUSED if p is not None])
-def test_what_is_no_pose_is_refused(pose: Any) -> None:
+def test_invalid_poses_are_refused(pose: Any) -> None:
     with pytest.raises(InputError, match="moving_pose"):
         cast(CUBE, CUBE, [1, 0, 0], moving_pose=pose)
     with pytest.raises(InputError, match="source"):
         Pose(pose)
 
 
-def test_poses_that_are_none_are_refused_in_the_librarys_words() -> None:
+def test_invalid_rotations_are_refused_with_the_message_of_the_library() -> None:
     with pytest.raises(PoseError, match="has length 2, not 1"):
         Pose([0, 0, 0, 0, 0, 0, 2])
     with pytest.raises(PoseError, match="is not a rotation"):
@@ -269,7 +269,7 @@ def accept(array: NDArray[Any], ways: int) -> NDArray[Any]:
 
 
 @given(ANYTHING | NUMBERS, ANYTHING | NUMBERS, st.integers(0, 7))
-def test_nothing_but_an_answer_or_an_error_of_ours(
+def test_any_argument_gives_an_answer_or_a_colltrans_error(
     direction: NDArray[Any], pose: NDArray[Any], ways: int
 ) -> None:
     direction, pose = accept(direction, ways), accept(pose, ways)
@@ -287,7 +287,7 @@ def test_nothing_but_an_answer_or_an_error_of_ours(
 
 
 @given(ANYTHING)
-def test_faces_of_any_kind(faces: NDArray[Any]) -> None:
+def test_faces_of_any_type_are_read_or_refused(faces: NDArray[Any]) -> None:
     corners = np.vstack([np.zeros(3), np.eye(3)])
     for form in (faces, faces.tolist()):
         try:

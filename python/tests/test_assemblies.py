@@ -26,7 +26,7 @@ def gearbox() -> Assembly:
     return Assembly.read(GEARBOX)
 
 
-def test_the_plan_is_the_command_lines(cli: Path, gearbox: Assembly) -> None:
+def test_the_plan_equals_that_of_the_command_line(cli: Path, gearbox: Assembly) -> None:
     command: list[str | Path] = [cli, "assembly", GEARBOX, "--json"]
     told = subprocess.run(command, check=True, capture_output=True, text=True)
     known = json.loads(told.stdout)
@@ -51,7 +51,7 @@ def test_the_plan_is_the_command_lines(cli: Path, gearbox: Assembly) -> None:
     assert asked.proven is None and f"{asked.directions} directions asked" in asked.because
 
 
-def test_rooms_and_blocking(gearbox: Assembly) -> None:
+def test_rooms_and_blocking_name_the_obstructing_parts(gearbox: Assembly) -> None:
     rooms = gearbox.rooms([[0, 0, 2], [0, 0, -1]])
     assert rooms.directions.tolist() == [[0, 0, 1], [0, 0, -1]]
     bolt = rooms.parts.index("bolt_0")
@@ -72,7 +72,7 @@ def test_a_removal_map(gearbox: Assembly) -> None:
     assert 0 <= rooms.free_share < 0.5
 
 
-def test_parts_by_hand_stuck_and_fixed() -> None:
+def test_parts_from_arrays_can_be_stuck_or_fixed() -> None:
     parts = {"lower": cuboid([0, 0, 0], [1, 1, 1]), "upper": cuboid([0, 0, 1], [1, 1, 2])}
     two = Assembly(parts).with_fixed("lower")
     plan = two.plan([[0, 0, 1]])
@@ -87,7 +87,7 @@ def test_parts_by_hand_stuck_and_fixed() -> None:
     assert overlap.with_ignored(("a", "b"), always=True).rooms(ahead).free()["a"] == [0]
 
 
-def test_refusals(tmp_path: Path, gearbox: Assembly) -> None:
+def test_invalid_arguments_are_refused(tmp_path: Path, gearbox: Assembly) -> None:
     with pytest.raises(AssemblyError):
         Assembly.read(tmp_path / "nothing")
     with pytest.raises(AssemblyError, match="nobody"):
@@ -102,7 +102,7 @@ def test_refusals(tmp_path: Path, gearbox: Assembly) -> None:
         gearbox.plan(tolerance=-1.0)
 
 
-def test_what_is_asked_of_a_plan() -> None:
+def test_a_plan_follows_its_options() -> None:
     gearbox = Assembly.read(GEARBOX).with_fixed("housing")
     plan = gearbox.plan(remove="cover")
     assert plan.wanted is not None and plan.wanted.least and plan.wanted.out
@@ -122,7 +122,7 @@ def test_what_is_asked_of_a_plan() -> None:
             gearbox.with_before("bolt_0", "cover").with_before(first, "bolt*")
 
 
-def test_a_press_fit_has_a_tolerance_of_its_own() -> None:
+def test_a_press_fit_uses_its_own_tolerance() -> None:
     floor = cuboid([-1, -1, -1], [3, 3, 0])
     block, pin = cuboid([0, 0, 0], [1, 1, 1]), cuboid([0.995, 0, 0], [2, 1, 1])
     parts = Assembly({"floor": floor, "block": block, "pin": pin}).with_fixed("floor", "block")
@@ -165,7 +165,9 @@ def test_rounds_the_way_back_and_times(gearbox: Assembly) -> None:
             gearbox.plan(times=wrong)
 
 
-def test_the_report_is_the_command_lines(cli: Path, gearbox: Assembly, tmp_path: Path) -> None:
+def test_the_report_equals_that_of_the_command_line(
+    cli: Path, gearbox: Assembly, tmp_path: Path
+) -> None:
     command: list[str | Path] = [cli, "assembly", GEARBOX, "-o", tmp_path / "out"]
     subprocess.run(command, check=True, capture_output=True)
     plan = gearbox.plan()

@@ -114,7 +114,9 @@ QUESTIONS = [
 
 
 @pytest.mark.parametrize(("query", "one", "many"), QUESTIONS)
-def test_the_command_line_says_the_same(batch: Batch, query: str, one: Any, many: Any) -> None:
+def test_answers_have_the_bits_of_the_command_line(
+    batch: Batch, query: str, one: Any, many: Any
+) -> None:
     lines = batch(SETTINGS.lines(query=query))
     answers = asked(SETTINGS, one)
     columns = asked_at_once(SETTINGS, many, None)
@@ -137,7 +139,7 @@ def test_the_command_line_says_the_same(batch: Batch, query: str, one: Any, many
     assert len(outcomes) == {"contact": 3, "clearance": 5}[query], "all outcomes occur"
 
 
-def test_a_cast_is_the_first_end_of_the_range(batch: Batch) -> None:
+def test_a_cast_equals_the_first_end_of_the_range(batch: Batch) -> None:
     columns = asked_at_once(SETTINGS, colltrans.cast_many, 2)
     for i, line in enumerate(batch(SETTINGS.lines())):
         assert columns.outcome[i] == line["outcome"]
@@ -148,7 +150,7 @@ def test_a_cast_is_the_first_end_of_the_range(batch: Batch) -> None:
 @pytest.mark.parametrize(
     "many", [colltrans.cast_many, colltrans.contact_range_many, colltrans.clearance_many]
 )
-def test_threads_make_no_difference(many: Any) -> None:
+def test_the_number_of_threads_does_not_change_answers(many: Any) -> None:
     settings = draw(seed=21, count=3000)
     one = asked_at_once(settings, many, 1)
     for threads in (2, 3, 8):
@@ -158,14 +160,14 @@ def test_threads_make_no_difference(many: Any) -> None:
             assert mine.tobytes() == its.tobytes()
 
 
-def test_rows_are_the_answers() -> None:
+def test_rows_equal_single_answers() -> None:
     columns = asked_at_once(SETTINGS, colltrans.clearance_many, None)
     for row, alone in zip(columns, asked(SETTINGS, colltrans.clearance), strict=True):
         assert row.to_dict() == alone.to_dict()
 
 
 @pytest.mark.parametrize("solver", ["cta", "portal"])
-def test_solvers_are_the_command_lines(batch: Batch, solver: str) -> None:
+def test_solvers_have_the_bits_of_the_command_line(batch: Batch, solver: str) -> None:
     settings = draw(seed=22, count=100)
     bodies = settings.bodies()
     columns = colltrans.contact_range_many(

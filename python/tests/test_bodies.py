@@ -29,7 +29,7 @@ CORNERS = np.vstack([np.zeros(3), np.eye(3)])
 FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
 
 
-def test_a_hull_drops_what_is_inside() -> None:
+def test_a_hull_drops_inner_points() -> None:
     grid = np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
     cube = ConvexPolyhedron(grid)
     assert (len(cube.vertices), len(cube.faces), cube.volume, cube.dimension) == (8, 6, 8.0, 3)
@@ -43,11 +43,11 @@ def test_a_hull_drops_what_is_inside() -> None:
 
 
 @pytest.mark.parametrize("faces", [FACES, np.array(FACES), np.array(FACES, ">u2"), tuple(FACES)])
-def test_faces_in_every_form(faces: object) -> None:
+def test_faces_in_every_form_give_the_same_body(faces: object) -> None:
     assert ConvexPolyhedron.from_mesh(CORNERS, faces).volume == 1 / 6  # type: ignore[arg-type]
 
 
-def test_polygons_of_different_lengths() -> None:
+def test_polygons_of_different_lengths_are_accepted() -> None:
     pyramid = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]])
     faces = [[3, 2, 1, 0], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
     assert len(ConvexPolyhedron.from_mesh(pyramid, faces).faces) == 5
@@ -68,7 +68,7 @@ def test_polygons_of_different_lengths() -> None:
         ([[[0, 1, 2]]], InputError, "face 0"),
     ],
 )
-def test_faces_that_are_refused(faces: object, error: type[Exception], match: str) -> None:
+def test_invalid_faces_are_refused(faces: object, error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):
         ConvexPolyhedron.from_mesh(CORNERS, faces)  # type: ignore[arg-type]
 
@@ -84,7 +84,7 @@ def test_faces_that_are_refused(faces: object, error: type[Exception], match: st
         ("points", InputError, "points: the text 'points' is not an array"),
     ],
 )
-def test_points_that_are_refused(points: object, error: type[Exception], match: str) -> None:
+def test_invalid_points_are_refused(points: object, error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):
         ConvexPolyhedron(points)  # type: ignore[arg-type]
 
@@ -111,7 +111,7 @@ def test_bodies_pickle_and_copy_with_the_same_bits() -> None:
         ConvexPolyhedron.from_json("{")
 
 
-def test_files_are_read_as_the_command_line_reads_them(tmp_path: Path) -> None:
+def test_files_give_the_same_body_as_on_the_command_line(tmp_path: Path) -> None:
     parts = ROOT / "data"
     body = colltrans.read(parts / "dodecahedron.off")
     assert (len(body.vertices), len(body.faces)) == (20, 12)
@@ -156,7 +156,7 @@ def test_a_cube_shrinks_and_grows() -> None:
     assert (len(cube.vertices), cube.volume) == (8, 64)
 
 
-def test_a_face_too_small_to_stay_is_named() -> None:
+def test_a_face_that_vanishes_in_shrinking_is_named() -> None:
     """Of a cube with a corner cut off: the cut, x + y + z = 11.5, goes to 9.77, the corner to 9."""
     corners = np.array([[x, y, z] for x in (0, 4) for y in (0, 4) for z in (0, 4)][:-1])
     body = ConvexPolyhedron(np.vstack([corners, 4 - np.eye(3) / 2]))
@@ -176,7 +176,7 @@ def test_a_face_too_small_to_stay_is_named() -> None:
     assert back.input_indices.tolist() == smaller.input_indices.tolist()
 
 
-def test_bodies_that_cannot_shrink_or_grow() -> None:
+def test_impossible_offsets_are_refused() -> None:
     plate = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 1])
     with pytest.raises(BuildError, match=r"shrunk by 0\.75: it contains no ball.* of radius 0\.5"):
         plate.shrunk(0.75)

@@ -60,7 +60,7 @@ def test_a_folder_of_shards(tmp_path: Path, bodies: Path, capsys: Any) -> None:
     assert table["outcome"].to_pylist() == known.outcome.tolist()
 
 
-def test_what_is_done_is_skipped_until_something_changes(
+def test_finished_shards_are_skipped_until_an_input_changes(
     tmp_path: Path, bodies: Path, capsys: Any
 ) -> None:
     asked = shards(tmp_path / "in", 3, 50)
@@ -97,7 +97,7 @@ def test_bad_rows_are_counted_and_kept(tmp_path: Path, bodies: Path) -> None:
     assert table["id"].to_pylist() == columns["id"]
 
 
-def test_json_lines_say_what_the_command_line_says(tmp_path: Path, batch: Batch) -> None:
+def test_json_lines_equal_those_of_the_command_line(tmp_path: Path, batch: Batch) -> None:
     data = str(ROOT / "data")
     asked = [
         {
@@ -127,7 +127,7 @@ MESH = str(ROOT / "data" / "dodecahedron.off")
 QUERY = {"moving": MESH, "fixed": MESH, "direction": [0, 0, -1], "moving_pose": [0, 0, 9]}
 
 
-def test_lines_that_ask_something_else_are_refused_and_lose_nothing(tmp_path: Path) -> None:
+def test_lines_with_another_question_become_errors_and_lose_no_row(tmp_path: Path) -> None:
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"moving": {"mesh": MESH, "scale": 2}}, "moving: expected a key, or an object with"),
         ({"moving": {"mesh": MESH, "hull": True}}, "moving: expected a key, or an object with"),
@@ -186,7 +186,7 @@ def test_a_shard_without_queries_has_no_answers(tmp_path: Path, bodies: Path, ca
         ("graze_tolerance", ["a", "b"]),
     ],
 )
-def test_columns_of_another_kind(
+def test_columns_of_a_wrong_type_are_refused(
     tmp_path: Path, bodies: Path, name: str, column: list[Any], capsys: Any
 ) -> None:
     file = tmp_path / "queries.parquet"
@@ -196,7 +196,7 @@ def test_columns_of_another_kind(
     assert not list((tmp_path / "out").iterdir())
 
 
-def test_tables_of_bodies_that_are_none(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+def test_invalid_tables_of_bodies_are_refused(tmp_path: Path, bodies: Path, capsys: Any) -> None:
     file, table = tmp_path / "queries.parquet", tmp_path / "table.parquet"
     write(file, queries(1, 4))
     words = [str(file), str(tmp_path / "out"), "--bodies", str(table)]
@@ -215,7 +215,7 @@ def test_tables_of_bodies_that_are_none(tmp_path: Path, bodies: Path, capsys: An
     assert message.startswith("moving: points: not an array of numbers")
 
 
-def test_copies_of_bodies_read_their_table_no_more(bodies: Path) -> None:
+def test_a_copied_table_of_bodies_is_not_read_again(bodies: Path) -> None:
     here = Bodies(str(bodies))
     here.share()
     digest = here.digest(())
@@ -248,7 +248,7 @@ def test_copies_of_bodies_read_their_table_no_more(bodies: Path) -> None:
         ["bodies.parquet", "out"],
     ],
 )
-def test_files_that_are_none(
+def test_invalid_files_are_refused(
     tmp_path: Path, bodies: Path, words: list[str], capsys: Any, monkeypatch: Any
 ) -> None:
     monkeypatch.chdir(bodies.parent)
@@ -278,7 +278,7 @@ def killed_and_repeated(asked: Path, out: Path, bodies: Path, *more: str) -> str
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")
-def test_a_killed_run_goes_on(tmp_path: Path, bodies: Path) -> None:
+def test_a_killed_run_is_resumed(tmp_path: Path, bodies: Path) -> None:
     asked = shards(tmp_path / "in", 8, 60_000)
     told = killed_and_repeated(asked, tmp_path / "out", bodies, "--threads", "1")
     assert "(0 were done before)" not in told
@@ -286,7 +286,7 @@ def test_a_killed_run_goes_on(tmp_path: Path, bodies: Path) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are sent another way")
-def test_interrupting_ends_it_and_leaves_nothing_half(tmp_path: Path, bodies: Path) -> None:
+def test_an_interrupt_ends_the_run_and_leaves_no_partial_file(tmp_path: Path, bodies: Path) -> None:
     asked, out = shards(tmp_path / "in", 1, 1_000_000), tmp_path / "out"
     run = command(asked, out, bodies, "--threads", "1")
     with subprocess.Popen(run, stderr=subprocess.PIPE, text=True) as process:
@@ -328,7 +328,7 @@ def dies_once(job: Job, bodies: Bodies) -> Report:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_ray_answers_every_row_once_though_a_worker_dies(
+def test_ray_answers_every_row_once_even_if_a_worker_dies(
     tmp_path: Path, bodies: Path, cluster: Any
 ) -> None:
     asked = shards(tmp_path / "in", 5, 2000)
@@ -350,7 +350,7 @@ def test_ray_answers_every_row_once_though_a_worker_dies(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")
-def test_ray_goes_on_after_its_driver_died(tmp_path: Path, bodies: Path, cluster: Any) -> None:
+def test_ray_resumes_after_its_driver_died(tmp_path: Path, bodies: Path, cluster: Any) -> None:
     asked = shards(tmp_path / "in", 8, 60_000)
     more = ("--engine", "ray", "--threads", "2")
     told = killed_and_repeated(asked, tmp_path / "out", bodies, *more)

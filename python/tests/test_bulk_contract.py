@@ -52,7 +52,7 @@ def test_columns_that_would_change_the_answer_are_refused(bodies: Path, name: st
             answer_table(table, Bodies(str(bodies)), Options(keep_columns=kept))
 
 
-def test_columns_are_kept_as_they_are(tmp_path: Path, bodies: Path) -> None:
+def test_extra_columns_are_copied_unchanged(tmp_path: Path, bodies: Path) -> None:
     columns = queries(1, 3) | {"weight": [1, None, 3], "labels": [["a"], [], None]}
     file = write(tmp_path / "queries.parquet", columns)
     words = [str(file), str(tmp_path / "out"), "--bodies", str(bodies)]
@@ -68,7 +68,7 @@ def test_columns_are_kept_as_they_are(tmp_path: Path, bodies: Path) -> None:
     assert np.array_equal(whole["translation"], table["translation"], equal_nan=True)
 
 
-def test_what_cannot_be_kept_is_said(bodies: Path) -> None:
+def test_columns_that_cannot_be_copied_are_reported(bodies: Path) -> None:
     table, known = table_of(queries(1, 2) | {"normal": [1, 2]}), Bodies(str(bodies))
     with pytest.raises(InputError, match="'normal' is not kept: the answers have one"):
         answer_table(table, known, Options(keep_columns=("normal",)))
@@ -76,7 +76,7 @@ def test_what_cannot_be_kept_is_said(bodies: Path) -> None:
         answer_table(table_of(queries(1, 2)), known, Options(keep_columns=("colour",)))
 
 
-def test_fields_of_lines_are_kept_as_json(tmp_path: Path, bodies: Path) -> None:
+def test_extra_fields_of_json_lines_are_copied(tmp_path: Path, bodies: Path) -> None:
     line = {"moving": "cube", "fixed": "cloud", "direction": [0, 0, -1], "moving_pose": [0, 0, 9]}
     more: list[dict[str, Any]] = [{"tag": {"a": [1]}}, {}, {"tag": "x"}, {"scale": 2}]
     lines = [json.dumps(line | {"id": k} | part) for k, part in enumerate(more)]
@@ -165,9 +165,7 @@ def test_flipped_bytes_in_queries_are_found(tmp_path: Path, bodies: Path, capsys
 
 
 @pytest.mark.skipif(os.name == "nt", reason="files are limited another way")
-def test_a_disk_that_is_full_fails_a_shard_and_leaves_nothing_half(
-    tmp_path: Path, bodies: Path
-) -> None:
+def test_a_full_disk_fails_a_shard_and_leaves_no_partial_file(tmp_path: Path, bodies: Path) -> None:
     import resource
 
     asked, out = shards(tmp_path / "in", 2, 50), tmp_path / "out"
@@ -187,7 +185,7 @@ def test_a_disk_that_is_full_fails_a_shard_and_leaves_nothing_half(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")
-def test_what_dead_runs_have_begun_is_removed_and_what_others_write_is_not(
+def test_files_of_dead_runs_are_removed_and_those_of_live_runs_are_not(
     tmp_path: Path, bodies: Path
 ) -> None:
     asked, out = shards(tmp_path / "in", 1, 500_000), tmp_path / "out"
@@ -206,7 +204,7 @@ def test_what_dead_runs_have_begun_is_removed_and_what_others_write_is_not(
     assert [file.name for file in out.iterdir()] == ["shard-0.parquet"]
 
 
-def test_folders_in_folders(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+def test_nested_folders_keep_their_paths(tmp_path: Path, bodies: Path, capsys: Any) -> None:
     asked, out = tmp_path / "in", tmp_path / "out"
     write(asked / "a" / "one.parquet", queries(0, 5))
     write(asked / "b" / "deep" / "one.parquet", queries(1, 5))
@@ -259,7 +257,7 @@ def test_a_torn_file_among_row_groups_fails_alone(
     assert ids(out) == all_ids(2, 500)
 
 
-def test_bodies_of_every_kind_of_list(tmp_path: Path) -> None:
+def test_bodies_in_every_form_of_list_are_read(tmp_path: Path) -> None:
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     corners = [[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)]
     faces = [face[::-1] for face in faces]
@@ -300,14 +298,16 @@ def test_bodies_of_every_kind_of_list(tmp_path: Path) -> None:
         (CORNERS.tolist(), [[0, 1, None]], "faces: not an array of whole numbers"),
     ],
 )
-def test_bodies_that_are_none(tmp_path: Path, vertices: Any, faces: Any, told: str) -> None:
+def test_rows_without_a_valid_body_become_errors(
+    tmp_path: Path, vertices: Any, faces: Any, told: str
+) -> None:
     table = pa.table({"key": ["it"], "vertices": [vertices], "faces": [faces]})
     pq.write_table(table, tmp_path / "bodies.parquet")
     (body,) = Bodies(str(tmp_path / "bodies.parquet")).get(["it"])
     assert isinstance(body, Exception) and told in str(body)
 
 
-def test_solids_in_bulk(tmp_path: Path, capsys: Any) -> None:
+def test_solids_in_bulk_equal_single_answers(tmp_path: Path, capsys: Any) -> None:
     parts = [Solid.read(ROOT / "data" / name) for name in ("bolt.stl", "plate.off")]
     # Without the precisions of the files, which tables do not have.
     bolt, plate = (Solid(part.vertices, part.triangles) for part in parts)
@@ -340,7 +340,7 @@ def test_solids_in_bulk(tmp_path: Path, capsys: Any) -> None:
     assert "unknown question 'range' of solids" in capsys.readouterr().err
 
 
-def test_how_far_along_motions(tmp_path: Path, bodies: Path) -> None:
+def test_motion_clearances_in_bulk_equal_single_answers(tmp_path: Path, bodies: Path) -> None:
     screws = np.tile([0.0, 0, 0, 0, 0, 1, 1, 0], (4, 1)) * [
         [1, 1, 1, 1, 1, 1, k, 1] for k in range(4)
     ]
@@ -372,7 +372,7 @@ def memory() -> Iterator[Any]:
     system.store.clear()
 
 
-def test_urls_of_queries_bodies_and_answers(
+def test_queries_bodies_and_answers_can_be_urls(
     tmp_path: Path, bodies: Path, memory: Any, capsys: Any
 ) -> None:
     asked = shards(tmp_path / "in", 3, 40)
@@ -394,7 +394,7 @@ def test_urls_of_queries_bodies_and_answers(
         assert f"error: {wrong}: " in capsys.readouterr().err
 
 
-def test_meshes_at_urls(tmp_path: Path, memory: Any, batch: Batch) -> None:
+def test_meshes_at_urls_are_read(tmp_path: Path, memory: Any, batch: Batch) -> None:
     memory.put_file(str(ROOT / "data" / "dodecahedron.off"), "/parts/one.off")
     line = {"moving": "one.off", "fixed": "memory://parts/one.off", "direction": [0, 0, -1]}
     lines = [line | {"moving_pose": [0, 0, 9]}, line | {"fixed": "two.off"}]
@@ -409,7 +409,9 @@ def test_meshes_at_urls(tmp_path: Path, memory: Any, batch: Batch) -> None:
     assert "two.off" in second["message"]
 
 
-def test_an_s3_server(tmp_path: Path, bodies: Path, monkeypatch: Any) -> None:
+def test_an_s3_server_works_as_source_and_target(
+    tmp_path: Path, bodies: Path, monkeypatch: Any
+) -> None:
     pytest.importorskip("s3fs")
     server = pytest.importorskip("moto.server").ThreadedMotoServer(port=0)
     known = {"ACCESS_KEY_ID": "testing", "SECRET_ACCESS_KEY": "testing"}
@@ -435,7 +437,7 @@ def test_an_s3_server(tmp_path: Path, bodies: Path, monkeypatch: Any) -> None:
         server.stop()
 
 
-def test_features_and_all_directions_are_columns(tmp_path: Path, bodies: Path) -> None:
+def test_features_and_free_directions_become_columns(tmp_path: Path, bodies: Path) -> None:
     asked = write(tmp_path / "queries.parquet", queries(1, 60))
     words = [str(asked), "--bodies", str(bodies), "--question"]
     assert main([*words[:1], str(tmp_path / "out"), *words[1:], "clearance", "--features"]) == 0

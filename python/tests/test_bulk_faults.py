@@ -71,7 +71,7 @@ def test_a_panic_is_the_error_of_its_shard(tmp_path: Path, monkeypatch: Any, cap
     assert "40 rows in 2 shards" in found.out and "1 shards FAILED" in found.out
 
 
-def test_a_doubled_column_is_the_error_of_its_shard(tmp_path: Path, capsys: Any) -> None:
+def test_a_duplicate_column_is_the_error_of_its_shard(tmp_path: Path, capsys: Any) -> None:
     table, asked = write_bodies(tmp_path / "bodies.parquet"), shards(tmp_path / "in", 2, 20)
     bad = pq.read_table(asked / "shard-1.parquet")
     pq.write_table(bad.append_column("direction", bad["direction"]), asked / "shard-1.parquet")
@@ -102,7 +102,7 @@ def test_a_bad_row_of_bodies_is_the_error_of_its_queries(tmp_path: Path, kind: s
     assert (told[0] is None) == (kind != "texts")
 
 
-def test_a_key_that_is_no_text_is_the_error_of_its_row(tmp_path: Path) -> None:
+def test_a_key_that_is_not_text_is_the_error_of_its_row(tmp_path: Path) -> None:
     table, file = write_bodies(tmp_path / "bodies.parquet"), tmp_path / "queries.parquet"
     write(file, queries(1, 2) | {"moving": binary_as_text([KEYS[0].encode(), NO_TEXT])})
     assert run(file, tmp_path / "out", table) == 5

@@ -102,7 +102,7 @@ def believed(file: Any, under: tuple[Any, ...], by: Callable[[Any], Any]) -> lis
         ("inner", "4 by two boxes inside the bodies each"),
     ],
 )
-def test_a_proof_holds(name: str, holds: str) -> None:
+def test_a_valid_proof_is_accepted(name: str, holds: str) -> None:
     report = check.check((PROOFS / f"{name}.json").read_text())
     assert any(holds in line for line in report.holds)
     solid = name in {"solids", "beside", "directions", "inner"}
@@ -118,7 +118,7 @@ def less(x: Any) -> Any:
 
 
 @pytest.mark.parametrize("by", [more, less])
-def test_every_number_of_a_contact_counts(by: Callable[[Any], Any]) -> None:
+def test_changing_any_number_of_a_contact_is_refused(by: Callable[[Any], Any]) -> None:
     file = proof("contacts")
     for way in [MOVING_POSE, FIXED_POSE, DIRECTION]:
         assert believed(file, way, by) == []
@@ -132,7 +132,7 @@ def inside(x: float, middle: float) -> float:
     return middle + 0.98 * (middle - x)
 
 
-def test_no_bound_may_say_more_than_is_proven() -> None:
+def test_a_bound_beyond_the_proof_is_refused() -> None:
     file = proof("contacts")
     for end in ["first", "last"]:
         way = ("statement", "contacts", end)
@@ -149,7 +149,7 @@ def test_no_bound_may_say_more_than_is_proven() -> None:
     assert believed(apart, (*plane, "normal"), more) == []
 
 
-def test_the_stop_of_solids_counts() -> None:
+def test_changing_the_stop_of_solids_is_refused() -> None:
     file = proof("solids")
     way = ("statement", "clearance", "stop")
     assert believed(file, (*way, "translation", "lower"), lambda x: x + 1e-9) == []
@@ -172,7 +172,7 @@ def said(file: Any) -> str:
     return told
 
 
-def test_every_facet_of_a_cell_counts() -> None:
+def test_changing_any_facet_of_a_cell_is_refused() -> None:
     file = proof("directions")
     way = ("statement", "free_directions", "cells")
     at = list(places(file["statement"]["free_directions"]["cells"]))
@@ -189,7 +189,7 @@ def test_every_facet_of_a_cell_counts() -> None:
     assert tried > 20 and held < tried / 2
 
 
-def test_cells_are_the_sphere_and_nothing_free_is_blocked() -> None:
+def test_cells_cover_the_sphere_and_no_free_cell_is_blocked() -> None:
     file = proof("directions")
     way = ("statement", "free_directions")
     cells = file["statement"]["free_directions"]["cells"]
@@ -209,7 +209,7 @@ def test_cells_are_the_sphere_and_nothing_free_is_blocked() -> None:
     assert refused(changed(file, (*way, "shrunk", 0, 0, 2), lambda z: z - 5.0))
 
 
-def test_boxes_inside_are_inside_and_block_their_cells() -> None:
+def test_inner_boxes_are_inside_and_block_their_cells() -> None:
     """A ring around a rod, both of facets that are small against the play."""
     file = proof("inner")
     way = ("statement", "free_directions")
@@ -233,7 +233,7 @@ def test_boxes_inside_are_inside_and_block_their_cells() -> None:
     assert refused(changed(file, (*way, "start_overlap"), lambda _: "ignore"))
 
 
-def test_what_is_missing_claims_nothing() -> None:
+def test_a_missing_field_claims_nothing() -> None:
     """Null stands for what is not there, as it does for the library."""
     file = proof("contacts")
     contacts = file["statement"]["contacts"]
@@ -249,7 +249,7 @@ def test_what_is_missing_claims_nothing() -> None:
             check.check(json.dumps(file))
 
 
-def test_what_is_said_of_a_body_counts() -> None:
+def test_changing_any_field_of_a_body_is_refused() -> None:
     file = proof("contacts")
     body = ("bodies", 0, "convex")
     assert believed(file, (*body, "faces"), lambda k: k + 1) == []
@@ -266,7 +266,7 @@ def test_what_is_said_of_a_body_counts() -> None:
         assert refused(other), name
 
 
-def test_a_body_may_be_kept_without_some_of_its_input() -> None:
+def test_a_body_without_some_input_points_is_accepted() -> None:
     file = proof("contacts")
     content = file["bodies"][0]["convex"]
     content["hull_error"] = 1e-12
@@ -278,7 +278,7 @@ def test_a_body_may_be_kept_without_some_of_its_input() -> None:
         assert refused(file), wrong
 
 
-def test_a_slide_is_one() -> None:
+def test_a_slide_is_checked_as_a_slide() -> None:
     file = proof("slide")
     report = check.check(json.dumps(file))
     assert report.holds[0].startswith("the bodies slide along each other")
@@ -289,7 +289,7 @@ def test_a_slide_is_one() -> None:
     assert believed(file, (*way, "normal"), lambda x: x + 0.1) == []
 
 
-def test_a_contact_that_rounding_hides_is_said_to_be_one() -> None:
+def test_a_contact_hidden_by_rounding_is_accepted() -> None:
     """A corner that the line misses by the last bit: no triangle is met exactly."""
     file = proof("contacts")
     cube = file["bodies"][1]["convex"]["vertices"]
@@ -316,14 +316,14 @@ BESIDE = proof("solids")["bodies"][1]
 RENAMED = {"motions": proof("contacts")["placement"]["poses"]}
 
 
-def test_a_query_about_a_pair_is_a_word() -> None:
+def test_the_question_of_a_pair_must_be_known() -> None:
     file = proof("directions")
     assert file["query"] == "pair"
     with pytest.raises(check.NoProofError, match="there has to be one of cast, scene"):
         check.check(json.dumps(changed(file, ("query",), always({"pair": {}}))))
 
 
-def test_other_files_are_no_proofs(tmp_path: Path) -> None:
+def test_files_without_a_proof_are_refused(tmp_path: Path) -> None:
     text = (PROOFS / "contacts.json").read_text()
     wrong = {
         "half": text[: len(text) // 2],
@@ -352,7 +352,7 @@ def test_other_files_are_no_proofs(tmp_path: Path) -> None:
     assert check.main([]) == 2
 
 
-def test_it_runs_alone() -> None:
+def test_the_checker_runs_without_the_package() -> None:
     """Without the package, and without what the package needs."""
     command = [sys.executable, "-I", "-S", str(FILE), str(PROOFS / "contacts.json")]
     told = subprocess.run(command, capture_output=True, text=True)
@@ -409,7 +409,7 @@ def test_an_overlap_of_a_slide_is_that_of_the_shadows() -> None:
         ("solids", ("statement", "clearance", "stop", "translation", "value"), None),
     ],
 )
-def test_what_the_specification_does_not_admit_is_refused(
+def test_values_outside_the_specification_are_refused(
     name: str, way: tuple[Any, ...], value: Any
 ) -> None:
     file = proof(name)
@@ -446,7 +446,7 @@ SLOW = {"path_contact", "path_free", "path_kept", "path_solid"}
 
 
 @pytest.mark.parametrize("name", sorted({path.stem for path in PROOFS.glob("*.json")} - SLOW))
-def test_nothing_takes_the_place_of_a_list_or_an_object(name: str) -> None:
+def test_another_value_instead_of_a_list_or_an_object_is_refused(name: str) -> None:
     file = proof(name)
     ways = list(containers(file))
     assert len(ways) > 10
@@ -459,7 +459,7 @@ def test_nothing_takes_the_place_of_a_list_or_an_object(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["solids", "beside", "inner", "solids_free", "path_solid"])
-def test_a_piece_that_is_not_open_is_closed(name: str) -> None:
+def test_a_piece_that_is_not_closed_is_refused(name: str) -> None:
     file = proof(name)
     solids = (body for body in file["bodies"] if "pieces" in body)
     triangles = next(solids)["pieces"][0]["triangles"]
@@ -481,7 +481,7 @@ def test_a_piece_that_is_not_open_is_closed(name: str) -> None:
         {"points": {"triangles": [0, 0], "weights": [[1, 0, 0]] * 2, "distance": None}},
     ],
 )
-def test_what_is_said_of_near_solids_has_its_form(near: Any) -> None:
+def test_malformed_fields_of_near_solids_are_refused(near: Any) -> None:
     file = proof("solids")
     file["statement"] = {"solid_distance": {"lower": 0.0, "near": near, "cover": ""}}
     file["query"] = "pair"
@@ -490,12 +490,12 @@ def test_what_is_said_of_near_solids_has_its_form(near: Any) -> None:
 
 @pytest.mark.parametrize("name", ["solids_free", "solids_contact", "solids_kept"])
 @pytest.mark.parametrize("start", [None, [], {}, 0, "z", "smz"])
-def test_what_is_said_of_the_beginning_has_its_form(name: str, start: Any) -> None:
+def test_malformed_fields_of_the_start_are_refused(name: str, start: Any) -> None:
     assert refused(changed(proof(name), (*SOLIDS, "start", "apart"), always(start)))
 
 
 @pytest.mark.parametrize("place", [0, 3])
-def test_weights_that_prove_nothing_are_numbers(place: int) -> None:
+def test_unused_weights_must_still_be_numbers(place: int) -> None:
     file = proof("path_kept")
     near = value_at(file, PATH)["meeting"]["how"]["pieces"]["met"]["near"]
     assert not refused(file)
@@ -507,7 +507,7 @@ def test_weights_that_prove_nothing_are_numbers(place: int) -> None:
     "steps",
     [None, {}, [], 0, {"planar_problems": 0, "supports": 1, "pivots": 0, "iterations": None}],
 )
-def test_counts_of_work_have_their_form(steps: Any) -> None:
+def test_malformed_counts_of_work_are_refused(steps: Any) -> None:
     way = (*MOTION, "meeting", "met", "deep", "steps")
     assert refused(changed(proof("motion_contact"), way, always(steps)))
 
@@ -529,7 +529,7 @@ def test_any_corner_inside_shows_that_bodies_overlap_where_a_path_begins() -> No
     assert refused(file)
 
 
-def test_nothing_carried_may_be_beyond_its_range() -> None:
+def test_carried_values_beyond_their_range_are_refused() -> None:
     file = proof("path_free")
     links = file["placement"]["robot"]["bodies"]
     next(of for of in links if of["frame"] is not None)["pose"]["translation"][0] = 2.0**200

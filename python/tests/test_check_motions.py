@@ -34,14 +34,14 @@ ALL = ["contact", "free", "kept", "through", "alone", "sinking"]
         ("sinking", ["never overlap by more than 0.001 up to", "by more than 0.001 at the time"]),
     ],
 )
-def test_a_proof_holds(name: str, holds: list[str]) -> None:
+def test_a_valid_proof_is_accepted(name: str, holds: list[str]) -> None:
     report = check.check(json.dumps(proof(f"motion_{name}")))
     assert len(report.holds) == len(holds) and not report.partly
     assert all(words in line for words, line in zip(holds, report.holds, strict=True))
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
+def test_a_plane_that_claims_too_much_is_refused(name: str) -> None:
     file = proof(f"motion_{name}")
     for s, planes in enumerate(value_at(file, MOTION)["spans"]):
         for k in range(len(planes)):
@@ -55,7 +55,7 @@ def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
+def test_dropping_a_needed_plane_is_refused(name: str) -> None:
     file = proof(f"motion_{name}")
     for s, planes in enumerate(value_at(file, MOTION)["spans"]):
         # The first says where the span begins; all but the last at once leave the motion unproven.
@@ -69,7 +69,7 @@ def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
         assert refused(file)
 
 
-def test_one_plane_alone_needs_the_arcs() -> None:
+def test_a_single_plane_needs_the_arcs() -> None:
     file = proof("motion_alone")
     way = (*MOTION, "spans", 0, 0, "alone")
     assert refused(changed(file, way, lambda alone: not alone))
@@ -81,7 +81,7 @@ def test_one_plane_alone_needs_the_arcs() -> None:
 
 
 @pytest.mark.parametrize("name", ["contact", "kept", "sinking"])
-def test_the_time_of_contact_may_not_be_moved(name: str) -> None:
+def test_a_changed_contact_time_is_refused(name: str) -> None:
     file = proof(f"motion_{name}")
     time = value_at(file, MOTION)["meeting"]["time"]
     reached = value_at(file, MOTION)["spans"][-1][-1]["time"]
@@ -116,7 +116,9 @@ def test_the_time_of_contact_may_not_be_moved(name: str) -> None:
         (("rate",), lambda x: 1e6),
     ],
 )
-def test_every_number_of_a_motion_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
+def test_changing_any_number_of_a_motion_is_refused(
+    part: tuple[Any, ...], by: Callable[[Any], Any]
+) -> None:
     file = proof("motion_contact")
     assert refused(changed(file, (*MOVERS, 0, "motion", 0, *part), by))
 
@@ -139,7 +141,7 @@ def test_other_bodies_are_refused() -> None:
     assert refused(changed(proof("motion_free"), two, lambda of: [*of, {**of[0], "since": 0.5}]))
 
 
-def test_what_is_no_proof_is_refused() -> None:
+def test_files_without_a_proof_are_refused() -> None:
     file = proof("motion_contact")
     for name in file:
         assert refused({k: v for k, v in file.items() if k != name})
@@ -159,7 +161,7 @@ def test_a_piece_that_begins_when_the_motion_ends_is_refused() -> None:
     assert refused(changed(proof("motion_free"), way, lambda of: [*of, {**of[-1], "since": 1.0}]))
 
 
-def test_how_deep_and_how_near_is_said_holds_to_rounding() -> None:
+def test_depths_and_distances_may_differ_only_by_rounding() -> None:
     for name in ("contact", "sinking"):
         file = proof(f"motion_{name}")
         way: tuple[Any, ...] = (*MOTION, "meeting", "met", "deep")
@@ -178,7 +180,7 @@ def test_how_deep_and_how_near_is_said_holds_to_rounding() -> None:
     assert refused(changed(file, (*way, "pairs"), lambda pairs: pairs[:3]))
 
 
-def test_fields_that_are_missing_or_unknown_are_refused() -> None:
+def test_missing_or_unknown_fields_are_refused() -> None:
     file = proof("motion_contact")
     met: tuple[Any, ...] = (*MOTION, "meeting", "met", "deep")
     for under in ((), MOTION, (*MOTION, "spans", 0, 0), (*MOTION, "meeting"), met):
@@ -207,7 +209,7 @@ def several(files: list[Any]) -> Any:
     return {"format": "colltrans proof", "version": 2, "bodies": bodies, **parts}
 
 
-def test_several_pairs_are_asked_one_question() -> None:
+def test_several_pairs_share_one_question() -> None:
     files = [proof("motion_contact"), proof("motion_free")]
     assert len(check.check(json.dumps(several(files))).holds) == 3
     # A pair of which planes alone prove nothing is one of solids, as they are.
@@ -240,7 +242,7 @@ def test_sine_and_cosine_are_enclosed() -> None:
             assert abs(sin - 2 * half[0] * half[1]) < check._TINY
 
 
-def test_a_root_is_one_from_above() -> None:
+def test_a_root_is_an_upper_bound() -> None:
     for x in (Fraction(0), Fraction(2), Fraction(1, 3), Fraction(10) ** 40, Fraction(7, 10**60)):
         root = check.root_above(x)
         assert x <= root * root <= x * (1 + check._TINY)

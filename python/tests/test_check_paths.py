@@ -47,7 +47,7 @@ LINKS = (*ROBOT, "bodies")
         ),
     ],
 )
-def test_a_proof_holds(name: str, holds: list[str]) -> None:
+def test_a_valid_proof_is_accepted(name: str, holds: list[str]) -> None:
     report = check.check(json.dumps(proof(f"path_{name}")))
     assert len(report.holds) == len(holds) and not report.partly
     assert all(words in line for words, line in zip(holds, report.holds, strict=True))
@@ -74,7 +74,7 @@ def planes(file: Any) -> list[tuple[Any, ...]]:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
+def test_a_plane_that_claims_too_much_is_refused(name: str) -> None:
     file = proof(f"path_{name}")
     for way in planes(file)[:: STRIDE.get(name, 7)]:
         assert refused(changed(file, (*way, "gap"), lambda x: x + SPARE.get(name, 1e-12)))
@@ -85,7 +85,7 @@ def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
+def test_dropping_a_needed_plane_is_refused(name: str) -> None:
     file = proof(f"path_{name}")
     dropped, all_ = 0, planes(file)[:: STRIDE.get(name, 3) // 3]
     for way in all_:
@@ -103,7 +103,7 @@ def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
     assert name != "free" or not refused(without)
 
 
-def test_the_time_of_contact_may_not_be_moved() -> None:
+def test_a_changed_contact_time_is_refused() -> None:
     for name in ("contact", "kept"):
         file = proof(f"path_{name}")
         way: tuple[Any, ...] = (*PATH, "meeting", "place", "share")
@@ -124,7 +124,7 @@ def test_a_later_time_is_a_bound_and_none_is_no_claim() -> None:
         assert f"meet {told}" in meeting
 
 
-def test_pairs_that_were_left_out_are_named() -> None:
+def test_omitted_pairs_are_named() -> None:
     file = proof("path_free")
     first, *others = value_at(file, STATEMENT)["pairs"]
     value_at(file, STATEMENT)["pairs"] = others
@@ -164,12 +164,14 @@ def test_the_pairs_of_a_statement_are_those_of_the_covers() -> None:
         ((*QUERY, "keep"), lambda x: -1.0),
     ],
 )
-def test_every_number_of_a_path_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
+def test_changing_any_number_of_a_path_is_refused(
+    part: tuple[Any, ...], by: Callable[[Any], Any]
+) -> None:
     file = proof("path_contact")
     assert refused(changed(file, part, by))
 
 
-def test_parts_of_a_solid_may_not_be_left_out() -> None:
+def test_omitting_parts_of_a_solid_is_refused() -> None:
     file = proof("path_solid")
     (at,) = (k for k, body in enumerate(file["bodies"]) if "pieces" in body)
     way: tuple[Any, ...] = (*STATEMENT, "parts", at)
@@ -197,7 +199,7 @@ def test_parts_of_a_solid_may_not_be_left_out() -> None:
     assert refused(changed(file, (*way[:-1], 1 - at), always(value_at(file, way))))
 
 
-def test_no_place_is_beyond_the_way_to_the_next_row() -> None:
+def test_places_beyond_the_way_to_the_next_row_are_refused() -> None:
     file = proof("path_solid")
     steps = [
         (*PATH, "covers", c, "steps", s, "parts", "until", "share")
@@ -238,7 +240,7 @@ def test_planes_leave_what_the_hulls_leave_out() -> None:
     assert refused(file)
 
 
-def test_values_of_another_kind_are_no_proof() -> None:
+def test_values_of_a_wrong_type_are_refused() -> None:
     file = proof("path_contact")
     pairs = value_at(file, (*STATEMENT, "pairs"))
     name = value_at(file, LINKS)[0]["name"]
@@ -257,7 +259,7 @@ def test_values_of_another_kind_are_no_proof() -> None:
             check.check(json.dumps(other))
 
 
-def test_fields_that_are_missing_or_unknown_are_refused() -> None:
+def test_missing_or_unknown_fields_are_refused() -> None:
     file = proof("path_contact")
     for under in ((), PATH, STATEMENT, (*PATH, "meeting"), (*LINKS, 0)):
         assert refused(changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"])
@@ -269,7 +271,7 @@ def test_fields_that_are_missing_or_unknown_are_refused() -> None:
             assert refused(rest), name
 
 
-def test_what_is_inside_where_a_path_begins_is_seen() -> None:
+def test_a_body_inside_another_at_the_start_is_found() -> None:
     file = proof("path_inside")
     (line,) = check.check(json.dumps(file)).holds
     assert "'upper' and 'room' meet by the time 0.0" in line
@@ -281,7 +283,7 @@ def test_what_is_inside_where_a_path_begins_is_seen() -> None:
     assert refused(changed(file, later, lambda t: 0.5))
 
 
-def test_a_solid_inside_a_convex_body_is_seen() -> None:
+def test_a_solid_inside_a_convex_body_is_found() -> None:
     here = {"matrix": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation": [0, 0, 0]}
     corners = [[x, y, z] for x in (-5.0, 5.0) for y in (-5.0, 5.0) for z in (-5.0, 5.0)]
     faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]

@@ -44,7 +44,7 @@ def holds(file: Any) -> bool:
     return bool(check.check(json.dumps(file)).holds)
 
 
-def test_what_is_within_a_length_is_said_once() -> None:
+def test_listing_an_obstacle_twice_is_refused() -> None:
     assert holds(scene(within(2.0, closer=[[0, near(2.0)]], apart=[[1, apart(3.0)]]), 3.0, 4.0))
     assert holds(scene(within(2.0, closer=[[0, near(2.0)]]), 3.0, 4.0))
     assert holds(scene(within(2.0, undecided=[0, 1]), 3.0, 4.0))
@@ -60,7 +60,7 @@ def test_what_is_within_a_length_is_said_once() -> None:
 
 
 @pytest.mark.parametrize("length", [-0.5, -1e300, float("nan")])
-def test_a_length_is_one(length: float) -> None:
+def test_an_invalid_length_is_refused(length: float) -> None:
     # The square of the boxes' distance is more than that of the length.
     assert refused(scene(within(length), 3.0, 4.0))
 
@@ -71,7 +71,7 @@ def test_claims_that_are_not_needed_are_checked() -> None:
     assert refused(scene({"nearest": {**claim, "apart": [[1, apart(1e9)]]}}, 3.0, 4.0))
 
 
-def test_choices_are_those_that_there_are() -> None:
+def test_unknown_options_are_refused() -> None:
     statement = within(2.0, closer=[[0, near(2.0)]])
     assert holds(scene(statement, 3.0, start_overlap="ignore", tolerance=None, graze_tolerance=0.5))
     for choices in (

@@ -28,7 +28,7 @@ WAY = (*SOLIDS, "spans", 0, "cover")
         ("inside", ["never meet up to the time", "inside the other", "meet at the time"]),
     ],
 )
-def test_a_proof_holds(name: str, holds: list[str]) -> None:
+def test_a_valid_proof_is_accepted(name: str, holds: list[str]) -> None:
     report = check.check(json.dumps(proof(f"solids_{name}")))
     assert len(report.holds) == len(holds) and report.partly
     assert all(words in line for words, line in zip(holds, report.holds, strict=True))
@@ -36,7 +36,7 @@ def test_a_proof_holds(name: str, holds: list[str]) -> None:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_no_entry_of_a_cover_may_be_another(name: str) -> None:
+def test_a_changed_entry_of_a_cover_is_refused(name: str) -> None:
     file = proof(f"solids_{name}")
     cover = value_at(file, SOLIDS)["spans"][0]["cover"]
     drawn = random.Random(3)
@@ -84,12 +84,12 @@ def test_no_entry_of_a_cover_may_be_another(name: str) -> None:
         ((*QUERY, "keep"), lambda x: -0.5),
     ],
 )
-def test_every_number_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
+def test_changing_any_number_is_refused(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
     file = proof("solids_contact")
     assert refused(changed(file, part, by))
 
 
-def test_how_far_facets_were_moved_is_said() -> None:
+def test_the_offset_of_facets_is_reported() -> None:
     file = proof("solids_free")
     moved = changed(file, (*PARTS, 0, "corners", 0, 0, 2), lambda x: x + 0.125)
     report = check.check(json.dumps(moved))
@@ -98,7 +98,7 @@ def test_how_far_facets_were_moved_is_said() -> None:
     assert report.partly and any("as the tolerance says" in line for line in report.unchecked)
 
 
-def test_fields_that_are_missing_or_unknown_are_refused() -> None:
+def test_missing_or_unknown_fields_are_refused() -> None:
     file = proof("solids_contact")
     for under in ((), SOLIDS, (*SOLIDS, "spans", 0), (*SOLIDS, "meeting"), (*PARTS, 0)):
         at = file
@@ -110,7 +110,7 @@ def test_fields_that_are_missing_or_unknown_are_refused() -> None:
             assert name not in at or refused(rest), name
 
 
-def test_what_is_inside_is_refused() -> None:
+def test_a_solid_inside_the_other_is_refused() -> None:
     file = proof("solids_free")
     # The other solid, far larger and around the first one: no facets meet, all planes are gone.
     inside = json.loads(json.dumps(file))

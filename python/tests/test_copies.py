@@ -53,7 +53,7 @@ def parts(thing: Any) -> Any:
 
 
 @pytest.mark.parametrize("answer", answers(), ids=lambda a: type(a).__name__)
-def test_an_answer_comes_back_with_its_bits(answer: Any) -> None:
+def test_a_pickled_answer_keeps_its_bits(answer: Any) -> None:
     for again in (
         pickle.loads(pickle.dumps(answer)),
         copy.copy(answer),
@@ -68,7 +68,7 @@ def test_an_answer_comes_back_with_its_bits(answer: Any) -> None:
         assert again.query.to_json() == answer.query.to_json()
 
 
-def test_every_kind_of_answer_is_among_them() -> None:
+def test_the_answers_include_every_class() -> None:
     kinds = {type(answer).__name__ for answer in answers()}
     assert kinds >= {
         "Behind",
@@ -86,7 +86,7 @@ def test_every_kind_of_answer_is_among_them() -> None:
     assert {SolidBlocked, SolidFree, SolidOverlapping} <= {type(a) for a in answers()}
 
 
-def test_proofs_features_and_answers_of_trackers() -> None:
+def test_pickled_proofs_features_and_tracker_answers_keep_their_values() -> None:
     tracker, start = Tracker(), np.array([-4, 0.3, 0])
     for step in range(3):
         answer = tracker.cast(CLOUD, CUBE, [1, 0, 0], moving_pose=start + [0, step / 100, 0])
@@ -103,7 +103,7 @@ def test_proofs_features_and_answers_of_trackers() -> None:
     assert parts(copy.copy(grazing)) == parts(grazing)
 
 
-def test_bytes_that_are_none_are_refused() -> None:
+def test_invalid_pickled_states_are_refused() -> None:
     again: Any = Contact
     with pytest.raises(TypeError):
         again._of(1, 2)

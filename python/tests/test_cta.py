@@ -28,7 +28,7 @@ def test_planar_problems_are_solved_to_the_exit() -> None:
     assert 3 <= whole.region_sides <= 8 and rough.region_sides == 0
 
 
-def test_many_rows_have_the_choices_of_one() -> None:
+def test_many_rows_take_the_options_of_one() -> None:
     directions = RANDOM.normal(size=(20, 3)) * 0.1 + DOWN
     solvers: list[Any] = [Cta(), Cta(until=0.1), "portal"]
     for solver in solvers:
@@ -52,7 +52,7 @@ def test_a_tracker_starts_in_the_region_or_from_features() -> None:
             assert found.steps.started_from == (expected if step else "scratch")
 
 
-def test_choices_are_values_and_wrong_ones_are_refused() -> None:
+def test_options_are_values_and_invalid_ones_are_refused() -> None:
     nearly = Cta(start="ellipsoids", until=0.25)
     assert repr(nearly) == "Cta(start='ellipsoids', until=0.25)"
     assert repr(Cta()) == "Cta(start='center', until='exit')"

@@ -42,7 +42,7 @@ def test_a_lid_is_free_along_half_of_all_directions() -> None:
     assert repr(found).startswith("FreeDirections(")
 
 
-def test_casts_say_the_same() -> None:
+def test_casts_agree_with_free_directions() -> None:
     bolt, plate = Solid.read(BOLT), Solid.read(PLATE)
     found = free_directions(bolt, plate, tolerance=0.1)
     rng = np.random.default_rng(29)

@@ -121,7 +121,7 @@ def parts(thing: Any) -> Any:
 
 
 @pytest.mark.parametrize("answer", answers(), ids=lambda a: type(a).__name__)
-def test_an_answer_comes_back_with_its_bits(answer: Any) -> None:
+def test_a_pickled_answer_keeps_its_bits(answer: Any) -> None:
     for again in (pickle.loads(pickle.dumps(answer)), copy.deepcopy(answer)):
         assert parts(again) == parts(answer)
     if not isinstance(answer, Pair):
@@ -129,7 +129,7 @@ def test_an_answer_comes_back_with_its_bits(answer: Any) -> None:
         assert "Pair" in repr(answer.query)
 
 
-def test_what_an_answer_says() -> None:
+def test_answers_give_bounds_points_and_normals() -> None:
     found = colltrans.distance(CUBE, CUBE, moving_pose=[-3, 0.5, 0.25])
     assert isinstance(found, Distance)
     match found:
@@ -200,7 +200,7 @@ def test_changed_proofs_are_refused_in_fractions() -> None:
             check.check(wrong)
 
 
-def test_arguments_that_are_wrong() -> None:
+def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(QueryError, match="length -1 is negative"):
         colltrans.within(CUBE, CUBE, -1)
     with pytest.raises(QueryError, match="not a number"):
@@ -222,7 +222,7 @@ def test_arguments_that_are_wrong() -> None:
     assert colltrans.distance_many([CUBE, CUBE], CUBE, fixed_index=[0, 5]).errors.keys() == {1}
 
 
-def test_columns_become_tables() -> None:
+def test_columns_become_arrow_tables() -> None:
     pytest.importorskip("pyarrow")
     columns = colltrans.distance_many(CUBE, CUBE, moving_pose=[[2.5, 0, 0], [0.1, 0.2, 0.3]])
     table = columns.to_arrow()
@@ -232,7 +232,7 @@ def test_columns_become_tables() -> None:
     assert "apart" in columns._repr_html_()
 
 
-def test_files_of_queries(tmp_path: Path) -> None:
+def test_files_of_queries_ask_distances(tmp_path: Path) -> None:
     pa = pytest.importorskip("pyarrow")
     from colltrans import bulk
     from colltrans.bulk.__main__ import main
@@ -280,7 +280,7 @@ def test_pictures_join_the_nearest_points() -> None:
     assert names(colltrans.depth(BOLT, PLATE)) == ["moving", "fixed"]
 
 
-def test_a_distance_is_that_of_its_points() -> None:
+def test_a_distance_equals_that_of_its_points() -> None:
     asked = draw(seed=8, count=100)
     bodies = asked.bodies()
     places: dict[str, Any] = {"moving_pose": asked.moving_pose, "fixed_pose": asked.fixed_pose}

@@ -53,7 +53,7 @@ def links(folder: Path) -> list[str]:
     return [] if done.returncode == 0 else told
 
 
-def test_links_that_lead_nowhere_are_found(tmp_path: Path) -> None:
+def test_broken_links_are_found(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "b.html").write_text('<h2 id="there">There</h2><a href="../a.html">a</a>')
     good = '<a href="sub/b.html#there">b</a> <a href="#x">x</a><p id=x> <a href="https://a.b">c</a>'
@@ -112,7 +112,7 @@ def test_the_tables_of_the_schema_have_its_definitions_and_fields(
     assert "With outcome `separated`: `margin`." in text
 
 
-def test_notebooks_print_what_is_kept(build: ModuleType) -> None:
+def test_notebooks_print_the_committed_outputs(build: ModuleType) -> None:
     outputs = importlib.import_module("outputs")
     notebooks = sorted((SITE / "notebooks").glob("*.ipynb"))
     assert len(notebooks) == 3

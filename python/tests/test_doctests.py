@@ -31,7 +31,9 @@ def docstrings() -> Iterator[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(("name", "text"), list(docstrings()))
-def test_docstrings(name: str, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_examples_in_docstrings_give_their_outputs(
+    name: str, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     if name in ("picture", "show"):
         pytest.importorskip("plotly")
     monkeypatch.chdir(ROOT)
@@ -40,7 +42,7 @@ def test_docstrings(name: str, text: str, monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_pages(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_examples_on_pages_give_their_outputs(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """From start to end, without a screen; the tutorials are most of them."""
     for package in NEEDED.get(page.stem, ()):
         pytest.importorskip(package)
@@ -56,7 +58,7 @@ def run(name: str, text: str) -> None:
     assert not said, "".join(said)
 
 
-def test_everything_that_is_called_has_an_example() -> None:
+def test_every_public_callable_has_an_example() -> None:
     for name in colltrans.__all__:
         thing = getattr(colltrans, name)
         if not isinstance(thing, type) and name != "read":

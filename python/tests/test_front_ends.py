@@ -75,7 +75,7 @@ def of_page(moving: Path, fixed: Path, pose: list[float], how: str) -> list[dict
     "pose", [[4.0, 0.0, 7.0, 0.0, 0.0, 0.0, 1.0], TILTED], ids=["home", "tilted"]
 )
 @pytest.mark.parametrize("name", ["bolt.stl", *FILES])
-def test_the_same_file_is_the_same_body(
+def test_the_same_file_gives_the_same_body(
     batch: Batch, tmp_path: Path, name: str, pose: list[float]
 ) -> None:
     path, plate = ROOT / "data" / name, ROOT / "data/plate.off"
@@ -109,7 +109,7 @@ def test_the_same_file_is_the_same_body(
         assert moving.notes
 
 
-def test_the_same_file_is_the_same_hull(batch: Batch) -> None:
+def test_the_same_file_gives_the_same_hull(batch: Batch) -> None:
     bolt, bracket = ROOT / "data/bolt.stl", ROOT / "data/bracket.obj"
     hull = colltrans.read(bolt, hull=True)
     here = colltrans.contact_range(

@@ -63,7 +63,7 @@ def test_outcomes_compare_as_text() -> None:
 
 
 @pytest.mark.parametrize("wrong", ["contcat", ["contact", "x", "error", "error"]])
-def test_names_that_are_no_outcomes_are_errors(wrong: Any) -> None:
+def test_comparing_with_an_unknown_outcome_is_an_error(wrong: Any) -> None:
     with pytest.raises(InputError, match="unknown outcome '"):
         columns().outcome == wrong  # noqa: B015
 
@@ -85,7 +85,7 @@ def test_columns_select_rows() -> None:
         whole[np.array([[0, 1]])]
 
 
-def test_columns_are_joined() -> None:
+def test_columns_are_concatenated() -> None:
     whole = columns()
     other = cast_many(CUBE, CUBE, [0, 0, 1.0], moving_pose=[0, 0, -9])
     joined = concatenate([whole[:2], other, whole[2:]])
@@ -99,7 +99,7 @@ def test_columns_are_joined() -> None:
         concatenate([])
 
 
-def test_columns_are_read_by_who_reads_arrow() -> None:
+def test_columns_are_readable_through_the_arrow_interface() -> None:
     pa = pytest.importorskip("pyarrow")
     table = pa.table(columns())
     assert table.schema == columns().to_arrow().schema and table.num_rows == 4
@@ -118,7 +118,7 @@ def test_columns_become_data_sets() -> None:
     assert near.on_fixed.dims == ("query", "axis")
 
 
-def test_what_masks_hide_is_not_asked() -> None:
+def test_masked_rows_are_not_computed() -> None:
     masked: Any = np.ma.array(
         np.array([[-3, 0.5, 0.0], [-3, 0.5, 0]]), mask=[[False] * 3, [False, True, False]]
     )
@@ -137,7 +137,7 @@ def test_what_masks_hide_is_not_asked() -> None:
     assert isinstance(whole, colltrans.Contact) and whole.translation == 2.0
 
 
-def test_vertices_say_that_they_cannot_be_written() -> None:
+def test_vertices_are_marked_read_only() -> None:
     solid = Solid.read(ROOT / "data" / "plate.off")
     for array in (CUBE.vertices, solid.vertices, solid.triangles):
         with pytest.raises(ValueError, match="read-only"):
@@ -184,7 +184,7 @@ def things() -> list[Any]:
 
 
 @pytest.mark.parametrize("thing", things(), ids=lambda thing: type(thing).__name__)
-def test_cells_show_light_drawings(thing: Any) -> None:
+def test_notebook_cells_show_small_drawings(thing: Any) -> None:
     shown = thing._repr_html_()
     assert "<svg" in shown and "nan" not in shown and len(shown) < 60_000
     coordinates = re.findall(r'd="([^"]*)"', shown)
@@ -192,14 +192,14 @@ def test_cells_show_light_drawings(thing: Any) -> None:
     assert numbers and min(numbers) >= 0 and max(numbers) <= 320
 
 
-def test_cells_of_what_is_large_have_words_alone() -> None:
+def test_notebook_cells_of_large_bodies_show_text_only() -> None:
     cloud = ConvexPolyhedron(np.random.default_rng(1).normal(size=(90_000, 3)))
     sphere = np.random.default_rng(1).normal(size=(2000, 3))
     dense = ConvexPolyhedron(sphere / np.linalg.norm(sphere, axis=1, keepdims=True))
     assert "<svg" in cloud._repr_html_() and "<svg" not in dense._repr_html_()  # type: ignore[attr-defined]
 
 
-def test_assemblies_and_plans_are_shown() -> None:
+def test_notebook_cells_show_assemblies_and_plans() -> None:
     pytest.importorskip("plotly")
     gearbox = Assembly.read(ROOT / "data" / "gearbox_small")
     names = [trace.name for trace in colltrans.picture(gearbox).data if trace.name]
@@ -223,21 +223,21 @@ def test_assemblies_and_plans_are_shown() -> None:
         again.show()
 
 
-def test_colours_are_those_of_the_page() -> None:
+def test_colours_equal_those_of_the_page() -> None:
     text = (ROOT / "web" / "src" / "colours.ts").read_text().split("const DARK")[0]
     told = dict(re.findall(r'(\w+): "(#[0-9a-f]{6})"', text))
     assert (told["moving"], told["fixed"]) == (MOVING, FIXED)
     assert (told["normal"], told["edge"]) == (TOUCH, EDGE)
 
 
-def test_every_class_says_what_it_is() -> None:
+def test_every_class_has_a_repr() -> None:
     for name in colltrans.__all__:
         thing = getattr(colltrans, name)
         if isinstance(thing, type) and not issubclass(thing, BaseException):
             assert thing.__repr__ is not object.__repr__, name
 
 
-def test_long_calls_leave_the_lock_to_others() -> None:
+def test_long_calls_release_the_interpreter_lock() -> None:
     random = np.random.default_rng(3)
     sphere = random.normal(size=(30_000, 3))
     large = ConvexPolyhedron(sphere / np.linalg.norm(sphere, axis=1, keepdims=True))

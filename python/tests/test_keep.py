@@ -33,7 +33,7 @@ ABOVE = [0.0, 0, 4]
 DOWN = [0.0, 0, -1]
 
 
-def test_where_bodies_are_as_near_as_a_gap() -> None:
+def test_a_cast_with_a_gap_stops_at_the_gap() -> None:
     query = Cast(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
     assert query.keep == 0.25
     found: Any = query.first_contact()
@@ -62,7 +62,7 @@ def test_where_bodies_are_as_near_as_a_gap() -> None:
         check.check(found.proof_json().replace('"keep":0.25', '"keep":-0.25'))
 
 
-def test_solids_keep_gaps() -> None:
+def test_solids_stop_at_the_gap() -> None:
     plate = Solid.read(ROOT / "data/plate.off")
     far: Any = clearance
     meets: Any = intersects
@@ -83,7 +83,7 @@ def test_solids_keep_gaps() -> None:
 
 
 @pytest.mark.parametrize("gap", [-1.0, math.nan, math.inf, 1e70])
-def test_gaps_that_are_none_are_refused(gap: float) -> None:
+def test_invalid_gaps_are_refused(gap: float) -> None:
     solid = Solid.from_pieces([CUBE])
     obstacles = Obstacles()
     obstacles.add(CUBE)
@@ -102,7 +102,7 @@ def test_gaps_that_are_none_are_refused(gap: float) -> None:
     assert "gap" in columns.errors[0]
 
 
-def test_rows_are_answered_as_alone_and_by_the_command_line(batch: Batch) -> None:
+def test_rows_with_gaps_equal_single_answers_and_the_command_line(batch: Batch) -> None:
     settings = draw(17, 300)
     bodies = settings.bodies()
     sides: Any = (bodies, bodies, settings.direction)
@@ -128,7 +128,7 @@ def test_rows_are_answered_as_alone_and_by_the_command_line(batch: Batch) -> Non
     assert columns.counts()["blocked"] > 10
 
 
-def test_obstacles_are_kept_away() -> None:
+def test_scene_queries_stop_at_the_gap() -> None:
     obstacles = Obstacles()
     obstacles.add_many(CUBE, [[2 * k, 0, 0] for k in range(50)])
     obstacles.add(Solid.from_pieces([CUBE]), [200, 0, 0])

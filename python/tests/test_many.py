@@ -34,7 +34,7 @@ PLATE = ConvexPolyhedron.cuboid([-2, -2, -1], [2, 2, 0])
 AHEAD = [1.0, 0, 0]
 
 
-def test_single_values_are_for_all_rows() -> None:
+def test_single_values_apply_to_all_rows() -> None:
     starts = np.array([[-3.0, 0, 0], [-4, 0, 0], [-5, 0, 0]])
     assert cast_many(CUBE, CUBE, AHEAD, moving_pose=starts).translation.tolist() == [2, 3, 4]
     back = cast_many(CUBE, CUBE, AHEAD, fixed_pose=-starts)
@@ -46,7 +46,7 @@ def test_single_values_are_for_all_rows() -> None:
     assert [type(row).__name__ for row in grazes] == ["Contact", "Grazing"]
 
 
-def test_nothing_gives_nothing() -> None:
+def test_no_rows_give_empty_columns() -> None:
     for many in (cast_many, contact_range_many, clearance_many):
         columns: Any = many(CUBE, CUBE, AHEAD, moving_pose=np.zeros((0, 3)))
         assert len(columns) == 0 and columns.normal.shape == (0, 3) and list(columns) == []
@@ -56,7 +56,7 @@ def test_nothing_gives_nothing() -> None:
     assert len(cast_many(CUBE, CUBE, AHEAD, moving_pose=np.zeros((0, 3, 4)))) == 0
 
 
-def test_bodies_by_index_or_one_a_row() -> None:
+def test_bodies_are_given_by_index_or_one_for_each_row() -> None:
     starts = np.array([[0, 0, 5.0]] * 4)
     down = [0, 0, -1.0]
     by_index = cast_many([CUBE, PLATE], PLATE, down, moving_pose=starts, moving_index=[0, 1, 1, 0])
@@ -113,14 +113,14 @@ def test_bad_rows_are_errors_and_lose_nothing() -> None:
         ({"solver": "newton"}, "unknown solver"),
     ],
 )
-def test_arrays_that_do_not_go_together(arguments: dict[str, Any], match: str) -> None:
+def test_arrays_of_different_lengths_are_refused(arguments: dict[str, Any], match: str) -> None:
     with pytest.raises(ColltransError, match=match):
         cast_many([CUBE], [CUBE], **{"direction": AHEAD, **arguments})
     with pytest.raises(TypeError, match="moving: not a ConvexPolyhedron, but str"):
         cast_many(["cube"], CUBE, AHEAD)  # type: ignore[list-item]
 
 
-def test_arrays_that_change_are_noticed() -> None:
+def test_arrays_changed_after_the_call_raise_an_error() -> None:
     starts = np.array([[-3.0, 0, 0], [-4, 0, 0]])
     columns = cast_many(CUBE, CUBE, AHEAD, moving_pose=starts)
     starts[1, 0] = -7
@@ -172,7 +172,7 @@ def test_data_frames_hold_the_columns() -> None:
     assert frame["normal_x"][0] == 1 and frame["message"][1] == columns.errors[1]
 
 
-def test_others_run_meanwhile() -> None:
+def test_other_threads_run_during_a_call() -> None:
     settings = draw(seed=9, count=20)
     big = ConvexPolyhedron(settings.clouds[-1])
     poses = np.random.default_rng(1).normal(size=(300_000, 3)) + [0, 0, 9]
@@ -195,7 +195,7 @@ def test_others_run_meanwhile() -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are sent another way")
-def test_interrupting_ends_the_call() -> None:
+def test_an_interrupt_ends_the_call() -> None:
     program = """
 import numpy as np, colltrans, sys, time
 random = np.random.default_rng(0)
@@ -219,7 +219,7 @@ except KeyboardInterrupt:
         assert time.perf_counter() - sent < 5
 
 
-def test_one_call_is_the_row_of_many() -> None:
+def test_a_single_call_equals_its_row_of_many() -> None:
     one = cast(CUBE, PLATE, [0, 0, -1], moving_pose=[0, 0, 5])
     (row,) = cast_many(CUBE, PLATE, [0, 0, -1], moving_pose=[0, 0, 5])
     assert repr(one) == repr(row)

@@ -112,7 +112,7 @@ def answers() -> list[FirstContact]:
     return found
 
 
-def test_what_an_answer_says() -> None:
+def test_answers_give_times_points_and_normals() -> None:
     contact, kept, free, over, touching, resting, solid, away = answers()
     outcomes = [answer.outcome for answer in answers()]
     assert outcomes == [
@@ -193,7 +193,7 @@ def test_random_proofs_hold_in_fractions() -> None:
     assert seen["contact"] > 10 and seen["free"] > 10
 
 
-def test_motions() -> None:
+def test_motions_move_points_as_documented() -> None:
     pose = [1, 2, 3]
     quarter = Motion.turn([0, 0, 0], [0, 0, 2], degrees=90, pose=pose)
     assert np.allclose(quarter.at(1).translation, [-2, 1, 3])
@@ -233,7 +233,7 @@ def test_a_query_is_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
         MotionCast.from_json(query.to_json().replace("case 1", "case 9"))
 
 
-def test_arguments_that_are_wrong() -> None:
+def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(QueryError, match="axis"):
         Motion.turn([0, 0, 0], [0, 0, 0], radians=1)
     with pytest.raises(QueryError, match="1e5"):
@@ -268,7 +268,7 @@ def test_arguments_that_are_wrong() -> None:
         motion_many(CUBE, CUBE, [1, 2])  # type: ignore[list-item]
 
 
-def test_rows_of_many_kinds() -> None:
+def test_rows_of_different_motions_equal_single_answers() -> None:
     numbers: dict[str, Any] = {
         "center": [0.5, 0.5, 0.5],
         "velocity": np.eye(3) * 8,
@@ -294,7 +294,7 @@ def test_rows_of_many_kinds() -> None:
     assert mixed.counts() == {"free": 2}
 
 
-def test_shards_ask_motions(batch: Batch, tmp_path: Path) -> None:
+def test_files_of_queries_ask_motions(batch: Batch, tmp_path: Path) -> None:
     pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     from colltrans.bulk.__main__ import main
 
@@ -337,7 +337,7 @@ def test_shards_ask_motions(batch: Batch, tmp_path: Path) -> None:
     assert again["outcome"].to_pylist()[3:] == table["outcome"].to_pylist()[3:]
 
 
-def test_pictures_have_ghosts_on_the_way() -> None:
+def test_pictures_show_ghosts_along_the_motion() -> None:
     pytest.importorskip("plotly")
     contact, _, free, *_ = answers()
     names = [trace.name for trace in colltrans.picture(contact).data if trace.name]
@@ -365,7 +365,7 @@ def cleared() -> list[MotionClearance]:
     ]
 
 
-def test_how_far_a_body_can_go() -> None:
+def test_clearances_of_motions_give_their_times() -> None:
     turned, pushed, dropped, kept, pressed, solid, stuck, leaving = cleared()
     assert (turned.outcome, turned.time, turned.bounds) == ("free", 1.0, None)
     assert (pushed.outcome, pushed.time) == ("blocked", 0.0)

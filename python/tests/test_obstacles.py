@@ -98,7 +98,7 @@ def test_answers_save_their_proofs(cli: Path, tmp_path: Path) -> None:
     assert len(places) == 40
 
 
-def test_casts_are_those_of_single_queries() -> None:
+def test_casts_equal_those_of_single_queries() -> None:
     obstacles, places = shelf()
     rng = np.random.default_rng(6)
     for at in rng.uniform(0, 20, (20, 3)):
@@ -147,7 +147,7 @@ def test_rows_have_the_bits_of_single_answers() -> None:
     assert len(Obstacles().nearest_many(CUBE, poses)["obstacle"]) == 300
 
 
-def test_those_within_a_length() -> None:
+def test_obstacles_within_a_length_are_found() -> None:
     obstacles = Obstacles()
     obstacles.add_many([CUBE, CUBE, CUBE], [[2, 0, 0], [9, 0, 0], [0, 3, 0]])
     assert obstacles.within(CUBE, 1.5) == ([0], [])
@@ -186,7 +186,7 @@ def test_bad_input_is_refused() -> None:
     assert found.lower <= 50 <= found.upper
 
 
-def test_threads_may_ask_while_another_moves() -> None:
+def test_threads_can_query_while_another_moves_obstacles() -> None:
     obstacles, places = shelf()
     wrong = []
 

@@ -85,7 +85,7 @@ def test_show_hands_the_figure_to_plotly(monkeypatch: pytest.MonkeyPatch) -> Non
     assert len(shown) == 1 and "contact at 2" in named(shown[0])
 
 
-def test_what_is_no_answer_is_refused() -> None:
+def test_other_objects_are_refused() -> None:
     with pytest.raises(TypeError, match="Pose is not a body, a query or an answer"):
         picture(Pose())
     with pytest.raises(TypeError):

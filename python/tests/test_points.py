@@ -31,7 +31,7 @@ SEGMENT = ConvexPolyhedron([[4, 0.75, 0.5], [3, 0.5, 0.25]])
 
 
 @pytest.mark.parametrize("body", [POINT, SEGMENT])
-def test_the_tip_stops_at_the_face_and_proofs_hold(body: ConvexPolyhedron) -> None:
+def test_a_point_stops_at_a_face_and_its_proof_holds(body: ConvexPolyhedron) -> None:
     stopped: Any = clearance(body, PART, [-1, 0, 0])
     assert 2 - 1e-11 < stopped.distance <= 2
     stops = check.check(stopped.proof_json()).holds

@@ -35,7 +35,7 @@ def of_command_line(cli: Path, path: Path, words: list[str]) -> bytes:
 
 
 @pytest.mark.parametrize("start", [[-5, 0.2, 0.3], [-5, 9, 0.3], [5, 0.2, 0.3], [0, 0.2, 0.3]])
-def test_convex_bodies(cli: Path, tmp_path: Path, start: list[float]) -> None:
+def test_proofs_of_convex_bodies_hold(cli: Path, tmp_path: Path, start: list[float]) -> None:
     here, there = tmp_path / "here.json", tmp_path / "there.json"
     names = ["ellipsoid_a.obj", "ellipsoid_b.off"]
     moving, fixed = (colltrans.read(DATA / name) for name in names)
@@ -56,7 +56,9 @@ def test_convex_bodies(cli: Path, tmp_path: Path, start: list[float]) -> None:
         ([0.5, 0, 0], [0, 0, -1]),
     ],
 )
-def test_solids(cli: Path, tmp_path: Path, start: list[float], direction: list[float]) -> None:
+def test_proofs_of_solids_hold(
+    cli: Path, tmp_path: Path, start: list[float], direction: list[float]
+) -> None:
     here, there = tmp_path / "here.json", tmp_path / "there.json"
     bolt, plate = Solid.read(DATA / "bolt.stl"), Solid.read(DATA / "plate.off")
     answer = SolidCast(bolt, plate, direction, moving_pose=start).clearance()
@@ -74,7 +76,7 @@ def test_solids(cli: Path, tmp_path: Path, start: list[float], direction: list[f
     assert here.read_bytes() == of_command_line(cli, there, asked)
 
 
-def test_answers_and_parts_of_them(tmp_path: Path, verify: Verify) -> None:
+def test_proofs_of_answers_and_their_parts_hold(tmp_path: Path, verify: Verify) -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     cloud = ConvexPolyhedron(np.random.default_rng(5).normal(size=(30, 3)))
     found: list[Any] = []
@@ -91,7 +93,7 @@ def test_answers_and_parts_of_them(tmp_path: Path, verify: Verify) -> None:
         assert check.check(answer.proof_json()).holds
 
 
-def test_a_slide_is_said_to_be_one(tmp_path: Path, verify: Verify) -> None:
+def test_a_proof_of_a_slide_names_the_slide(tmp_path: Path, verify: Verify) -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     for start, tolerance in ([-3, 1, 0], 0.0), ([-3, 0.999, 0], 0.01):
         query = Cast(cube, cube, [1, 0, 0], moving_pose=start, graze_tolerance=tolerance)
@@ -104,7 +106,9 @@ def test_a_slide_is_said_to_be_one(tmp_path: Path, verify: Verify) -> None:
             assert "slide along each other" in check.check(answer.proof_json()).holds[0]
 
 
-def test_unions_and_moved_bodies(tmp_path: Path, verify: Verify) -> None:
+def test_unions_and_offset_bodies_have_proofs_or_name_the_reason(
+    tmp_path: Path, verify: Verify
+) -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     post = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 4])
     step = Solid.from_pieces([Solid.from_pieces([cube, post]), cube])
@@ -121,7 +125,7 @@ def test_unions_and_moved_bodies(tmp_path: Path, verify: Verify) -> None:
         SolidCast(cube, smaller, [0, 0, -1]).clearance().proof_json()
 
 
-def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
+def test_an_unwritable_file_raises_an_error(tmp_path: Path) -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     with pytest.raises(OSError):
         colltrans.clearance(cube, cube, [1, 0, 0]).save_proof(tmp_path / "none" / "proof.json")

@@ -39,7 +39,7 @@ def cli_path(cli: Path, *words: str) -> Any:
     return json.loads(told.stdout)
 
 
-def test_a_robot_tells_what_it_is() -> None:
+def test_a_robot_gives_its_joints_and_bodies() -> None:
     assert ARM.name == "arm"
     assert ARM.links == ["base", "upper", "fore", "tool"]
     assert ARM.joints == ["shoulder", "elbow", "reach"]
@@ -148,7 +148,7 @@ def test_srdf_says_which_links_are_not_held_against_each_other(tmp_path: Path) -
         Robot.read(DATA / "arm.urdf", srdf=tmp_path / "other.srdf")
 
 
-def test_what_is_wrong_is_said(tmp_path: Path) -> None:
+def test_invalid_arguments_are_refused(tmp_path: Path) -> None:
     def refused(error: type[ColltransError], words: str, *given: Any, **more: Any) -> None:
         with pytest.raises(error, match=words):
             ARM.first_contact(*given, **more)
@@ -179,7 +179,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     assert any("reach exceeds its limits" in note for note in found.notes)
 
 
-def test_many_paths_are_one_by_one_with_the_same_bits() -> None:
+def test_many_paths_equal_single_paths() -> None:
     random = np.random.default_rng(5)
     paths = [
         np.cumsum(random.normal(size=(random.integers(1, 6), 3)) * [0.8, 0.8, 0.05], axis=0)
@@ -210,7 +210,7 @@ def test_many_paths_are_one_by_one_with_the_same_bits() -> None:
         path_many(ARM, [ROWS, ROWS], times=[[0, 1, 2]])
 
 
-def test_the_proof_is_a_file_as_the_schema_says() -> None:
+def test_the_proof_file_matches_the_schema() -> None:
     for path, scene in ((ROWS, {"wire": WIRE}), (ROWS, {}), (ROWS[:1], {"wire": WIRE})):
         saved = json.loads(ARM.first_contact(path, scene, keep=0.001).proof_json())
         assert list(saved["statement"]) == ["path"]

@@ -40,7 +40,7 @@ def plate() -> Solid:
     return Solid.read(PARTS / "plate.off")
 
 
-def test_the_command_line_says_the_same(batch: Batch, bolt: Solid, plate: Solid) -> None:
+def test_answers_equal_those_of_the_command_line(batch: Batch, bolt: Solid, plate: Solid) -> None:
     random = np.random.default_rng(30)
     turns = random.normal(size=(60, 4))
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
@@ -117,7 +117,7 @@ def test_other_questions(bolt: Solid, plate: Solid) -> None:
     assert query.moving is bolt and query.moving_pose.translation.tolist() == [0, 0, 7]
 
 
-def test_ignored_overlaps_are_told() -> None:
+def test_ignored_overlaps_are_reported() -> None:
     table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
     plate = ConvexPolyhedron.cuboid([0, 0, 0], [1, 2, 1])
     pressed = SolidCast(
@@ -181,7 +181,7 @@ def test_a_union_of_convex_bodies_and_a_convex_body() -> None:
     assert SolidCast(segment, step, [0, 0, -1]) is not None
 
 
-def test_meshes_in_every_form_and_refusals(tmp_path: Path) -> None:
+def test_meshes_in_every_form_are_read_and_invalid_ones_refused(tmp_path: Path) -> None:
     for faces in (FACES, FACES.tolist(), FACES.astype(np.uint8)):
         assert Solid(CORNERS.astype("f4"), faces).volume == 1 / 6
     mesh = SimpleNamespace(vertices=CORNERS, faces=FACES)

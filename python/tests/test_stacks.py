@@ -28,7 +28,7 @@ PLATE = ConvexPolyhedron.cuboid([-2, -2, -1], [2, 2, 0])
 DOWN = [0, 0, -1.0]
 
 
-def test_axes_go_together_as_those_of_numpy() -> None:
+def test_axes_broadcast_as_in_numpy() -> None:
     starts = np.random.default_rng(5).uniform(-1, 1, (4, 1, 3)) + [0, 0, 5]
     ways = np.array([[0, 0, -1.0], [1, 0, -1], [0, 0, 1]])
     columns = cast_many(CUBE, PLATE, ways, moving_pose=starts, graze_tolerance=np.zeros((4, 3)))
@@ -51,7 +51,7 @@ def test_axes_go_together_as_those_of_numpy() -> None:
     assert concatenate([columns, columns[:2]]).shape == (14,)
 
 
-def test_all_questions_have_stacks() -> None:
+def test_every_question_accepts_stacks() -> None:
     starts = np.zeros((2, 2, 7))
     starts[..., 2] = np.array([[3, 4], [0.5, 9]])
     starts[..., 6] = 1
@@ -73,7 +73,7 @@ def test_all_questions_have_stacks() -> None:
     assert cast_many(CUBE, CUBE, DOWN, moving_pose=matrices).shape == (3, 2)
 
 
-def test_one_row_and_none_stay_what_they_were() -> None:
+def test_a_single_row_and_no_row_keep_their_shapes() -> None:
     assert cast_many(CUBE, PLATE, DOWN, moving_pose=[0, 0, 5]).shape == (1,)
     assert cast_many(CUBE, PLATE, np.zeros((0, 3))).shape == (0,)
     assert cast_many(CUBE, PLATE, np.zeros((2, 0, 3))).stacked("normal").shape == (2, 0, 3)
@@ -104,7 +104,7 @@ def _contact(answer: Any) -> Any:
 
 
 @pytest.mark.parametrize("ask", [cast_many, contact_range_many, clearance_many])
-def test_features_are_those_of_the_row(ask: Any) -> None:
+def test_features_equal_those_of_the_row(ask: Any) -> None:
     drawn = draw(7, 400)
     poses = {"moving_pose": drawn.moving_pose, "fixed_pose": drawn.fixed_pose}
     index = {"moving_index": drawn.moving, "fixed_index": drawn.fixed}
@@ -146,7 +146,7 @@ def test_features_of_solids_distances_and_motions() -> None:
     assert columns.to_xarray()["moving_feature"].dims == ("query", "corner")
 
 
-def test_all_directions_of_many_are_those_of_each() -> None:
+def test_free_directions_of_many_equal_those_of_each() -> None:
     bar = Solid(*_mesh())
     starts = np.array([[[0, 0, 0.0], [1, 1, 1]], [[0, 0, 3], [0.2, 0.3, 0.5]]])
     columns = free_directions_many([bar, CUBE], PLATE, moving_pose=starts, moving_index=[[0], [1]])

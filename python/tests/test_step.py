@@ -163,7 +163,7 @@ def rod(
     return text.text()
 
 
-def test_distances_from_surfaces() -> None:
+def test_distances_to_curved_surfaces_are_bounded() -> None:
     """Against what is known of single facets."""
     square = np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0]]])
     cylinder = {"type": "cylinder", "origin": [0, 0, 5], "axis": [0, 0, 2], "radius": 1.0}
@@ -183,7 +183,7 @@ def test_distances_from_surfaces() -> None:
         step.on_surface({"type": "spline"}, square)
 
 
-def test_distances_beside_facets() -> None:
+def test_distances_beside_facets_are_bounded() -> None:
     """All corners against all facets, one by one."""
     random = np.random.default_rng(4)
     for _ in range(20):
@@ -197,7 +197,7 @@ def test_distances_beside_facets() -> None:
 
 
 @pytest.mark.parametrize(("chord", "angle"), [(0.05, 0.2), (0.5, 2.0), (0.001, 0.5)])
-def test_a_rod_is_as_far_off_as_is_said(tmp_path: Path, chord: float, angle: float) -> None:
+def test_the_reported_deviation_of_a_rod_holds(tmp_path: Path, chord: float, angle: float) -> None:
     """The chord error is that of the polygon which the facets are."""
     pytest.importorskip("OCP")
     (tmp_path / "rod.step").write_text(rod())
@@ -253,7 +253,7 @@ def test_colours_are_those_of_the_file(tmp_path: Path) -> None:
     assert material(rod()) is None
 
 
-def test_big_files_say_how_far_they_are(
+def test_large_files_report_progress(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """At most twice a second, not for every shape; before free-form faces of many facets."""
@@ -294,7 +294,7 @@ NAMES = {
 
 
 @pytest.mark.parametrize("kind", NAMES)
-def test_a_sub_assembly_is_taken_apart_whatever_its_name(tmp_path: Path, kind: str) -> None:
+def test_a_sub_assembly_is_split_whatever_its_name(tmp_path: Path, kind: str) -> None:
     """Three parts, with names as they were meant."""
     pytest.importorskip("OCP")
     text = StepText()
@@ -432,7 +432,7 @@ def test_an_external_file_lies_in_the_folder_of_its_source() -> None:
     assert not any(map(step._lies_beside, ["../a.stp", "/a.stp", "C:\\a.stp", "x/..\\..\\a.stp"]))
 
 
-def test_what_is_no_step_file_is_refused(tmp_path: Path) -> None:
+def test_files_that_are_not_step_are_refused(tmp_path: Path) -> None:
     """With a message that names the file."""
     pytest.importorskip("OCP")
     (tmp_path / "a.step").write_text("solid a\nendsolid a\n")

@@ -1,8 +1,8 @@
-//! The same casts as Python's, without Python: the measure of `python/benchmarks/overhead.py`.
+//! Runs the casts of `python/benchmarks/overhead.py` without Python, for comparison.
 //!
-//! `bare POINTS_A POINTS_B ROWS THREADS REPEATS`: files of raw doubles, three for a point and ten for
-//! a row (a translation and a quaternion of the moving body, a direction). Prints nanoseconds of wall
-//! time for a cast, the least of the repeats. Its CPU time is the caller's to measure.
+//! `bare POINTS_A POINTS_B ROWS THREADS REPEATS` reads files of raw doubles, three for a point and ten
+//! for a row (a translation and a quaternion of the moving body, a direction). Prints the wall time of
+//! a cast in nanoseconds, the minimum of the repeats. The caller measures the CPU time.
 
 use std::error::Error;
 use std::time::Instant;
@@ -23,7 +23,7 @@ fn body(path: &str) -> Anything<ConvexPolyhedron> {
     Ok(ConvexPolyhedron::from_points(&points)?)
 }
 
-/// Answers of rows, into as much memory as Python's columns take.
+/// Answers rows, into as much memory as the columns of Python need.
 fn casts(
     bodies: &[ConvexPolyhedron; 2],
     rows: &[[f64; 10]],

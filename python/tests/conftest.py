@@ -1,4 +1,4 @@
-"""What tests share: the command line, and queries drawn from a seed."""
+"""Shared fixtures: the command line, and random queries from a seed."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ Batch: TypeAlias = Callable[[Iterable[dict[str, Any]]], list[dict[str, Any]]]
 
 @pytest.fixture(scope="session")
 def cli() -> Path:
-    """The program ``colltrans``, built from this checkout."""
+    """Builds the program ``colltrans`` from this checkout and returns its path."""
     build = ["cargo", "build", "--release", "--bin", "colltrans", "--message-format=json"]
     told = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     messages = map(json.loads, told.splitlines())
@@ -30,7 +30,7 @@ def cli() -> Path:
 
 @pytest.fixture(scope="session")
 def batch(cli: Path) -> Batch:
-    """Answers of ``colltrans batch``."""
+    """Returns the answers of ``colltrans batch``."""
 
     def ask(queries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         lines = "".join(json.dumps(query) + "\n" for query in queries)
@@ -43,7 +43,7 @@ def batch(cli: Path) -> Batch:
 
 @dataclass(frozen=True)
 class Settings:
-    """Queries as arrays: clouds of points, and for each query two of them, poses, a direction."""
+    """Random queries as arrays: clouds of points; for each query two bodies, poses, a direction."""
 
     clouds: list[Floats]
     moving: NDArray[np.int64]
@@ -59,7 +59,7 @@ class Settings:
         return [ConvexPolyhedron(cloud) for cloud in self.clouds]
 
     def lines(self, **more: Any) -> Iterable[dict[str, Any]]:
-        """For ``colltrans batch``."""
+        """Returns the queries as input of ``colltrans batch``."""
         for i in range(len(self)):
             yield {
                 "moving": {"points": self.clouds[self.moving[i]].tolist()},
@@ -76,7 +76,7 @@ def _pose(row: Floats) -> dict[str, list[float]]:
 
 
 def draw(seed: int, count: int) -> Settings:
-    """Half of them tied: cubes on a grid, along its axes, in no turn or a quarter one."""
+    """Draws queries; half have ties: cubes on a grid, moved along axes, turned by 0 or 90 deg."""
     random = np.random.default_rng(seed)
     cube = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(-1, 3)
     clouds = [cube, cube * [4, 4, 1] - [2, 2, 0]]

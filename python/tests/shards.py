@@ -1,4 +1,4 @@
-"""What the tests of files of queries share: bodies, queries drawn from a seed, shards of them."""
+"""Shared helpers for files of queries: bodies, random queries from a seed, shards."""
 
 from pathlib import Path
 from typing import Any

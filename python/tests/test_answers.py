@@ -1,4 +1,4 @@
-"""Answers: every case by its name, proofs that are checked, queries that are saved."""
+"""Tests answers: the class of every case, checked proofs, saved queries."""
 
 import pickle
 import subprocess

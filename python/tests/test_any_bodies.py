@@ -1,4 +1,4 @@
-"""Solids and convex bodies in the same calls, alone and in bulk; signals in long queries."""
+"""Tests solids and convex bodies in the same calls, single and in bulk; signals in long queries."""
 
 import os
 import signal
@@ -164,5 +164,5 @@ def test_a_signal_interrupts_queries_of_large_solids(query: str) -> None:
             process.kill()
             raise
         assert told == "interrupted\n"
-        # A second on a machine of one's own.
+        # Takes a second on an idle machine.
         assert time.perf_counter() - sent < 5

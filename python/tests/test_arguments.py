@@ -1,4 +1,4 @@
-"""Whatever numpy calls an array is taken, with the same bits, or refused with a reason."""
+"""Tests that every array that numpy accepts gives the same bits or is refused with a reason."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -60,11 +60,11 @@ FORMS: list[Any] = [
 SLIDE = colltrans.Motion.slide([0, 0, 3])
 ARM = colltrans.Robot.read(Path(__file__).parents[2] / "data/arm.urdf")
 
-#: The same without types: what is refused is no call that a type checker admits.
+#: The same without types, because a type checker rejects the refused calls.
 CALLED: Any = colltrans
 CALLED_ARM: Any = ARM
 
-#: Calls with an argument that is easily confused, and words that say what is accepted.
+#: Calls with an argument that is easily confused, and the accepted forms in the message.
 INSTEAD: list[tuple[Callable[[], Any], type[Exception], list[str]]] = [
     (
         lambda: CALLED.motion_many(CUBE, CUBE, [0, 0, 1]),

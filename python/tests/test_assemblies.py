@@ -1,4 +1,4 @@
-"""Assemblies: the command line's rooms and plans, and refusals."""
+"""Tests assemblies: rooms and plans as on the command line, and refusals."""
 
 import json
 import pickle
@@ -43,7 +43,7 @@ def test_the_plan_equals_that_of_the_command_line(cli: Path, gearbox: Assembly) 
         first, last = its["steps"]
         assert stage == Stage(its["takes"], range(first, last + 1), its["travel"])
     assert plan.stages[0].takes == "4 x bolt" and plan.steps[4].after == [0, 1, 2, 3]
-    # The other way up it is the other way round, but for what leaves upwards alone.
+    # The opposite direction swaps blockers, except for parts that are free upwards.
     assert gearbox.plan(gravity=[0, 0, 1]).last == plan.last
     (stuck,), (its,) = plan.stuck, known["stuck"]
     assert stuck.proven == its["proof"]["proven"] and "proven" in stuck.because
@@ -67,7 +67,7 @@ def test_a_removal_map(gearbox: Assembly) -> None:
     rooms = gearbox.removal_map("bolt_0", samples=162, border=0.2)
     assert len(rooms.directions) == len(rooms.distance) == len(rooms.by) >= 162
     assert np.allclose(np.linalg.norm(rooms.directions, axis=1), 1)
-    # Of a cone that is too narrow to be seen, the middle.
+    # A cone that is too narrow to be found gives its middle.
     assert rooms.regions == [] and np.allclose(rooms.isolated, [[0, 0, 1]], atol=1e-6)
     assert 0 <= rooms.free_share < 0.5
 
@@ -138,7 +138,7 @@ def test_a_press_fit_uses_its_own_tolerance() -> None:
         assert "tolerance" in step.passed[0].words
     with pytest.raises(InputError):
         parts.with_pair("block", "pin", role="welded")
-    # Of another assembly's plan: the parts that are stuck there are none of these.
+    # The stuck parts of another assembly's plan are not parts of this one.
     (stuck,) = Assembly({"a": block, "b": pin}).plan(samples=0).stuck
     with pytest.raises(AssemblyError, match="unknown part a"):
         parts.suggestions(stuck=[stuck])

@@ -1,4 +1,4 @@
-"""The same bits as the command line's, one by one and in bulk, on any number of threads."""
+"""Tests that answers have the bits of the command line, in bulk too, with any number of threads."""
 
 from typing import Any
 
@@ -23,7 +23,7 @@ SETTINGS = draw(seed=20, count=1200)
 
 
 def plain(line: dict[str, Any]) -> dict[str, Any]:
-    """What the command line says, without what only it says: ids and words for people."""
+    """Returns the record of the command line without ids and texts."""
     return {name: value for name, value in line.items() if name not in ("id", "message")}
 
 
@@ -32,7 +32,7 @@ def bounds(lower: float, upper: float) -> list[float | None]:
 
 
 def ends(answer: Any) -> tuple[Contact | None, Contact | None]:
-    """The first and the last contact of an answer."""
+    """Returns the first and the last contact of an answer."""
     match answer:
         case Blocked(contact=first):
             return first, None
@@ -48,7 +48,7 @@ def ends(answer: Any) -> tuple[Contact | None, Contact | None]:
 
 
 def says_the_same(answer: Any, told: dict[str, Any]) -> None:
-    """Attributes are what ``to_dict`` says."""
+    """Checks that the attributes equal the entries of ``to_dict``."""
     first, last = ends(answer)
     if first is not None:
         proof = first.certificate

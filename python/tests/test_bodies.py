@@ -1,4 +1,4 @@
-"""Bodies: what they are made of, what they refuse, files, copies."""
+"""Tests bodies: construction, refusals, files, copies."""
 
 import copy
 import pickle
@@ -157,7 +157,7 @@ def test_a_cube_shrinks_and_grows() -> None:
 
 
 def test_a_face_that_vanishes_in_shrinking_is_named() -> None:
-    """Of a cube with a corner cut off: the cut, x + y + z = 11.5, goes to 9.77, the corner to 9."""
+    """A cube with a cut corner: the cut, x + y + z = 11.5, moves to 9.77, the corner to 9."""
     corners = np.array([[x, y, z] for x in (0, 4) for y in (0, 4) for z in (0, 4)][:-1])
     body = ConvexPolyhedron(np.vstack([corners, 4 - np.eye(3) / 2]))
     smaller, report = body.shrunk(1)
@@ -206,7 +206,7 @@ def test_impossible_offsets_are_refused() -> None:
 
 
 def flat_cube(depth: float) -> tuple[Any, list[list[int]]]:
-    """A unit cube whose lid is a pyramid of four triangles that points inwards."""
+    """Returns a unit cube whose lid is a pyramid of four triangles that points inwards."""
     square = [[0, 0], [1, 0], [1, 1], [0, 1]]
     corners = [[*place, z] for z in (0, 1) for place in square]
     sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]

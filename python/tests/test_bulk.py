@@ -1,4 +1,4 @@
-"""Shards: every row once, whatever dies; the bits of the command line; what is done is skipped."""
+"""Tests shards: every row once after any failure, bits of the command line, skipped work."""
 
 import json
 import os
@@ -221,11 +221,11 @@ def test_a_copied_table_of_bodies_is_not_read_again(bodies: Path) -> None:
     digest = here.digest(())
     buffers: list[pickle.PickleBuffer] = []
     told = pickle.dumps(here, protocol=5, buffer_callback=buffers.append)
-    # The numbers are not in what is written: they can be shared.
+    # The vertices are not in the pickle, because copies share the file.
     numbers = sum(len(buffer.raw()) for buffer in buffers)
     assert numbers > 60 * 3 * 8
     there = pickle.loads(told, buffers=buffers)
-    # One that has built some has let go of their numbers; its copies read the table again.
+    # After building some bodies the vertices are dropped; copies read the table again.
     begun = Bodies(str(bodies))
     begun.get(KEYS[:1])
     assert pickle.loads(pickle.dumps(begun))._rows is None
@@ -264,7 +264,7 @@ def command(asked: Path, out: Path, bodies: Path, *more: str) -> list[str]:
 
 
 def killed_and_repeated(asked: Path, out: Path, bodies: Path, *more: str) -> str:
-    """Kills the program when it has answered a shard, runs it again; what it then says."""
+    """Kills the program after it has answered a shard, runs it again and returns its output."""
     run = command(asked, out, bodies, *more)
     with subprocess.Popen(run, start_new_session=True) as process:
         began = time.monotonic()
@@ -298,7 +298,7 @@ def test_an_interrupt_ends_the_run_and_leaves_no_partial_file(tmp_path: Path, bo
         assert process.stderr is not None
         assert "interrupted" in process.stderr.read()
         assert process.wait() == 130
-        # A second on a machine of one's own.
+        # Takes a second on an idle machine.
         assert time.monotonic() - sent < 5
     assert not list(out.iterdir())
 
@@ -308,14 +308,14 @@ def cluster() -> Iterator[Any]:
     ray = pytest.importorskip("ray")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
-        # Workers find what tests import.
+        # Lets workers import the modules of the tests.
         patch.setenv("PYTHONPATH", str(Path(__file__).parent))
         yield ray
     ray.shutdown()
 
 
 def dies_once(job: Job, bodies: Bodies) -> Report:
-    """Answers a shard, but the first worker that is at this one is killed half way."""
+    """Answers a shard, but kills the first worker that reaches this one half way."""
     marker = Path(job.answers + ".died")
     if job.queries.endswith("shard-1.parquet") and not marker.exists():
         marker.touch()

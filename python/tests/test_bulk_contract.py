@@ -1,4 +1,4 @@
-"""Files of queries: no column is passed over, no byte changes unseen, no shard is lost."""
+"""Tests files of queries: no ignored column, no undetected change of a byte, no lost shard."""
 
 import json
 import os
@@ -309,7 +309,7 @@ def test_rows_without_a_valid_body_become_errors(
 
 def test_solids_in_bulk_equal_single_answers(tmp_path: Path, capsys: Any) -> None:
     parts = [Solid.read(ROOT / "data" / name) for name in ("bolt.stl", "plate.off")]
-    # Without the precisions of the files, which tables do not have.
+    # Without the precision of the files, which tables do not contain.
     bolt, plate = (Solid(part.vertices, part.triangles) for part in parts)
     table = {
         "key": ["bolt", "plate", "bad"],

@@ -1,4 +1,4 @@
-"""Whatever is wrong with one body or one shard of a bulk run, all others are answered."""
+"""Tests that a faulty body or shard of a bulk run does not affect the other rows."""
 
 from pathlib import Path
 from typing import Any
@@ -14,16 +14,16 @@ from colltrans.bulk import bodies as bulk_bodies  # noqa: E402
 from colltrans.bulk import table as bulk_table  # noqa: E402
 from colltrans.bulk.__main__ import main  # noqa: E402
 
-#: Bytes that begin no character of UTF-8.
+#: Bytes that are not valid UTF-8.
 NO_TEXT = b"\xff\xfe"
 
 
 class Panic(BaseException):
-    """What a panic of the extension is to Python: no ``Exception``."""
+    """The Python class of a panic of the extension, which is not an ``Exception``."""
 
 
 def binary_as_text(values: list[bytes]) -> Any:
-    """A column of texts whose bytes nobody has looked at, as a careless writer leaves it."""
+    """Returns a column of texts with unchecked bytes, as some writers produce."""
     column = pa.array(values, pa.binary())
     return pa.Array.from_buffers(pa.string(), len(column), column.buffers())
 

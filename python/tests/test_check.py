@@ -1,6 +1,6 @@
-"""The checker in fractions, on saved proofs.
+"""Tests the checker in fractions on saved proofs.
 
-It needs neither the extension nor what other tests share, and is loaded from its file:
+The checker needs neither the extension nor the shared helpers, and is loaded from its file:
 ``python3 -m pytest --noconftest python/tests/test_check.py`` runs anywhere.
 """
 
@@ -20,11 +20,11 @@ PROOFS = HERE / "proofs"
 FILE = HERE.parent / "src" / "colltrans" / "check.py"
 
 
-#: Where the moving and the fixed body stand, and the direction.
+#: The fields of the moving and the fixed pose, and of the direction.
 MOVING_POSE = ("placement", "poses", 0, "pose")
 FIXED_POSE = ("placement", "poses", 1, "pose")
 DIRECTION = ("query", "cast", "direction")
-#: The proofs of a motion, of one of solids and of a path.
+#: The fields of the proofs of a motion, of a motion of solids and of a path.
 MOTION = ("statement", "motions", 0, "convex")
 SOLIDS = ("statement", "motions", 0, "solids", "proof")
 PATH = ("statement", "path", "proof")
@@ -48,7 +48,7 @@ def proof(name: str) -> Any:
 
 
 def without_field(name: str) -> Callable[[Any], Any]:
-    """Returns what leaves a field of an object out."""
+    """Returns a change that removes a field of an object."""
     return lambda of: {key: value for key, value in of.items() if key != name}
 
 
@@ -61,7 +61,7 @@ def refused(file: Any) -> bool:
 
 
 def places(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Where the numbers are."""
+    """Returns the paths of all numbers."""
     if isinstance(value, dict | list):
         items = value.items() if isinstance(value, dict) else enumerate(value)
         for key, part in items:
@@ -80,12 +80,12 @@ def changed(file: Any, way: tuple[Any, ...], by: Callable[[Any], Any]) -> Any:
 
 
 def always(value: Any) -> Callable[[Any], Any]:
-    """A change into this value."""
+    """Returns a change to this value."""
     return lambda _: value
 
 
 def believed(file: Any, under: tuple[Any, ...], by: Callable[[Any], Any]) -> list[Any]:
-    """The numbers that may be changed without being noticed."""
+    """Returns the numbers whose change is not noticed."""
     ways = [way for way in places(file) if way[: len(under)] == under]
     assert ways
     return [way for way in ways if not refused(changed(file, way, by))]
@@ -128,7 +128,7 @@ def test_changing_any_number_of_a_contact_is_refused(by: Callable[[Any], Any]) -
 
 
 def inside(x: float, middle: float) -> float:
-    """Nearly as far on the other side."""
+    """Returns a value that is nearly as far on the other side."""
     return middle + 0.98 * (middle - x)
 
 
@@ -154,7 +154,7 @@ def test_changing_the_stop_of_solids_is_refused() -> None:
     way = ("statement", "clearance", "stop")
     assert believed(file, (*way, "translation", "lower"), lambda x: x + 1e-9) == []
     assert believed(file, (*way, "translation", "upper"), lambda x: x - 1e-9) == []
-    # Facets of one plane meet the others as early; those of other planes do not, nor those missing.
+    # Facets of one plane meet the others equally early; facets of other planes do not.
     assert believed(file, (*way, "facets"), lambda k: k + 10_000) == []
     assert refused(changed(file, (*MOVING_POSE, "translation", 2), more))
     assert not refused(changed(file, (*way, "translation", "lower"), lambda _: None))
@@ -210,7 +210,7 @@ def test_cells_cover_the_sphere_and_no_free_cell_is_blocked() -> None:
 
 
 def test_inner_boxes_are_inside_and_block_their_cells() -> None:
-    """A ring around a rod, both of facets that are small against the play."""
+    """Uses a ring around a rod, both with facets that are small compared with the play."""
     file = proof("inner")
     way = ("statement", "free_directions")
     statement = file["statement"]["free_directions"]
@@ -234,7 +234,7 @@ def test_inner_boxes_are_inside_and_block_their_cells() -> None:
 
 
 def test_a_missing_field_claims_nothing() -> None:
-    """Null stands for what is not there, as it does for the library."""
+    """Null means a missing value, as in the library."""
     file = proof("contacts")
     contacts = file["statement"]["contacts"]
     contacts["last"] = None
@@ -290,12 +290,12 @@ def test_a_slide_is_checked_as_a_slide() -> None:
 
 
 def test_a_contact_hidden_by_rounding_is_accepted() -> None:
-    """A corner that the line misses by the last bit: no triangle is met exactly."""
+    """Uses a corner that the line misses by the last bit, so that no triangle is met exactly."""
     file = proof("contacts")
     cube = file["bodies"][1]["convex"]["vertices"]
     first = file["statement"]["contacts"]["first"]
     pair = first["pairs"][0]
-    # The pair alone, with the direction rounded from one corner to the other.
+    # Uses the pair alone, with the direction rounded from one corner to the other.
     turn = value_at(file, MOVING_POSE)
     rows = [turn["matrix"][k::3] for k in range(3)]
     v = file["bodies"][0]["convex"]["vertices"][pair["moving"]]
@@ -311,7 +311,7 @@ def test_a_contact_hidden_by_rounding_is_accepted() -> None:
     assert refused(file)
 
 
-#: A solid, and places under the name of another placement.
+#: A solid, and fields from the other kind of placement.
 BESIDE = proof("solids")["bodies"][1]
 RENAMED = {"motions": proof("contacts")["placement"]["poses"]}
 
@@ -353,7 +353,7 @@ def test_files_without_a_proof_are_refused(tmp_path: Path) -> None:
 
 
 def test_the_checker_runs_without_the_package() -> None:
-    """Without the package, and without what the package needs."""
+    """Runs without the package and its dependencies."""
     command = [sys.executable, "-I", "-S", str(FILE), str(PROOFS / "contacts.json")]
     told = subprocess.run(command, capture_output=True, text=True)
     assert told.returncode == 0, told.stderr
@@ -421,7 +421,7 @@ def test_values_outside_the_specification_are_refused(
 
 
 def containers(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Where the lists and objects are, of each list the first entry."""
+    """Returns the paths of all lists and objects; of each list only the first entry."""
     if not isinstance(value, dict | list):
         return
     if way:
@@ -437,11 +437,11 @@ def value_at(file: Any, way: tuple[Any, ...]) -> Any:
     return file
 
 
-#: What claims nothing, or says that nothing is claimed, where it is null.
+#: Fields that claim nothing, or state that nothing is claimed, if they are null.
 MAY_BE_NULL = {"separation", "stop", "meeting", "first", "last", "slide"}
 
 
-#: Files that take a second to check, of a kind of which another one is quick.
+#: Files that take a second to check, where another file of the same kind is fast.
 SLOW = {"path_contact", "path_free", "path_kept", "path_solid"}
 
 

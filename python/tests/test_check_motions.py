@@ -1,6 +1,6 @@
-"""The checker in fractions, on saved proofs of motions that turn: also forged ones.
+"""Tests the checker in fractions on saved and forged proofs of turning motions.
 
-Like ``test_check`` it needs neither the extension nor what other tests share.
+Like ``test_check`` it needs neither the extension nor the shared helpers.
 """
 
 import json
@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from test_check import MOTION, always, changed, check, proof, refused, value_at, without_field
 
-#: The moving and the fixed body, where they move.
+#: The fields of the moving and the fixed body.
 MOVERS = ("placement", "motions", 0)
 KEEP = ("query", "motions", 0, "keep")
 
@@ -58,7 +58,7 @@ def test_a_plane_that_claims_too_much_is_refused(name: str) -> None:
 def test_dropping_a_needed_plane_is_refused(name: str) -> None:
     file = proof(f"motion_{name}")
     for s, planes in enumerate(value_at(file, MOTION)["spans"]):
-        # The first says where the span begins; all but the last at once leave the motion unproven.
+        # The first plane defines the start of the span; without all but the last it is unproven.
         without = json.loads(json.dumps(file))
         value_at(without, MOTION)["spans"][s] = planes[1:]
         assert planes[1]["time"] == planes[0]["time"] or refused(without)
@@ -74,7 +74,7 @@ def test_a_single_plane_needs_the_arcs() -> None:
     way = (*MOTION, "spans", 0, 0, "alone")
     assert refused(changed(file, way, lambda alone: not alone))
     assert refused(changed(file, way, lambda alone: 1))
-    # Of the contact no plane is enough alone.
+    # No plane of the contact is enough alone.
     file = proof("motion_contact")
     for k in range(len(value_at(file, MOTION)["spans"][0]) - 1):
         assert refused(changed(file, (*MOTION, "spans", 0, k, "alone"), lambda alone: True))
@@ -150,13 +150,13 @@ def test_files_without_a_proof_are_refused() -> None:
     assert refused(changed(file, (*MOVERS, 0, "body"), always(2)))
     for name in ("placement", "query", "statement"):
         assert refused(changed(file, (name, "motions"), lambda all_: [*all_, all_[0]]))
-    # It says nothing, which holds.
+    # A statement without claims holds.
     nothing = changed(file, MOTION, always({"spans": [], "meeting": None}))
     assert check.check(json.dumps(nothing)).holds == []
 
 
 def test_a_piece_that_begins_when_the_motion_ends_is_refused() -> None:
-    # It would put the body elsewhere at the time 1, which no plane is of.
+    # It would change the pose at the time 1, for which there is no plane.
     way = (*MOVERS, 0, "motion")
     assert refused(changed(proof("motion_free"), way, lambda of: [*of, {**of[-1], "since": 1.0}]))
 
@@ -195,7 +195,7 @@ def test_missing_or_unknown_fields_are_refused() -> None:
 
 
 def several(files: list[Any]) -> Any:
-    """The pairs of several files as one file."""
+    """Returns the pairs of several files as one file."""
     bodies: list[Any] = []
     joined: dict[str, list[Any]] = {"placement": [], "query": [], "statement": []}
     for file in files:
@@ -212,7 +212,7 @@ def several(files: list[Any]) -> Any:
 def test_several_pairs_share_one_question() -> None:
     files = [proof("motion_contact"), proof("motion_free")]
     assert len(check.check(json.dumps(several(files))).holds) == 3
-    # A pair of which planes alone prove nothing is one of solids, as they are.
+    # A pair without planes needs the proof of solids.
     assert refused(several([*files, proof("solids_contact")]))
     whole = proof("solids_whole")
     solids = several([*files, whole])
@@ -225,7 +225,7 @@ def test_several_pairs_share_one_question() -> None:
     path = proof("path_free")["statement"]
     assert refused({**several(files), "statement": {"motions": [path, path]}})
     assert refused(several([]))
-    # What is said of all of them would be said of two gaps.
+    # A statement about all pairs would combine two gaps.
     assert refused(several([*files, proof("motion_kept")]))
 
 
@@ -257,7 +257,7 @@ def test_between_two_planes_the_chord_bound_is_exact() -> None:
         parts = [Fraction(k, 400) for k in range(401)]
         least = min((1 - x) * a + x * b - c * x * (1 - x) / 2 for x in parts)
         stays = check.stays(a, b, c)
-        # Samples are above the least value, by the bend between two of them at most.
+        # Samples exceed the least value by at most the curvature between two samples.
         assert not (stays and least <= 0) and (stays or least < abs(c) / 2 / 400**2)
         seen.add(stays)
     assert seen == {True, False}

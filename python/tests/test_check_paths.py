@@ -1,4 +1,4 @@
-"""The checker in fractions, on saved proofs of paths of joints: also forged ones."""
+"""Tests the checker in fractions on saved and forged proofs of joint paths."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -53,13 +53,13 @@ def test_a_valid_proof_is_accepted(name: str, holds: list[str]) -> None:
     assert all(words in line for words, line in zip(holds, report.holds, strict=True))
 
 
-#: Planes between boxes are of such as are a little larger. Some are enough: each is a check.
+#: The planes between boxes belong to slightly larger boxes. Each is a check, so some are enough.
 SPARE = {"solid": 1e-7}
 STRIDE = {"solid": 25}
 
 
 def planes(file: Any) -> list[tuple[Any, ...]]:
-    """Where the planes are."""
+    """Returns the paths of all planes."""
 
     def within(cover: Any, way: tuple[Any, ...]) -> Iterator[tuple[Any, ...]]:
         for s, step in enumerate(cover["steps"]):
@@ -143,7 +143,7 @@ def test_the_pairs_of_a_statement_are_those_of_the_covers() -> None:
     assert refused(changed(file, pairs, lambda all_: [*all_, all_[0]]))
     assert refused(changed(file, (*pairs, 0), lambda pair: [pair[0], pair[0]]))
     assert refused(changed(file, (*pairs, 0, 1), lambda name: name + " of another robot"))
-    # The names say which bodies: two of one name say nothing.
+    # Names identify the bodies; two equal names identify none.
     name = value_at(file, (*LINKS, 0, "name"))
     assert refused(changed(file, (*LINKS, 1, "name"), lambda _: name))
     assert refused(changed(file, (*LINKS, 1, "name"), lambda _: ""))
@@ -209,7 +209,7 @@ def test_places_beyond_the_way_to_the_next_row_are_refused() -> None:
     ]
     assert steps
     for way in steps:
-        # Seven times the way would be the time of a row that no plane is of.
+        # Seven times the way would be the time of a row that has no plane.
         for share in (7.0, -1.0):
             assert refused(changed(file, way, always(share)))
 

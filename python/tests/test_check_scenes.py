@@ -1,4 +1,4 @@
-"""The checker in fractions, on forged proofs about one body among many."""
+"""Tests the checker in fractions on forged proofs about one body among many."""
 
 import json
 from typing import Any
@@ -12,7 +12,7 @@ def placed(x: float) -> dict[str, Any]:
 
 
 def scene(statement: Any, *places: float, **choices: Any) -> dict[str, Any]:
-    """A unit cube at 0 among others along x."""
+    """Returns a scene of a unit cube at 0 among others along x."""
     corners = [[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
     faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     cube = {"vertices": corners, "faces": faces, "input_indices": list(range(8)), "hull_error": 0.0}
@@ -61,7 +61,7 @@ def test_listing_an_obstacle_twice_is_refused() -> None:
 
 @pytest.mark.parametrize("length", [-0.5, -1e300, float("nan")])
 def test_an_invalid_length_is_refused(length: float) -> None:
-    # The square of the boxes' distance is more than that of the length.
+    # The squared distance of the boxes exceeds that of the length.
     assert refused(scene(within(length), 3.0, 4.0))
 
 
@@ -86,7 +86,7 @@ def test_unknown_options_are_refused() -> None:
 
 
 def test_an_obstacle_ahead_is_not_behind() -> None:
-    # Half a unit ahead and nearer than the gap: twice the gap was taken for what rounding explains.
+    # Half a unit ahead and nearer than the gap: rounding must not be taken as twice the gap.
     pair = {"moving": 0, "fixed": 4}
     certificate = {
         "normal": [-1.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-"""The checker in fractions, on saved proofs of solids that turn: also forged ones."""
+"""Tests the checker in fractions on saved and forged proofs of turning solids."""
 
 import json
 import random
@@ -48,7 +48,7 @@ def test_a_changed_entry_of_a_cover_is_refused(name: str) -> None:
             if other != cover:
                 count += refused(changed(file, WAY, always(other)))
     assert count > 12
-    # One that is in the slot of the other is parted from it by no plane as a whole.
+    # A body in the slot of another is not separated from it by one plane.
     for letter in "mabcxyz" if name in {"free", "carried"} else "":
         whole = changed(file, WAY, always(letter))
         value_at(whole, SOLIDS)["spans"][0]["lists"] = []
@@ -94,7 +94,7 @@ def test_the_offset_of_facets_is_reported() -> None:
     moved = changed(file, (*PARTS, 0, "corners", 0, 0, 2), lambda x: x + 0.125)
     report = check.check(json.dumps(moved))
     assert any("moved by at most 0.125" in line for line in report.holds)
-    # How the tolerance moves them is not checked: what is said holds in part.
+    # The checker does not check the offset of the tolerance, so the report is partial.
     assert report.partly and any("as the tolerance says" in line for line in report.unchecked)
 
 
@@ -112,7 +112,7 @@ def test_missing_or_unknown_fields_are_refused() -> None:
 
 def test_a_solid_inside_the_other_is_refused() -> None:
     file = proof("solids_free")
-    # The other solid, far larger and around the first one: no facets meet, all planes are gone.
+    # The other solid, far larger and around the first one: no facets meet, and there are no planes.
     inside = json.loads(json.dumps(file))
     for piece in inside["bodies"][1]["pieces"]:
         piece["vertices"] = [[100.0 * (x - 0.5) for x in v] for v in piece["vertices"]]
@@ -127,7 +127,7 @@ def test_a_solid_inside_the_other_is_refused() -> None:
 
 
 def placed(file: Any) -> tuple[Any, Any]:
-    """The first span of a file, and its parts."""
+    """Returns the first span of a file, and its parts."""
     shapes = [check.Body.shape(body) for body in file["bodies"]]
     parts = [
         check.Parts.read(points, facets, of)

@@ -1,4 +1,4 @@
-"""Checks of a change: ``.ci/run`` fails where a part cannot run; cargo compiles nothing twice."""
+"""Tests ``.ci/run``: it fails if a part cannot run, and cargo compiles nothing twice."""
 
 import hashlib
 import json
@@ -19,7 +19,7 @@ TOOLS = ["basename", "bash", "dirname", "env", "grep", "mktemp", "rm", "sed"]
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Path:
-    """A machine with Rust, whose commands all succeed, and without any other tool."""
+    """A machine with Rust and without any other tool; all commands succeed."""
     for tool in TOOLS:
         (tmp_path / tool).symlink_to(str(shutil.which(tool)))
     for tool in ["cargo", "rustc", "cmp"]:

@@ -1,4 +1,4 @@
-"""Answers pickle and copy, with the same bits and with what they were asked."""
+"""Tests that pickled and copied answers keep their bits and their queries."""
 
 import copy
 import pickle
@@ -42,11 +42,11 @@ def answers() -> list[Any]:
 
 
 def parts(thing: Any) -> Any:
-    """All that an object says, down to the bits."""
+    """Returns all values of an object, with their bits."""
     if type(thing).__module__ != "colltrans":
         return thing.tobytes() if isinstance(thing, np.ndarray) else repr(thing)
     names = [name for name in dir(thing) if not name.startswith("_")]
-    # The query of a Cast's own parts is the Cast; memory is what a body has, not what it is.
+    # The query of a Cast's parts is the Cast itself; memory use is not part of a value.
     values = ((name, getattr(thing, name)) for name in names if name not in ("query", "nbytes"))
     said = {name: parts(value) for name, value in values if not callable(value)}
     return type(thing).__name__, repr(thing), said

@@ -1,4 +1,4 @@
-"""The paper's algorithm: who asks for it gets it, and can say where it starts and ends."""
+"""Tests the paper's algorithm as an option, with its start and its end."""
 
 import pickle
 from typing import Any

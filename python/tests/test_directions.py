@@ -1,4 +1,4 @@
-"""All free directions: closed forms, casts, proofs and the command line's bits."""
+"""Tests free directions: closed forms, casts, proofs and the bits of the command line."""
 
 import json
 import subprocess

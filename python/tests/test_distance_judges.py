@@ -1,7 +1,7 @@
-"""Distances beside Manifold's ``min_gap`` and trimesh's closest points, where they are installed.
+"""Compares distances with Manifold's ``min_gap`` and trimesh's closest points, if installed.
 
-Neither proves its numbers: where they differ from ours by more than their rounding, our proof is
-what decides.
+Neither proves its numbers: if they differ from ours by more than their rounding, our proof
+decides.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ from conftest import ROOT, Floats
 
 from colltrans import ConvexPolyhedron, Pair, Pose, Solid, check
 
-#: What the others may be off by, of the size: their own tolerances.
+#: The relative tolerances of the other packages.
 ROUNDING = 1e-9
 
 
@@ -53,7 +53,7 @@ def pairs(count: int) -> list[Pair]:
 
 
 def judged(pair: Pair, told: float, is_upper: bool = False) -> bool:
-    """Whether a number of others agrees; if not, our proof has to hold."""
+    """Returns whether another package's number agrees; if not, our proof has to hold."""
     found = pair.distance()
     size = float(np.abs(pair.moving_pose.translation).max()) + 20
     over = told > found.upper + ROUNDING * size and not is_upper
@@ -101,7 +101,7 @@ def test_no_point_of_a_surface_is_nearer_to_the_other() -> None:
         assert judged(pair, float(distances.min()), is_upper=True)
         features = found.features
         if features is not None and features.moving.kind == "vertex":
-            # Then a vertex is what is nearest.
+            # Then a vertex is nearest.
             assert abs(distances.min() - found.upper) < ROUNDING * 40
             touched += 1
     assert touched > 8

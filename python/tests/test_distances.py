@@ -1,4 +1,4 @@
-"""Distances, depths, comparisons: one and many, in files, the same bits as the command line's."""
+"""Tests distances, depths, comparisons: one and many, in files, bits of the command line."""
 
 import copy
 import json

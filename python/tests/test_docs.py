@@ -1,4 +1,4 @@
-"""The documentation is whole; the scripts of the site, which ``.ci/run site`` builds."""
+"""Tests that the documentation is complete, and the scripts of the site (``.ci/run site``)."""
 
 import importlib
 import json
@@ -41,7 +41,7 @@ def test_the_gallery_has_twelve_programs_and_the_site_three_notebooks() -> None:
     assert len(notebooks) == 3
     for notebook in notebooks:
         cells = json.loads(notebook.read_text())["cells"]
-        # What comes of them is made by the build, and not kept.
+        # The build makes their outputs, which are not committed.
         assert not any(cell.get("outputs") or cell.get("execution_count") for cell in cells)
 
 
@@ -57,7 +57,7 @@ def test_broken_links_are_found(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "b.html").write_text('<h2 id="there">There</h2><a href="../a.html">a</a>')
     good = '<a href="sub/b.html#there">b</a> <a href="#x">x</a><p id=x> <a href="https://a.b">c</a>'
-    # As rustdoc writes names of places.
+    # Rustdoc writes anchors in this form.
     good += '<p id="impl-Into%3CU%3E"></p><a href="#impl-Into%3CU%3E">i</a>'
     (tmp_path / "a.html").write_text(good)
     assert links(tmp_path) == []

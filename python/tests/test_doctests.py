@@ -1,4 +1,4 @@
-"""The examples of all docstrings, and of the pages about Python, run."""
+"""Runs the examples of all docstrings and of the pages about Python."""
 
 import doctest
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ GUIDES = [
 ]
 PAGES = [*GUIDES, *sorted(TUTORIALS.glob("*.md"))]
 
-#: What pages use beside numpy.
+#: The packages that pages use besides numpy.
 NEEDED = {"cad": ["plotly"], "data": ["pyarrow"], "python": ["plotly"]}
 
 
@@ -43,7 +43,7 @@ def test_examples_in_docstrings_give_their_outputs(
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_examples_on_pages_give_their_outputs(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """From start to end, without a screen; the tutorials are most of them."""
+    """Runs each page from start to end without a screen; most pages are tutorials."""
     for package in NEEDED.get(page.stem, ()):
         pytest.importorskip(package)
     monkeypatch.chdir(ROOT)

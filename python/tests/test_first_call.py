@@ -1,4 +1,4 @@
-"""First calls: arguments that are easily confused, and files that do not exist."""
+"""Tests first calls: arguments that are easily confused, and missing files."""
 
 import errno
 import math

@@ -1,4 +1,4 @@
-"""The same files give the same bodies, notes and answers here, to the command line, to the page."""
+"""Tests that the same files give the same bodies and answers in Python, command line and page."""
 
 import json
 import subprocess
@@ -34,7 +34,7 @@ FILES = {
     "single.ply": float_ply(),
     # A corner that was computed twice.
     "twins.off": off([*CORNERS, "0 0 5e-17"], [*SIDES[:5], "4 3 8 4 7"]),
-    # A face that runs against the others.
+    # A face with the opposite orientation.
     "turned.off": off(CORNERS, [*SIDES[:5], "4 7 4 0 3"]),
     "inside_out.off": off(
         CORNERS, [" ".join(["4", *reversed(side.split()[1:])]) for side in SIDES]
@@ -44,7 +44,7 @@ FILES = {
 
 
 def page(lines: list[str]) -> list[dict[str, Any]]:
-    """Answers of the page's module, built natively."""
+    """Returns the answers of the page's module, built natively."""
     crate = ROOT / "crates/colltrans-wasm/Cargo.toml"
     command: list[str | Path] = [
         "cargo",
@@ -124,7 +124,7 @@ def test_the_same_file_gives_the_same_hull(batch: Batch) -> None:
     (there,) = batch([{**asked, "direction": DIRECTION, "moving_pose": place}])
     *loaded, seen = of_page(bolt, bracket, TILTED, "hull")
     assert here.first.translation == there["translation"] == seen["record"]["translation"]
-    # The page does not look at depths, so that it opens at once.
+    # The page does not compute dents, so that it opens at once.
     (note,) = hull.notes
     assert note.startswith(loaded[0]["body"]["notes"][0])
     assert loaded[1]["body"]["notes"] == []

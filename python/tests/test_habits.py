@@ -1,4 +1,4 @@
-"""What users of NumPy expect: columns that select and compare, masks, pictures, docstrings."""
+"""Tests NumPy conventions: selecting and comparing columns, masks, pictures, docstrings."""
 
 import pickle
 import re
@@ -255,7 +255,7 @@ def test_long_calls_release_the_interpreter_lock() -> None:
             time.sleep(0)
 
     thread = threading.Thread(target=count)
-    # The other thread has its turns only where the lock is left to it: the interval never ends.
+    # The other thread runs only while the lock is released, because the switch interval never ends.
     before = sys.getswitchinterval()
     sys.setswitchinterval(1000)
     try:

@@ -1,4 +1,4 @@
-"""A gap to be kept: as on the command line, alone, in bulk, among obstacles; what is refused."""
+"""Tests the minimum gap: the command line, single and bulk queries, obstacles, refusals."""
 
 import copy
 import math
@@ -135,7 +135,7 @@ def test_scene_queries_stop_at_the_gap() -> None:
     for x in (24.25, 200.25):
         found = obstacles.clearance(CUBE, DOWN, [x, 0, 4], keep=0.5)
         assert found.distance == pytest.approx(2.5, abs=1e-10)
-    # Between two of them, at half a unit from either.
+    # Between two of them, half a unit from each.
     aside = [25.0 - 0.2, 1.4, 4]
     assert obstacles.clearance(CUBE, DOWN, aside).outcome == "free"
     assert obstacles.clearance(CUBE, DOWN, aside, keep=0.5).outcome == "blocked"

@@ -1,4 +1,4 @@
-"""In bulk: rows and single values, lists of bodies, bad rows, signals."""
+"""Tests bulk calls: rows and single values, lists of bodies, bad rows, signals."""
 
 import os
 import pickle
@@ -215,7 +215,7 @@ except KeyboardInterrupt:
         sent = time.perf_counter()
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == "interrupted\n"
-        # A second on a machine of one's own.
+        # Takes a second on an idle machine.
         assert time.perf_counter() - sent < 5
 
 

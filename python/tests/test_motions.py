@@ -1,4 +1,4 @@
-"""Bodies that move: one and many, in files, the same bits as the command line's, proofs, copies."""
+"""Tests motions: one and many, in files, the bits of the command line, proofs, copies."""
 
 import copy
 import json
@@ -40,7 +40,7 @@ BOLT, PLATE = Solid.read(ROOT / "data/bolt.stl"), Solid.read(ROOT / "data/plate.
 
 
 def screws(seed: int, n: int) -> dict[str, Any]:
-    """Numbers of screws about places between two bodies, a quarter of them along axes."""
+    """Returns random screws about points between two bodies, a quarter of them along axes."""
     random = np.random.default_rng(seed)
     axis = random.normal(size=(n, 3))
     axis[: n // 4] = np.eye(3)[random.integers(0, 3, n // 4)]
@@ -137,7 +137,7 @@ def test_answers_give_times_points_and_normals() -> None:
     assert (over.lower, over.upper) == (0.0, 0.0)
     assert (touching.lower, touching.upper) == (0.0, None)
     assert resting.query.tolerance == 1e-9
-    # The bolt goes down its hole while it turns: 9 of 20.
+    # The bolt moves down its hole while it turns: 9 of 20.
     assert abs(solid.lower - 0.45) < 1e-6
     assert solid.query.tolerance > 1e-7 and solid.features is not None
     assert away.normal is None and away.features is None

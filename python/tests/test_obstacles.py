@@ -1,4 +1,4 @@
-"""One body among many: numbers, answers beside single queries, rows, threads, bad input."""
+"""Tests one body among many: numbers, single queries, rows, threads, bad input."""
 
 import math
 import subprocess
@@ -87,7 +87,7 @@ def test_answers_save_their_proofs(cli: Path, tmp_path: Path) -> None:
                 check.check(text)
     closer, undecided = answers["farther"]
     assert closer == answers["farther"].closer and undecided == [] == answers["farther"][1]
-    # Of other obstacles nothing is said.
+    # The statement makes no claim about other obstacles.
     obstacles.set_pose(ball, [50, 0, 0])
     for answer in answers.values():
         with pytest.raises(CaseError, match="moved or gone"):

@@ -1,4 +1,4 @@
-"""Pictures hold what the answers say; they are made without a screen."""
+"""Tests that pictures show the data of the answers; they are drawn without a screen."""
 
 from pathlib import Path
 from typing import Any
@@ -34,7 +34,7 @@ def test_a_contact_has_bodies_a_ghost_a_point_and_a_normal() -> None:
     assert np.allclose(points(traces["point"])[0], contact.point)
     foot, tip = points(traces["normal"])
     assert np.allclose(np.cross(tip - foot, contact.normal), 0) and tip[0] > foot[0]
-    # Two triangles a face, and only the edges between faces.
+    # Two triangles for each face, and only the edges between faces.
     assert len(traces["fixed"].i) == 12
     (lines,) = (t for t in picture(contact).data[1:2])
     assert len(lines.x) == 3 * 12

@@ -1,7 +1,7 @@
-"""Every move of every plan beside Manifold, where it is installed: nobody is where others are.
+"""Checks every move of every plan with Manifold, if installed: no two parts overlap.
 
-Parts are moved as they are, and planned as they are shrunk by half the tolerance each. So what two
-have in common is at most a layer as thick as the tolerance on the surface of the smaller.
+Plans use parts that are shrunk by half the tolerance; the check moves the original parts. So the
+overlap of two parts is at most a layer as thick as the tolerance on the surface of the smaller.
 """
 
 import json
@@ -17,17 +17,16 @@ from conftest import ROOT
 
 from colltrans import Solid
 
-#: Places of each move that are looked at, and what Manifold may round off, of the volume.
+#: The number of checked times of each move, and Manifold's relative rounding of volumes.
 PLACES = 40
 ROUNDING = 1e-9
-#: It is looked at again so much farther, as a share of the way: facets in one plane may lead
-#: Manifold astray.
+#: The relative distance of a second check, because Manifold can be wrong for coplanar facets.
 NUDGE = 1e-9
-#: What is not part of this repository is looked at where it is.
+#: Assemblies outside this repository are checked if present.
 COLLECTION = ROOT.parent / "shared" / "data" / "assemblies"
 NAMES = ["burr_p3_19", "key", "key_tight_turned", "keyhole_L", "maze_2", "maze_8"]
 NAMES += ["two_step_pocket", "dovetail", "flange8", "pillow_block"]
-#: Folders of parts that are judged as well, as `plans --parts` of the benchmarks writes them.
+#: More folders of parts, as `plans --parts` of the benchmarks writes them.
 MACHINES = os.environ.get("COLLTRANS_MACHINES")
 
 
@@ -41,18 +40,18 @@ def write(path: Path, body: Any) -> None:
 
 
 def moves(step: dict[str, Any]) -> Iterator[tuple[dict[str, Any], bool]]:
-    """The moves of a step, and whether what leaves has left."""
+    """Returns the moves of a step, each with whether the part has left."""
     yield from ((leg, False) for leg in step["path"])
     yield from ((leg, True) for leg in step.get("back", []))
 
 
 class Judge:
-    """The parts of an assembly, where they are."""
+    """The parts of an assembly at their poses."""
 
     def __init__(self, manifold3d: Any, told: dict[str, Any], parts: dict[str, list[Path]]) -> None:
         def body(file: Path) -> Any:
             part = Solid.read(file)
-            # Copies: it asks for arrays that may be written to.
+            # Copies, because Manifold needs writable arrays.
             vertices, triangles = np.array(part.vertices), np.array(part.triangles, np.uint64)
             made = manifold3d.Manifold(manifold3d.Mesh64(vertices, triangles))
             assert made.status() == manifold3d.Error.NoError
@@ -73,7 +72,7 @@ class Judge:
         return float(self.tolerance * area + ROUNDING * volume)
 
     def common(self, a: str, b: str, by: Any) -> float:
-        """The volume that two parts have in common, the first displaced."""
+        """Returns the volume of the overlap of two parts, the first displaced."""
         p, q = self.bodies[a], self.bodies[b]
         low, high = np.array(p.bounding_box()).reshape(2, 3) + by
         least, most = np.array(q.bounding_box()).reshape(2, 3)
@@ -83,7 +82,7 @@ class Judge:
         return float((p.translate(tuple(by)) ^ q).volume())
 
     def turn(self, leg: dict[str, Any], others: list[str]) -> None:
-        """A screw, of parts where they stand; they count as straight there once it is over."""
+        """Checks a screw with the parts at their poses; after it they count as straight."""
         turn = leg["turn"]
         axis, pivot = np.array(turn["axis"]), np.array(turn["point"])
         for part in leg["parts"]:
@@ -114,8 +113,8 @@ class Judge:
                     by = self.at[a] - self.at[b] + motion * share
                     common = self.common(a, b, by)
                     if common > self.layer(a, b):
-                        # What so short a way ends was never there: it changes by no more than
-                        # the surface times the way.
+                        # The second check decides: over so short a way the overlap changes by at
+                        # most the surface times the way.
                         change = NUDGE * leg["travel"] * self.bodies[a].surface_area()
                         common = self.common(a, b, by + NUDGE * motion) + float(change)
                     assert common <= self.layer(a, b), (a, b, share, leg)
@@ -131,7 +130,7 @@ class Judge:
             for part in around:
                 self.at[part] = np.zeros(3)
             for leg, has_left in moves(step):
-                # What has left is far away, and goes on by itself.
+                # Parts that have left are far away and move on alone.
                 sides = [around - gone, gone] if has_left else [around]
                 for side in sides:
                     own = [part for part in leg["parts"] if part in side]
@@ -191,7 +190,7 @@ def test_a_key_in_a_slot(cli: Path, tmp_path: Path) -> None:
     write(tmp_path / "key.off", blocks(manifold3d, *key))
     told, judge = judged(cli, tmp_path)
     assert len(told["plan"][0]["path"]) == 2 and judge.looks > 20
-    # The judge sees what goes too far.
+    # Manifold finds a move that goes too far.
     told["plan"][0]["path"][0]["travel"] += 4
     judge.at = dict.fromkeys(judge.at, np.zeros(3))
     with pytest.raises(AssertionError):
@@ -227,7 +226,7 @@ def test_machines(cli: Path) -> None:
         assert told["plan"] and not told["stuck"] and judge.looks > 0, folder
         turns = [leg["turn"] for step in told["plan"] for leg in step["path"] if "turn" in leg]
         if turns:
-            # The judge sees what is turned the wrong way.
+            # Manifold finds a turn in the wrong direction.
             turns[0]["turns"] *= -1
             with pytest.raises(AssertionError):
                 judge_of(told, folder).plan(told)

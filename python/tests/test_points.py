@@ -1,4 +1,4 @@
-"""Points and segments against parts: every question answers, and what needs an area says so."""
+"""Tests points and segments against parts: all questions answer, or refuse a body without area."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Assemblies in child processes, however these are made, and in threads."""
+"""Tests assemblies in child processes with every start method, and in threads."""
 
 import multiprocessing
 import threading
@@ -9,7 +9,7 @@ import pytest
 from colltrans import Assembly
 
 GEARBOX = Path(__file__).parents[2] / "data" / "gearbox_small"
-#: Seconds after which a child counts as hanging. A plan takes one.
+#: Seconds after which a child counts as hanging. A plan takes one second.
 PATIENCE = 120
 
 

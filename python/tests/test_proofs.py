@@ -1,4 +1,4 @@
-"""Proofs saved here are the files of the command line, and hold for both checkers."""
+"""Tests that saved proofs equal those of the command line and that both checkers accept them."""
 
 import subprocess
 from collections.abc import Callable
@@ -18,7 +18,7 @@ Verify: TypeAlias = Callable[[Path], str]
 
 @pytest.fixture
 def verify(cli: Path) -> Verify:
-    """What ``colltrans verify`` says of a file."""
+    """Returns the output of ``colltrans verify`` for a file."""
 
     def ask(path: Path) -> str:
         told = subprocess.run([cli, "verify", path], capture_output=True, text=True)

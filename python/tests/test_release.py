@@ -1,4 +1,4 @@
-"""One version everywhere, with its changes; and the recipe for conda says what the package is."""
+"""Tests that all packages have one version and a change entry, and the recipe for conda."""
 
 import json
 import re

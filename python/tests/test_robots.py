@@ -1,4 +1,4 @@
-"""Robots on paths: of arrays and files, the same bits as the command line's, proofs, bulk."""
+"""Tests robot paths: arrays and files, the bits of the command line, proofs, bulk."""
 
 import copy
 import json
@@ -127,7 +127,7 @@ def test_gaps_are_kept_and_pairs_ignored() -> None:
     near = ARM.first_contact(ROWS, scene, keep=0.02)
     assert near.lower < ARM.first_contact(ROWS, scene).lower
     near.verify()
-    # A frame around the wire's place, not convex.
+    # A non-convex frame around the position of the wire.
     ring = Solid.from_pieces(
         [ConvexPolyhedron.cuboid([1.18, 0.38, z], [1.2, 0.42, z + 0.02]) for z in (0.1, 0.29, 0.5)]
     )

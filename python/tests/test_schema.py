@@ -1,4 +1,4 @@
-"""What the command line writes is what ``docs/answers.schema.json`` says."""
+"""Tests that the output of the command line matches ``docs/answers.schema.json``."""
 
 import json
 import subprocess
@@ -22,7 +22,7 @@ def of(name: str) -> Any:
 
 
 def conform(name: str, value: Any) -> None:
-    """Says what is wrong of the part itself, not only that none of all fits."""
+    """Reports the fault of the failing part, not only that no alternative matches."""
     part = Draft202012Validator({"$defs": SCHEMA["$defs"], "$ref": f"#/$defs/{name}"})
     wrong = [f"{error.json_path}: {error.message}" for error in part.iter_errors(value)]
     assert wrong == [], value
@@ -131,7 +131,7 @@ def test_one_body_among_many(cli: Path, tmp_path: Path, words: list[str]) -> Non
     conform("proof", file)
     conform("verified", ask(cli, ["verify", str(proof)]))
     assert check.check(proof.read_text()).holds
-    # A body that has come nearer than what is claimed.
+    # A body that is nearer than claimed.
     places = file["placement"]["poses"]
     places[2]["pose"] = places[0]["pose"]
     if answer["outcome"] not in ("meeting", "overlapping"):
@@ -140,7 +140,7 @@ def test_one_body_among_many(cli: Path, tmp_path: Path, words: list[str]) -> Non
 
 
 def plain(answer: Any) -> Any:
-    """As the command line has it, whose words and names of files are its own."""
+    """Returns the record without the command line's own texts and file names."""
     mine = ("message", "moving", "fixed")
     return {name: value for name, value in answer.items() if name not in mine}
 

@@ -1,4 +1,4 @@
-"""What ``assembly --json`` writes is what ``docs/answers.schema.json`` says."""
+"""Tests that ``assembly --json`` matches ``docs/answers.schema.json``."""
 
 from collections.abc import Sequence
 from pathlib import Path

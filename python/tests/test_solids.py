@@ -1,4 +1,4 @@
-"""Parts that are not convex: the same bits as the command line's, proofs, refusals, copies."""
+"""Tests parts that are not convex: bits of the command line, proofs, refusals, copies."""
 
 import copy
 import pickle
@@ -94,7 +94,7 @@ def test_proofs_are_checked_and_saved(bolt: Solid, plate: Solid) -> None:
     assert repr(answer) == f"SolidBlocked(distance={answer.distance!r})"
     again = SolidCertificate.from_json(proof.to_json())
     assert query.verify(again) == query.verify(proof) < 1e-11
-    # Of the shrunk bodies: the tolerance is of the single precision of the file.
+    # The values of the shrunk bodies: the tolerance follows the single precision of the file.
     assert 7 + query.tolerance - 1e-11 < proof.lower <= answer.contact.shrunk_distance
     nearer = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 6])
     with pytest.raises(CertificateError):

@@ -1,4 +1,4 @@
-"""In bulk: arguments with more than one axis, columns of features, and all directions."""
+"""Tests bulk calls with several axes, columns of features, and all directions."""
 
 from typing import Any
 
@@ -45,7 +45,7 @@ def test_axes_broadcast_as_in_numpy() -> None:
         InputError, match="unknown column 'exit'; known columns: outcome, translation"
     ):
         columns.stacked("exit")
-    # What is selected or joined is rows.
+    # Selected or concatenated columns are rows.
     ahead = columns.translation > 0
     assert 0 < ahead.sum() < 12 and columns[ahead].shape == (ahead.sum(),)
     assert concatenate([columns, columns[:2]]).shape == (14,)
@@ -90,13 +90,13 @@ def _mesh() -> tuple[Any, Any]:
 
 
 def _told(feature: Any) -> list[int]:
-    """A feature as a row of its column."""
+    """Returns a feature as a row of its column."""
     vertices: list[int] = feature.vertices[:3].tolist()
     return vertices + [-1] * (3 - len(vertices))
 
 
 def _contact(answer: Any) -> Any:
-    """What has features, of an answer: a contact, or itself."""
+    """Returns the part of an answer that has features: a contact, or the answer itself."""
     for name in ("first", "contact", "grazing", "last"):
         if hasattr(answer, name) and not hasattr(answer, "features"):
             return _contact(getattr(answer, name))

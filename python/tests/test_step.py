@@ -1,4 +1,4 @@
-"""STEP files: tessellated, with chord errors that are measured."""
+"""Tests the tessellation of STEP files, with measured chord errors."""
 
 import json
 import shutil
@@ -140,7 +140,7 @@ class StepText:
 def rod(
     name: str = "rod", scale: str = ".MILLI.", colour: tuple[float, float, float] | None = None
 ) -> str:
-    """A cylinder about z, as a STEP file."""
+    """Returns a cylinder about z as a STEP file."""
     text = StepText(scale)
     brep = text.rod()
     text.part(name, brep)
@@ -164,7 +164,7 @@ def rod(
 
 
 def test_distances_to_curved_surfaces_are_bounded() -> None:
-    """Against what is known of single facets."""
+    """Compares with known values for single facets."""
     square = np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0]]])
     cylinder = {"type": "cylinder", "origin": [0, 0, 5], "axis": [0, 0, 2], "radius": 1.0}
     error, how = step.on_surface(cylinder, square)
@@ -184,7 +184,7 @@ def test_distances_to_curved_surfaces_are_bounded() -> None:
 
 
 def test_distances_beside_facets_are_bounded() -> None:
-    """All corners against all facets, one by one."""
+    """Compares all corners with all facets, one by one."""
     random = np.random.default_rng(4)
     for _ in range(20):
         fine, facets = random.normal(size=(40, 3, 3)), random.normal(size=(30, 3, 3))
@@ -198,7 +198,7 @@ def test_distances_beside_facets_are_bounded() -> None:
 
 @pytest.mark.parametrize(("chord", "angle"), [(0.05, 0.2), (0.5, 2.0), (0.001, 0.5)])
 def test_the_reported_deviation_of_a_rod_holds(tmp_path: Path, chord: float, angle: float) -> None:
-    """The chord error is that of the polygon which the facets are."""
+    """The chord error is that of the polygon of the facets."""
     pytest.importorskip("OCP")
     (tmp_path / "rod.step").write_text(rod())
     glb, report = step.convert(tmp_path / "rod.step", chord, angle)
@@ -211,7 +211,7 @@ def test_the_reported_deviation_of_a_rod_holds(tmp_path: Path, chord: float, ang
 
 
 def test_a_file_is_read_by_its_unit(tmp_path: Path) -> None:
-    """Lengths are millimetres whatever the file is in."""
+    """Lengths become millimetres for every unit of the file."""
     pytest.importorskip("OCP")
     for scale, size in ((".MILLI.", 1.0), (".CENTI.", 10.0)):
         (tmp_path / "rod.stp").write_text(rod(scale=scale))
@@ -223,7 +223,7 @@ def test_a_file_is_read_by_its_unit(tmp_path: Path) -> None:
 
 
 def test_the_command_line_writes_a_file(tmp_path: Path) -> None:
-    """A GLB file, and what was measured; or the GLB alone."""
+    """Returns a GLB file and its report, or the GLB alone."""
     pytest.importorskip("OCP")
     (tmp_path / "rod.step").write_text(rod())
     call = [sys.executable, "-m", "colltrans.step", "rod.step", "-o"]
@@ -236,7 +236,7 @@ def test_the_command_line_writes_a_file(tmp_path: Path) -> None:
 
 
 def test_colours_are_those_of_the_file(tmp_path: Path) -> None:
-    """Of STEP as screens have them, of glTF linear; without a colour none is made up."""
+    """STEP colours are sRGB, glTF colours linear; a missing colour stays missing."""
     pytest.importorskip("OCP")
 
     def material(text: str) -> object:
@@ -256,7 +256,7 @@ def test_colours_are_those_of_the_file(tmp_path: Path) -> None:
 def test_large_files_report_progress(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """At most twice a second, not for every shape; before free-form faces of many facets."""
+    """Progress is reported at most twice a second, and before free-form faces of many facets."""
     pytest.importorskip("OCP")
     text = StepText()
     text.assembly("machine", *(text.part(f"rod {k}", text.rod()) for k in range(5)))
@@ -278,7 +278,7 @@ def test_large_files_report_progress(
     assert all("free-form faces" in line and line.endswith("to compare") for line in said[-5:])
 
 
-#: Names of products, in the bytes of a file, and as they are read.
+#: Names of products as bytes of a file, and as they are read.
 NAMES = {
     "plain": (b"Gruppe", "Gruppe"),
     "x2": (rb"Geh\X2\00E4\X0\use", "Geh\u00e4use"),
@@ -295,7 +295,7 @@ NAMES = {
 
 @pytest.mark.parametrize("kind", NAMES)
 def test_a_sub_assembly_is_split_whatever_its_name(tmp_path: Path, kind: str) -> None:
-    """Three parts, with names as they were meant."""
+    """Three parts keep the intended names."""
     pytest.importorskip("OCP")
     text = StepText()
     bolt = text.part("bolt", text.rod())
@@ -316,7 +316,7 @@ def test_a_sub_assembly_is_split_whatever_its_name(tmp_path: Path, kind: str) ->
 
 
 def test_a_product_of_several_solids_is_one_part(tmp_path: Path) -> None:
-    """Where the file has a product tree; each solid is counted."""
+    """Also for files with a product tree; each solid is counted."""
     pytest.importorskip("OCP")
     text = StepText()
     pair = text.part("pair", text.rod(), text.rod())
@@ -327,7 +327,7 @@ def test_a_product_of_several_solids_is_one_part(tmp_path: Path) -> None:
 
 
 def test_curves_are_left_out_with_a_note(tmp_path: Path) -> None:
-    """A part of curves beside solids is named, and a file of nothing else is refused."""
+    """A part of curves next to solids is named, and a file with curves only is refused."""
     pytest.importorskip("OCP")
     text = StepText()
     text.assembly("top", text.part("rod", text.rod()), text.curve("axis"))
@@ -344,7 +344,7 @@ def test_curves_are_left_out_with_a_note(tmp_path: Path) -> None:
         step.convert(tmp_path / "axis.step")
 
 
-#: Classic files and machines: their parts, and how many of these hold a solid each.
+#: Classic files and machines: their parts, and how many of these contain one solid.
 COLLECTION = {
     "step/as1-oc-214.stp": 18,
     "step/as1-tu-203.stp": 18,
@@ -365,7 +365,7 @@ COLLECTION = {
 
 
 def solids_of(path: Path) -> int:
-    """Counts the solids of a file through OpenCASCADE's reader of shapes, without a tree."""
+    """Counts the solids of a file with OpenCASCADE's reader of shapes, without a tree."""
     from OCP.STEPControl import STEPControl_Reader
     from OCP.TopAbs import TopAbs_ShapeEnum
 
@@ -377,7 +377,7 @@ def solids_of(path: Path) -> int:
 
 @pytest.mark.parametrize("name", COLLECTION)
 def test_files_of_the_collection_have_all_their_parts(name: str) -> None:
-    """Against known numbers of parts, and the solids that another reader counts."""
+    """Compares with known numbers of parts, and with the solids that another reader counts."""
     pytest.importorskip("OCP")
     path = DATA / name
     if not path.exists():
@@ -390,7 +390,7 @@ def test_files_of_the_collection_have_all_their_parts(name: str) -> None:
 
 
 def test_external_files_are_read_or_named(tmp_path: Path) -> None:
-    """Files of the same folder; one that is missing is an error with its name."""
+    """External files are in the same folder; a missing one is an error with its name."""
     pytest.importorskip("OCP")
     source = DATA / "step" / "s1"
     if not source.exists():
@@ -412,7 +412,7 @@ def test_external_files_are_read_or_named(tmp_path: Path) -> None:
 def test_external_files_elsewhere_are_not_opened(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], file: str, name: bytes
 ) -> None:
-    """The names are checked, of all files, before OpenCASCADE follows one."""
+    """The names of all files are checked before OpenCASCADE opens one."""
     pytest.importorskip("OCP")
     source = DATA / "step" / "s1"
     if not source.exists():
@@ -427,13 +427,13 @@ def test_external_files_elsewhere_are_not_opened(
 
 
 def test_an_external_file_lies_in_the_folder_of_its_source() -> None:
-    """Names that lead elsewhere are told from names of files beside the source."""
+    """Names of other folders differ from names in the folder of the source."""
     assert all(map(step._lies_beside, ["a.stp", "sub/a.stp", "b..stp"]))
     assert not any(map(step._lies_beside, ["../a.stp", "/a.stp", "C:\\a.stp", "x/..\\..\\a.stp"]))
 
 
 def test_files_that_are_not_step_are_refused(tmp_path: Path) -> None:
-    """With a message that names the file."""
+    """The message names the file."""
     pytest.importorskip("OCP")
     (tmp_path / "a.step").write_text("solid a\nendsolid a\n")
     with pytest.raises(step.StepError, match=r"a\.step: not a STEP file"):

@@ -1,4 +1,4 @@
-"""The stub has types alone; in a wheel it has the docstrings of the extension too."""
+"""Tests that the stub has types only, and in a wheel also the docstrings of the extension."""
 
 import ast
 import importlib
@@ -45,7 +45,7 @@ def test_every_docstring_of_the_extension_is_in_the_stub_of_a_wheel(tool: Module
         if text and not name.split(".")[-1].startswith("_"):
             assert docstring == inspect.cleandoc(text), name
     assert sum(map(bool, written.values())) > 300
-    # A class of the stub alone, from which classes of the extension are derived.
+    # A class of the stub alone, which is the base of classes of the extension.
     assert written["_Answer.to_dict"] == inspect.cleandoc(_colltrans.Contact.to_dict.__doc__ or "")
 
 
@@ -72,7 +72,7 @@ def test_a_wheel_is_rewritten_with_docstrings_in_its_stub(tool: ModuleType, tmp_
     subprocess.run([*command, "pack", content, "--dest", tmp_path], check=True)
     (wheel,) = tmp_path.glob("*.whl")
     tool.write_docstrings(wheel)
-    # Checks the sizes and sums that the wheel lists of its files.
+    # Checks the sizes and hashes that the wheel lists for its files.
     subprocess.run([*command, "unpack", wheel, "--dest", tmp_path / "again"], check=True)
     stub = tmp_path / "again" / content.name / "colltrans" / STUB.name
     assert stub.read_text() == tool.documented(STUB.read_text(), _colltrans)

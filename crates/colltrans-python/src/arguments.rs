@@ -5,10 +5,10 @@
 use pyo3::prelude::*;
 use pyo3::types::{PySequence, PyString};
 
-use crate::errors::input;
+use crate::errors::input_error;
 
 /// Returns a hint: the call that builds a body from an argument that is not a body.
-pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
+pub(crate) fn loader_hint(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     Ok(if given.hasattr("vertices")? && given.hasattr("faces")? {
         "ConvexPolyhedron.from_trimesh(mesh) or Solid.from_trimesh(mesh) makes a body of a mesh"
     } else if given.is_instance_of::<PyString>() || given.hasattr("__fspath__")? {
@@ -31,7 +31,7 @@ pub(crate) fn refuse_mesh(
 ) -> PyResult<()> {
     if given.is_instance_of::<PyString>() || given.hasattr("__fspath__")? {
         let call = format_args!("call {class}.read(path) for the body of a file");
-        return Err(input(
+        return Err(input_error(
             name,
             format_args!("the text {} is not an array: {call}", given.str()?.repr()?),
         ));
@@ -40,5 +40,5 @@ pub(crate) fn refuse_mesh(
         return Ok(());
     }
     let kind = given.get_type().name()?;
-    Err(input(name, format_args!("{kind} is a mesh, not an array: call {call}")))
+    Err(input_error(name, format_args!("{kind} is a mesh, not an array: call {call}")))
 }

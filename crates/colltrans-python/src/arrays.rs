@@ -13,7 +13,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
-use crate::errors::input;
+use crate::errors::input_error;
 
 /// An array of numbers for Python.
 pub(crate) type Vector<'py> = Bound<'py, PyArray1<f64>>;
@@ -48,20 +48,22 @@ pub(crate) fn numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Numbers> {
     if let Some(found) = plain_numbers(of) {
         return Ok(found);
     }
-    let array = helper(of.py(), "floats")?.call1((of, name))?;
-    of_array(&array).ok_or_else(|| wrong_shape(&array, name, "a row or a table of numbers"))
+    let array = python_helper(of.py(), "floats")?.call1((of, name))?;
+    numbers_from_array(&array)
+        .ok_or_else(|| wrong_shape_error(&array, name, "a row or a table of numbers"))
 }
 
 /// Returns the attributes `vertices` and `faces` of a mesh object, as trimesh names them.
 pub(crate) fn mesh<'py>(of: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, PyAny>; 2]> {
-    let part = |name| of.getattr(name).map_err(|_| input("mesh", format_args!("it has no {name}")));
+    let part =
+        |name| of.getattr(name).map_err(|_| input_error("mesh", format_args!("it has no {name}")));
     Ok([part("vertices")?, part("faces")?])
 }
 
 /// Reads a tuple or list of numbers, or an aligned array in double precision; `None` for anything else.
 #[inline]
 pub(crate) fn plain_numbers(of: &Bound<'_, PyAny>) -> Option<Numbers> {
-    of_sequence(of).or_else(|| of_array(of))
+    numbers_from_sequence(of).or_else(|| numbers_from_array(of))
 }
 
 /// Reads a vector with three coordinates.
@@ -70,21 +72,24 @@ pub(crate) fn vector(of: &Bound<'_, PyAny>, name: &str) -> PyResult<DVec3> {
     if shape == Shape::Row(3) {
         Ok(DVec3::new(x, y, z))
     } else {
-        Err(input(name, format_args!("an array of shape {}, not (3,)", shape.text())))
+        Err(input_error(name, format_args!("an array of shape {}, not (3,)", shape.text())))
     }
 }
 
-fn of_sequence(of: &Bound<'_, PyAny>) -> Option<Numbers> {
+fn numbers_from_sequence(of: &Bound<'_, PyAny>) -> Option<Numbers> {
     if let Ok(tuple) = of.cast::<PyTuple>() {
-        of_items(tuple.len(), tuple.iter())
+        numbers_from_items(tuple.len(), tuple.iter())
     } else if let Ok(list) = of.cast::<PyList>() {
-        of_items(list.len(), list.iter())
+        numbers_from_items(list.len(), list.iter())
     } else {
         None
     }
 }
 
-fn of_items<'py>(n: usize, items: impl Iterator<Item = Bound<'py, PyAny>>) -> Option<Numbers> {
+fn numbers_from_items<'py>(
+    n: usize,
+    items: impl Iterator<Item = Bound<'py, PyAny>>,
+) -> Option<Numbers> {
     let mut values = [0.0; 16];
     if n > values.len() {
         return None;
@@ -98,7 +103,7 @@ fn of_items<'py>(n: usize, items: impl Iterator<Item = Bound<'py, PyAny>>) -> Op
     Some(Numbers { values, shape: Shape::Row(n) })
 }
 
-fn of_array(of: &Bound<'_, PyAny>) -> Option<Numbers> {
+fn numbers_from_array(of: &Bound<'_, PyAny>) -> Option<Numbers> {
     let mut values = [0.0; 16];
     // A subclass of an array may hide some of its numbers, as masked arrays do.
     if !of.get_type().is(of.py().get_type::<PyUntypedArray>()) {
@@ -137,8 +142,8 @@ fn is_aligned<D: numpy::ndarray::Dimension>(array: &Bound<'_, PyArray<f64, D>>) 
 
 /// Reads points: an array of shape `(N, 3)`.
 pub(crate) fn points(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<DVec3>> {
-    let array = helper(of.py(), "floats")?.call1((of, name))?;
-    let refused = || wrong_shape(&array, name, "(N, 3)");
+    let array = python_helper(of.py(), "floats")?.call1((of, name))?;
+    let refused = || wrong_shape_error(&array, name, "(N, 3)");
     // numpy converts an empty list to a row.
     if array.cast::<PyArray1<f64>>().is_ok_and(|row| row.is_empty()) {
         return Ok(Vec::new());
@@ -153,20 +158,20 @@ pub(crate) fn points(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<DVec3>> 
 
 /// Reads faces as lists of vertex indices.
 pub(crate) fn faces(of: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<u32>>> {
-    let runs = helper(of.py(), "faces")?.call1((of,))?;
+    let runs = python_helper(of.py(), "faces")?.call1((of,))?;
     let (corners, ends): (PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, u32>) = runs.extract()?;
     let (corners, ends) = (corners.as_slice()?, ends.as_slice()?);
     Ok(ends.windows(2).map(|w| corners[w[0] as usize..w[1] as usize].to_vec()).collect())
 }
 
 /// Returns a function of `colltrans._arrays`.
-fn helper<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+fn python_helper<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("colltrans._arrays")?.getattr(name)
 }
 
-fn wrong_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &str) -> PyErr {
+fn wrong_shape_error(array: &Bound<'_, PyAny>, name: &str, wanted: &str) -> PyErr {
     let shape = array.getattr("shape").map_or_else(|_| "?".into(), |shape| shape.to_string());
-    input(name, format_args!("an array of shape {shape}, not {wanted}"))
+    input_error(name, format_args!("an array of shape {shape}, not {wanted}"))
 }
 
 /// Marks an array as read-only, because writing to it would change nothing in the library.

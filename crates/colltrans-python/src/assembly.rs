@@ -128,7 +128,7 @@ impl Planned {
     /// Returns the HTML page of the plan, for printing.
     fn report(&self, py: Python<'_>, title: &str) -> PyResult<String> {
         let Self { assembly, choices, question, plan, times } = self;
-        interruptible(py, |watch| {
+        run_interruptible(py, |watch| {
             let bodies = Bodies::new(assembly, choices.fit(assembly))?;
             let found =
                 Findings { plan: plan.clone(), times: *times, ..question.look(&bodies, watch)? };
@@ -156,12 +156,12 @@ impl Assembly {
         choices: Choices,
         work: impl FnOnce(&Bodies<'_>, Watch<'_>) -> Result<T, AssemblyError> + Send,
     ) -> PyResult<T> {
-        interruptible(py, |watch| work(&Bodies::new(&self.0, choices.fit(&self.0))?, watch))
+        run_interruptible(py, |watch| work(&Bodies::new(&self.0, choices.fit(&self.0))?, watch))
     }
 }
 
 /// Runs a computation on a thread of its own, and cancels it if a signal handler raises.
-fn interruptible<T: Send>(
+fn run_interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(Watch<'_>) -> Result<T, AssemblyError> + Send,
 ) -> PyResult<T> {
@@ -188,22 +188,22 @@ fn interruptible<T: Send>(
     });
     raised?;
     let internal = |_| error("AssemblyError", "internal error; please report it");
-    without_threads(answer.map_err(internal)?)?.or_raise()
+    thread_error(answer.map_err(internal)?)?.or_raise()
 }
 
 /// Converts a failure to start threads to an exception.
-fn without_threads<T>(answer: Result<T, rayon::ThreadPoolBuildError>) -> PyResult<T> {
+fn thread_error<T>(answer: Result<T, rayon::ThreadPoolBuildError>) -> PyResult<T> {
     answer.map_err(|what| error("AssemblyError", format_args!("no threads: {what}")))
 }
 
 /// Normalises directions to unit vectors.
-fn units(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
+fn unit_vectors(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
     directions.iter().map(|d| unit(*d)).collect()
 }
 
 /// Chooses the directions to test: the given ones, or a search if none are given.
-fn choice(given: &[DVec3]) -> Result<Choice, AssemblyError> {
-    Ok(Choice::default().with_given(units(given)?).with_search(given.is_empty()))
+fn choose_directions(given: &[DVec3]) -> Result<Choice, AssemblyError> {
+    Ok(Choice::default().with_given(unit_vectors(given)?).with_search(given.is_empty()))
 }
 
 fn room_row<'a>(rooms: impl Iterator<Item = &'a PartRoom> + Clone) -> RoomRow {
@@ -227,7 +227,7 @@ fn passed_row(passed: &Passed) -> PassedRow {
 }
 
 /// Reads a table of handling times, in seconds.
-fn times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
+fn read_times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
     let refused = |reason: String| error("InputError", format!("times: {reason}"));
     let value = serde_json::to_value(given).map_err(|e| refused(e.to_string()))?;
     let times: Times = serde_json::from_value(value).map_err(|e| refused(e.to_string()))?;
@@ -240,7 +240,7 @@ fn times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
 }
 
 /// Returns the role with a name.
-fn role(name: Option<&str>) -> PyResult<Option<Role>> {
+fn role_from_name(name: Option<&str>) -> PyResult<Option<Role>> {
     let named = |name: &str| {
         let refused = || error("InputError", format!("unknown role {name}"));
         Role::named(name).ok_or_else(refused)
@@ -302,7 +302,7 @@ impl Assembly {
             Some(bytes) => read::glb_with(&path, bytes, &options),
             None => read::read(&path, &options),
         };
-        let assembly = without_threads(py.detach(|| pool::run(read)))?.or_raise()?;
+        let assembly = thread_error(py.detach(|| pool::run(read)))?.or_raise()?;
         Ok(Self(Arc::new(assembly)))
     }
 
@@ -344,7 +344,7 @@ impl Assembly {
         role: Option<&str>,
         tolerance: Option<f64>,
     ) -> PyResult<Self> {
-        let fit = PairFit { role: self::role(role)?, tolerance };
+        let fit = PairFit { role: role_from_name(role)?, tolerance };
         self.with(|assembly| assembly.with_pair([&first, &second], fit))
     }
 
@@ -395,7 +395,7 @@ impl Assembly {
         let directions = points(directions, "directions")?;
         let choices = Choices::new(tolerance, ignore_overlaps);
         self.ask(py, choices, |bodies, watch| {
-            let rooms = rooms(bodies, &units(&directions)?, choices.start, watch)?;
+            let rooms = rooms(bodies, &unit_vectors(&directions)?, choices.start, watch)?;
             Ok(rooms.iter().map(|row| room_row(row.iter())).collect())
         })
     }
@@ -432,7 +432,7 @@ impl Assembly {
         wanted: Vec<usize>,
         times: BTreeMap<String, f64>,
     ) -> PyResult<PlanRows> {
-        let times = self::times(&times)?;
+        let times = read_times(&times)?;
         let given = points(directions, "directions")?;
         let gravity = gravity.map(|g| crate::arrays::vector(g, "gravity")).transpose()?;
         let choices = Choices::new(tolerance, ignore_overlaps);
@@ -442,7 +442,7 @@ impl Assembly {
             .with_legs(legs)
             .with_proofs(proofs);
         let question = Question::default()
-            .with_choice(choice(&given).or_raise()?)
+            .with_choice(choose_directions(&given).or_raise()?)
             .with_options(options)
             .with_wanted(wanted);
         let question = match gravity {

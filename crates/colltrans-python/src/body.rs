@@ -63,7 +63,7 @@ impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
 }
 
 /// A body as JSON, its notes and its dent.
-type Read = (String, Vec<String>, Option<f64>);
+type ReadBody = (String, Vec<String>, Option<f64>);
 
 getters!(ConvexPolyhedron, |it| {
     /// ndarray of shape (N, 3): The vertices, in the body frame.
@@ -335,7 +335,7 @@ impl ConvexPolyhedron {
         py.detach(|| self.0.prepare_sections());
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Read)> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ReadBody)> {
         Ok((py.get_type::<Self>().getattr("_read")?, (self.to_json(), self.notes(), self.dent())))
     }
 

@@ -58,8 +58,10 @@ impl Plan<'_> {
                 Row { outcome: error, ..Row::NONE }
             })
         };
-        let parts = columns.parts(self.chunk);
-        py.detach(|| on_threads(parts, self.threads, |part, stop| fill(&ask, part, stop)))?;
+        let parts = columns.chunks(self.chunk);
+        py.detach(|| {
+            run_on_threads(parts, self.threads, |part, stop| answer_chunk(&ask, part, stop))
+        })?;
         let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
         failures.sort_unstable();
         let messages = PyDict::new(py);
@@ -117,7 +119,7 @@ impl Columns {
     }
 
     /// Cuts all columns into chunks of rows.
-    fn parts(&mut self, chunk: usize) -> Vec<Part<'_>> {
+    fn chunks(&mut self, chunk: usize) -> Vec<Part<'_>> {
         let mut numbers: Vec<_> = self.numbers.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
         let mut vectors: Vec<_> = self.vectors.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
         let mut features: Vec<_> = self.features.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
@@ -137,7 +139,7 @@ impl Columns {
 type Failures = Mutex<Vec<(usize, String)>>;
 
 /// Answers the rows of a chunk, until `stop` returns true.
-fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> bool) {
+fn answer_chunk(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> bool) {
     let Part { first, places, outcome, mut numbers, mut vectors, mut features } = part;
     for i in 0..outcome.len() {
         if i % LOOK == 0 && stop() {
@@ -172,7 +174,7 @@ pub(crate) fn each<T: Send>(
 ) -> PyResult<Vec<T>> {
     let mut answers: Vec<_> = std::iter::repeat_with(|| None).take(rows).collect();
     let parts = answers.chunks_mut(chunk).enumerate().collect();
-    on_threads(parts, threads, |(k, part), stop| {
+    run_on_threads(parts, threads, |(k, part), stop| {
         for (row, answer) in (k * chunk..).zip(part) {
             if stop() {
                 return;
@@ -190,7 +192,7 @@ pub(crate) fn each<T: Send>(
 ///
 /// After a signal the second argument of `work` returns true, and the exception of the signal handler is
 /// returned.
-fn on_threads<P: Send>(
+fn run_on_threads<P: Send>(
     parts: Vec<P>,
     threads: Option<usize>,
     work: impl Fn(P, &mut dyn FnMut() -> bool) + Sync,

@@ -98,7 +98,7 @@ getters!(Overlapping, |it| {
     /// Contact: The first contact, behind.
     first(py): Contact = Contact { contact: it.ends.first, query: it.query(py) };
     /// LastContact: The last contact, ahead.
-    last(py): PyResult<LastContact> = LastContact::of(py, Outcome::Contact(it.ends.last), &it.query);
+    last(py): PyResult<LastContact> = LastContact::from_outcome(py, Outcome::Contact(it.ends.last), &it.query);
 });
 
 #[pymethods]

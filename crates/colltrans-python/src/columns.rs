@@ -12,7 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::coordinates;
-use crate::repeats::By;
+use crate::repeats::RowAnswerer;
 
 /// The values of an answer; NaN for a missing number.
 #[derive(Clone, Copy)]
@@ -91,7 +91,7 @@ pub(crate) enum Question {
 }
 
 impl Question {
-    pub(crate) fn called(name: &str) -> PyResult<Self> {
+    pub(crate) fn from_name(name: &str) -> PyResult<Self> {
         match name {
             "contact" => Ok(Self::Contact),
             "range" => Ok(Self::Range),
@@ -124,25 +124,27 @@ impl Question {
     pub(crate) fn ask<'a>(
         self,
         cast: &Cast<'a>,
-        by: &By<'_, '_, 'a>,
+        by: &RowAnswerer<'_, '_, 'a>,
         featured: bool,
     ) -> Result<Row, colltrans::QueryError> {
-        let of = |outcome: u8, first: &Contact| Row::of(outcome, first, cast, featured);
+        let of = |outcome: u8, first: &Contact| Row::from_contact(outcome, first, cast, featured);
         Ok(match self {
             Self::Contact => match by.first_contact(cast)? {
                 Outcome::Contact(contact) => of(0, &contact),
-                Outcome::Grazing(grazing) => of(1, &grazing.contact).with(OVERLAP, grazing.overlap),
-                Outcome::Separated(separated) => Row::separated(2, &separated),
+                Outcome::Grazing(grazing) => {
+                    of(1, &grazing.contact).with_number(OVERLAP, grazing.overlap)
+                }
+                Outcome::Separated(separated) => Row::from_separation(2, &separated),
             },
             Self::Range => match by.contact_range(cast)? {
                 ContactRange::Contact { first, last } => of(0, &first).with_exit(&last),
-                ContactRange::Grazing { first, last } => {
-                    of(1, &first.contact).with_exit(&last.contact).with(OVERLAP, first.overlap)
-                }
-                ContactRange::Separated(separated) => Row::separated(2, &separated),
+                ContactRange::Grazing { first, last } => of(1, &first.contact)
+                    .with_exit(&last.contact)
+                    .with_number(OVERLAP, first.overlap),
+                ContactRange::Separated(separated) => Row::from_separation(2, &separated),
             },
             // The other questions have no direction and do not reach this function.
-            _ => Row::clearance(&by.clearance(cast)?, cast, featured),
+            _ => Row::from_clearance(&by.clearance(cast)?, cast, featured),
         })
     }
 }
@@ -155,64 +157,65 @@ impl Row {
         features: [NO_CORNERS; 2],
     };
 
-    pub(crate) fn with(mut self, which: usize, number: f64) -> Self {
+    pub(crate) fn with_number(mut self, which: usize, number: f64) -> Self {
         self.numbers[which] = number;
         self
     }
 
-    pub(crate) fn along(mut self, which: usize, vector: [f64; 3]) -> Self {
+    pub(crate) fn with_vector(mut self, which: usize, vector: [f64; 3]) -> Self {
         self.vectors[which] = vector;
         self
     }
 
     /// Converts the record of a question about two bodies at fixed poses.
-    pub(crate) fn of_record(question: Question, record: &Record) -> Self {
-        let row = Self::ended(question, record.outcome());
+    pub(crate) fn from_record(question: Question, record: &Record) -> Self {
+        let row = Self::from_ending(question, record.outcome());
         match record {
             Record::Distance(of) => row
-                .bounded(of.lower, of.upper)
-                .at(NORMAL, of.normal)
-                .at(ON_MOVING, of.points.map(|points| points[0]))
-                .at(ON_FIXED, of.points.map(|points| points[1]))
-                .featured(of.features.as_ref()),
+                .with_bounds(of.lower, of.upper)
+                .with_optional_vector(NORMAL, of.normal)
+                .with_optional_vector(ON_MOVING, of.points.map(|points| points[0]))
+                .with_optional_vector(ON_FIXED, of.points.map(|points| points[1]))
+                .with_features(of.features.as_ref()),
             Record::Depth(of) => row
-                .bounded(of.lower, of.upper)
-                .parted_by(&of.start_overlaps)
-                .at(DIRECTION, of.direction),
+                .with_bounds(of.lower, of.upper)
+                .with_overlaps(&of.start_overlaps)
+                .with_optional_vector(DIRECTION, of.direction),
             // Records of other questions have no columns here.
             _ => row,
         }
     }
 
     /// Converts the record of a motion.
-    pub(crate) fn of_motion(question: Question, of: &MotionRecord) -> Self {
-        Self::ended(question, of.outcome)
-            .bounded(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
-            .parted_by(&of.start_overlaps)
-            .at(NORMAL, of.normal)
-            .at(POINT, of.point)
-            .featured(of.features.as_ref())
+    pub(crate) fn from_motion(question: Question, of: &MotionRecord) -> Self {
+        Self::from_ending(question, of.outcome)
+            .with_bounds(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
+            .with_overlaps(&of.start_overlaps)
+            .with_optional_vector(NORMAL, of.normal)
+            .with_optional_vector(POINT, of.point)
+            .with_features(of.features.as_ref())
     }
 
-    fn ended(question: Question, outcome: Ending) -> Self {
+    fn from_ending(question: Question, outcome: Ending) -> Self {
         let found = question.outcomes().iter().position(|known| *known == outcome.name());
         Self { outcome: found.unwrap_or_default() as u8, ..Self::NONE }
     }
 
-    fn bounded(self, lower: Option<f64>, upper: Option<f64>) -> Self {
-        self.with(AT_LEAST, lower.unwrap_or(f64::NAN)).with(AT_MOST, upper.unwrap_or(f64::NAN))
+    fn with_bounds(self, lower: Option<f64>, upper: Option<f64>) -> Self {
+        self.with_number(AT_LEAST, lower.unwrap_or(f64::NAN))
+            .with_number(AT_MOST, upper.unwrap_or(f64::NAN))
     }
 
-    fn parted_by(self, overlaps: &[StartOverlapRecord]) -> Self {
+    fn with_overlaps(self, overlaps: &[StartOverlapRecord]) -> Self {
         let least = overlaps.first().and_then(|overlap| overlap.least_tolerance);
-        self.with(LEAST_TOLERANCE, least.unwrap_or(f64::NAN))
+        self.with_number(LEAST_TOLERANCE, least.unwrap_or(f64::NAN))
     }
 
-    fn at(self, which: usize, vector: Option<[f64; 3]>) -> Self {
-        vector.map_or(self, |vector| self.along(which, vector))
+    fn with_optional_vector(self, which: usize, vector: Option<[f64; 3]>) -> Self {
+        vector.map_or(self, |vector| self.with_vector(which, vector))
     }
 
-    fn featured(mut self, features: Option<&FeaturesRecord>) -> Self {
+    fn with_features(mut self, features: Option<&FeaturesRecord>) -> Self {
         if let Some(FeaturesRecord { moving, fixed }) = features {
             let of = |feature: &FeatureRecord| corners(feature.vertices.iter().copied());
             self.features = [of(moving), of(fixed)];
@@ -222,52 +225,54 @@ impl Row {
 
     fn with_exit(self, last: &Contact) -> Self {
         let exit = last.exit();
-        self.with(EXIT, exit.value).with(EXIT_LOWER, exit.lower).with(EXIT_UPPER, exit.upper)
+        self.with_number(EXIT, exit.value)
+            .with_number(EXIT_LOWER, exit.lower)
+            .with_number(EXIT_UPPER, exit.upper)
     }
 
-    fn of(outcome: u8, first: &Contact, cast: &Cast<'_>, featured: bool) -> Self {
+    fn from_contact(outcome: u8, first: &Contact, cast: &Cast<'_>, featured: bool) -> Self {
         let mut row = Self { outcome, ..Self::NONE }
-            .along(NORMAL, coordinates(first.normal))
-            .along(POINT, coordinates(first.points(cast).on_fixed));
+            .with_vector(NORMAL, coordinates(first.normal))
+            .with_vector(POINT, coordinates(first.points(cast).on_fixed));
         if featured {
             let Features { moving, fixed } = first.features(cast);
             row.features =
                 [corners(moving.vertices(cast.moving())), corners(fixed.vertices(cast.fixed()))];
         }
         let proof = &first.certificate;
-        row.with(TRANSLATION, first.translation)
-            .with(LOWER, proof.lower)
-            .with(UPPER, proof.upper)
-            .with(ROUNDING, proof.rounding)
+        row.with_number(TRANSLATION, first.translation)
+            .with_number(LOWER, proof.lower)
+            .with_number(UPPER, proof.upper)
+            .with_number(ROUNDING, proof.rounding)
     }
 
-    fn separated(outcome: u8, separated: &colltrans::Separated) -> Self {
+    fn from_separation(outcome: u8, separated: &colltrans::Separated) -> Self {
         let normal = coordinates(separated.certificate.normal);
-        let row = Self { outcome, ..Self::NONE }.along(NORMAL, normal);
-        row.with(MARGIN, separated.certificate.margin)
+        let row = Self { outcome, ..Self::NONE }.with_vector(NORMAL, normal);
+        row.with_number(MARGIN, separated.certificate.margin)
     }
 
-    fn clearance(answer: &Clearance, cast: &Cast<'_>, featured: bool) -> Self {
-        let of = |outcome: u8, first: &Contact| Self::of(outcome, first, cast, featured);
+    fn from_clearance(answer: &Clearance, cast: &Cast<'_>, featured: bool) -> Self {
+        let of = |outcome: u8, first: &Contact| Self::from_contact(outcome, first, cast, featured);
         let row = match answer {
             Clearance::Blocked { contact, .. } => of(0, contact),
             Clearance::Free(WhyFree::Slides(grazing)) => {
-                of(1, &grazing.contact).with(OVERLAP, grazing.overlap)
+                of(1, &grazing.contact).with_number(OVERLAP, grazing.overlap)
             }
             // The last contact is the first one of the reversed cast, so its bounds do not apply to this
             // direction.
             Clearance::Free(WhyFree::Behind(last)) => Self {
-                numbers: Self::NONE.with(ROUNDING, last.certificate.rounding).numbers,
-                ..Self::of(2, last, &cast.reversed(), featured)
+                numbers: Self::NONE.with_number(ROUNDING, last.certificate.rounding).numbers,
+                ..Self::from_contact(2, last, &cast.reversed(), featured)
             }
             .with_exit(last),
-            Clearance::Free(WhyFree::Separated(separated)) => Self::separated(3, separated),
+            Clearance::Free(WhyFree::Separated(separated)) => Self::from_separation(3, separated),
             Clearance::Overlapping(OverlapAhead { first, last }) => of(4, first)
                 .with_exit(last)
-                .with(BACK, -first.certificate.lower)
-                .with(ON, -last.certificate.lower),
+                .with_number(BACK, -first.certificate.lower)
+                .with_number(ON, -last.certificate.lower),
         };
-        row.with(DISTANCE, answer.distance().unwrap_or(f64::NAN))
+        row.with_number(DISTANCE, answer.distance().unwrap_or(f64::NAN))
     }
 }
 

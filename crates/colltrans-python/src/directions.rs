@@ -14,11 +14,11 @@ use pyo3::prelude::*;
 
 use crate::answer::save;
 use crate::arrays::points;
-use crate::errors::{OrRaise, error, input};
+use crate::errors::{OrRaise, error, input_error};
 use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
-use crate::solid_cast::{patiently, placed_bodies};
+use crate::solid_cast::{placed_bodies, run_patiently};
 
 /// All directions along which one body can leave another, with proofs; see :func:`free_directions`.
 #[pyclass(frozen, module = "colltrans")]
@@ -37,15 +37,18 @@ struct Question {
     options: FreeOptions,
 }
 
-type Placing<'a> = [Placed<'a, colltrans::Solid>; 2];
+type PlacedPair<'a> = [Placed<'a, colltrans::Solid>; 2];
 
-fn placed<'a>(bodies: &'a [Piece; 2], poses: &[colltrans::Pose; 2]) -> PyResult<Placing<'a>> {
+fn place_bodies<'a>(
+    bodies: &'a [Piece; 2],
+    poses: &[colltrans::Pose; 2],
+) -> PyResult<PlacedPair<'a>> {
     let [moving, fixed] =
         [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
     Ok([moving.at(poses[0]), fixed.at(poses[1])])
 }
 
-fn raised(what: FreeError) -> PyErr {
+fn free_error(what: FreeError) -> PyErr {
     match what {
         FreeError::NotProven(what) => error("CertificateError", what),
         what => error("QueryError", what),
@@ -60,9 +63,9 @@ impl FreeDirections {
         ask: impl Fn(&colltrans::free::FreeDirections<'_>, DVec3) -> Result<T, QueryError>,
     ) -> PyResult<Vec<T>> {
         let directions = points(directions, "directions")?;
-        let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+        let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
         let free = colltrans::free::FreeDirections::believing(&moving, &fixed, &self.proof);
-        let free = free.map_err(raised)?;
+        let free = free.map_err(free_error)?;
         directions.into_iter().map(|d| ask(&free, d).or_raise()).collect()
     }
 }
@@ -70,7 +73,7 @@ impl FreeDirections {
 impl Question {
     /// Chooses the tolerance from the precision of the files, if none is given.
     fn settled(mut self) -> PyResult<Self> {
-        let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+        let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
         let precisions = [0, 1].map(|k| self.bodies[k].precision());
         let FreeOptions { tolerance, start_overlap, .. } = self.options;
         let cast = between(moving, fixed, DVec3::Z, precisions, tolerance, start_overlap);
@@ -80,9 +83,9 @@ impl Question {
 
     fn answer(self) -> PyResult<FreeDirections> {
         let asked = self.settled()?;
-        let [moving, fixed] = placed(&asked.bodies, &asked.poses)?;
+        let [moving, fixed] = place_bodies(&asked.bodies, &asked.poses)?;
         let free = colltrans::free::FreeDirections::of(&moving, &fixed, asked.options);
-        let free = free.map_err(raised)?;
+        let free = free.map_err(free_error)?;
         let (proof, record) = (free.proof(), FreeRecord::of(&free, |_| [None, None]));
         let Self { bodies, poses, options } = asked;
         Ok(FreeDirections { bodies, poses, options, proof, record })
@@ -131,10 +134,10 @@ impl FreeDirections {
     fn says(&self, py: Python<'_>, directions: &Bound<'_, PyAny>) -> PyResult<Vec<&'static str>> {
         let directions = points(directions, "directions")?;
         py.detach(|| {
-            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             let proof = &self.proof;
             let free = colltrans::free::FreeDirections::believing(&moving, &fixed, proof);
-            let free = free.map_err(raised)?;
+            let free = free.map_err(free_error)?;
             let word = |d: DVec3| {
                 Ok(match free.says(d).or_raise()? {
                     Verdict::Free => "free",
@@ -192,9 +195,9 @@ impl FreeDirections {
     ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
-            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             let checked = colltrans::free::FreeDirections::from_proof(&moving, &fixed, &self.proof);
-            checked.map(|_| ()).map_err(raised)
+            checked.map(|_| ()).map_err(free_error)
         })
     }
 
@@ -217,9 +220,9 @@ impl FreeDirections {
     /// str
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
         py.detach(|| {
-            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             let free = colltrans::free::FreeDirections::believing(&moving, &fixed, &self.proof);
-            let free = free.map_err(raised)?.with_options(self.options);
+            let free = free.map_err(free_error)?.with_options(self.options);
             let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
             let file = ProofFile::of_free_directions(&free, [&pieces[0], &pieces[1]]);
             Ok(file.or_raise()?.to_json())
@@ -294,9 +297,12 @@ pub(crate) fn free_directions(
     looks: u64,
 ) -> PyResult<FreeDirections> {
     if depth > 50 {
-        return Err(input("depth", format_args!("{depth} is out of range; accepted: at most 50")));
+        return Err(input_error(
+            "depth",
+            format_args!("{depth} is out of range; accepted: at most 50"),
+        ));
     }
-    let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
+    let bodies = [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
     let start = if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
     let options = FreeOptions::DEFAULT
@@ -305,5 +311,5 @@ pub(crate) fn free_directions(
         .with_depth(depth)
         .with_looks(looks);
     let copies = [bodies[0].copy(py), bodies[1].copy(py)];
-    patiently(py, &copies, move || Question { bodies, poses, options }.answer())
+    run_patiently(py, &copies, move || Question { bodies, poses, options }.answer())
 }

@@ -62,8 +62,8 @@ getters!(Distance, |it| {
         let features = either!(it.found, found => found.features);
         let Some(colltrans::Features { moving, fixed }) = features else { return Ok(None) };
         either!(query.asked()?, pair => Ok(Some(Features {
-            moving: Feature::of(moving, pair.moving()),
-            fixed: Feature::of(fixed, pair.fixed()),
+            moving: Feature::from_feature(moving, pair.moving()),
+            fixed: Feature::from_feature(fixed, pair.fixed()),
         })))
     };
     /// Steps or None: Number of steps of the search; None for solids.
@@ -245,7 +245,7 @@ fn within_proof(of: &WithinOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> {
 }
 
 /// Builds the error for an answer that does not belong to the bodies of its query.
-fn other_bodies() -> PyErr {
+fn other_bodies_error() -> PyErr {
     error("CaseError", "an answer of other bodies")
 }
 
@@ -262,7 +262,7 @@ impl Answer for DistanceOf {
             (Self::Solids(found), Of::Solids(pair)) => {
                 Ok(DistanceRecord::of_solids(found, &pair).into())
             }
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 
@@ -280,7 +280,7 @@ impl WithinOf {
             (Of::Solids((answer, _)), Of::Solids(pair)) => {
                 DistanceRecord::of_solids_within(answer, &pair).or_raise()
             }
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 }
@@ -311,7 +311,7 @@ impl Answer for PairAnswer {
             Self::Depth(depth) => object(py, Depth { depth, query: asked }),
             Self::OverlapDepth(depth) => object(py, OverlapDepth { depth, query: asked }),
             Self::Distance(found) => DistanceOf::Convex(found).object(query),
-            Self::Within { .. } => Err(other_bodies()),
+            Self::Within { .. } => Err(other_bodies_error()),
         }
     }
 
@@ -321,7 +321,7 @@ impl Answer for PairAnswer {
                 PairAnswer::<Solid>::OverlapDepth(*depth).record(&pair).or_raise()
             }
             (answer, Of::Convex(pair)) => Ok(answer.record(&pair)),
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 

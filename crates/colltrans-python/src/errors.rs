@@ -26,7 +26,7 @@ pub(crate) fn error(class: &str, message: impl Display) -> PyErr {
 }
 
 /// Builds the exception for an invalid argument called `name`.
-pub(crate) fn input(name: &str, what: impl Display) -> PyErr {
+pub(crate) fn input_error(name: &str, what: impl Display) -> PyErr {
     error("InputError", format_args!("{name}: {what}"))
 }
 

@@ -57,7 +57,7 @@ match_args!(Feature("kind", "vertices"));
 
 impl Feature {
     /// Converts a feature, with the vertex numbers of the input.
-    pub(crate) fn of<B: Body>(feature: colltrans::Feature, body: &B) -> Self {
+    pub(crate) fn from_feature<B: Body>(feature: colltrans::Feature, body: &B) -> Self {
         Self {
             kind: feature.kind().into(),
             vertices: feature.vertices(body).into_iter().map(u32::from).collect(),
@@ -91,10 +91,10 @@ pub(crate) struct Features {
 match_args!(Features("moving", "fixed"));
 
 impl Features {
-    pub(crate) fn of(contact: &colltrans::Contact, cast: &colltrans::Cast<'_>) -> Self {
+    pub(crate) fn from_contact(contact: &colltrans::Contact, cast: &colltrans::Cast<'_>) -> Self {
         let colltrans::Features { moving, fixed } = contact.features(cast);
-        let moving = Feature::of(moving, cast.moving());
-        Self { moving, fixed: Feature::of(fixed, cast.fixed()) }
+        let moving = Feature::from_feature(moving, cast.moving());
+        Self { moving, fixed: Feature::from_feature(fixed, cast.fixed()) }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::body;
 use crate::bulk::{Answered, Plan};
 use crate::columns::{Question, Row};
 use crate::motion::{EITHER, convex_cast, solid_cast};
-use crate::repeats::{Answerers, By, Repeats};
+use crate::repeats::{Repeats, RowAnswerer, RowAnswerers};
 use crate::rows::{AnyBody, Bodies, Table};
 use crate::solid::Solid;
 use crate::solver::options_of;
@@ -30,13 +30,13 @@ struct Work<'a> {
     question: Question,
     bodies: [Bodies<'a>; 2],
     poses: [Table<'a>; 2],
-    with: With<'a>,
+    with: RowQuery<'a>,
     /// Whether to add the columns of features.
     featured: bool,
 }
 
 /// The arguments of a question besides the bodies.
-enum With<'a> {
+enum RowQuery<'a> {
     Direction {
         directions: Table<'a>,
         graze_tolerances: Table<'a>,
@@ -85,7 +85,9 @@ impl<'a> Work<'a> {
     /// Finds rows with the same bodies and rotations; `None` if they cannot share data.
     fn repeats(&self, n: usize) -> Option<Repeats<'a>> {
         match &self.with {
-            With::Direction { directions, keeps, options, .. } if options.solver != Solver::Cta => {
+            RowQuery::Direction { directions, keeps, options, .. }
+                if options.solver != Solver::Cta =>
+            {
                 let touches = |row: usize| keeps.row(row)[0] == 0.0;
                 Some(Repeats::find(n, &self.bodies, &self.poses, directions, touches))
             }
@@ -93,17 +95,24 @@ impl<'a> Work<'a> {
         }
     }
 
-    fn answer(&self, row: usize, by: &By<'_, '_, 'a>) -> Result<Row, String> {
+    fn answer(&self, row: usize, by: &RowAnswerer<'_, '_, 'a>) -> Result<Row, String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
-        if let With::Motion { motions, keeps, tolerances } = &self.with {
+        if let RowQuery::Motion { motions, keeps, tolerances } = &self.with {
             let of = |k: usize| motions[k].get(row, &self.poses[k]);
             let (motions, tolerance) = ([of(0)?, of(1)?], tolerances.row(row)[0]);
             let tolerance = Some(tolerance).filter(|tolerance| !tolerance.is_nan());
             let motions = motions.each_ref();
-            return moved(self.question, [moving, fixed], motions, keeps.row(row)[0], tolerance);
+            return answer_moving(
+                self.question,
+                [moving, fixed],
+                motions,
+                keeps.row(row)[0],
+                tolerance,
+            );
         }
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
-        let With::Direction { directions, graze_tolerances, keeps, options } = &self.with else {
+        let RowQuery::Direction { directions, graze_tolerances, keeps, options } = &self.with
+        else {
             return self.answer_placed([moving, fixed], [at, to], row);
         };
         let (moving, fixed) = (moving.convex()?, fixed.convex()?);
@@ -123,7 +132,9 @@ impl<'a> Work<'a> {
         row: usize,
     ) -> Result<Row, String> {
         let question = match (self.question, &self.with) {
-            (Question::Within, With::Length(lengths)) => PairQuestion::Within(lengths.row(row)[0]),
+            (Question::Within, RowQuery::Length(lengths)) => {
+                PairQuestion::Within(lengths.row(row)[0])
+            }
             (Question::Depth, _) => PairQuestion::Depth,
             _ => PairQuestion::Distance,
         };
@@ -138,12 +149,12 @@ impl<'a> Work<'a> {
                 .and_then(|pair| question.ask_solids(&pair)?.record(&pair))
         };
         let record = record.map_err(|what| what.to_string())?;
-        Ok(Row::of_record(self.question, &record))
+        Ok(Row::from_record(self.question, &record))
     }
 }
 
 /// Computes the first contact of two moving bodies, or the clearance of their motion.
-fn moved(
+fn answer_moving(
     question: Question,
     bodies: [AnyBody<'_>; 2],
     motions: [&Motion; 2],
@@ -173,11 +184,11 @@ fn moved(
             })
         })
     };
-    record.map(|record| Row::of_motion(question, &record)).map_err(|what| what.to_string())
+    record.map(|record| Row::from_motion(question, &record)).map_err(|what| what.to_string())
 }
 
 /// Returns the bodies of a list. An exception in the list stands for a body that could not be built.
-fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<AnyBody<'a>, String>>> {
+fn read_bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<AnyBody<'a>, String>>> {
     let body = |item: &'a Bound<'_, PyAny>| {
         if item.is_instance_of::<pyo3::exceptions::PyException>() {
             return Ok(Err(item.to_string()));
@@ -217,25 +228,28 @@ pub(crate) fn ask_many<'py>(
     featured: bool,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
-    let question = Question::called(question)?;
-    let table = |name: &'static str| numbers(name, &tables, n);
+    let question = Question::from_name(question)?;
+    let table = |name: &'static str| read_numbers(name, &tables, n);
     let with = match question {
-        Question::Contact | Question::Range | Question::Clearance => With::Direction {
+        Question::Contact | Question::Range | Question::Clearance => RowQuery::Direction {
             directions: table("direction")?,
             graze_tolerances: table("graze_tolerance")?,
             keeps: table("keep")?,
             options: options_of(Some(solver))?,
         },
-        Question::Within => With::Length(table("length")?),
-        Question::Distance | Question::Depth => With::Nothing,
-        Question::Motion | Question::MotionClearance => With::Motion {
-            motions: [motions("moving_motion", &tables, n)?, motions("fixed_motion", &tables, n)?],
+        Question::Within => RowQuery::Length(table("length")?),
+        Question::Distance | Question::Depth => RowQuery::Nothing,
+        Question::Motion | Question::MotionClearance => RowQuery::Motion {
+            motions: [
+                read_motions("moving_motion", &tables, n)?,
+                read_motions("fixed_motion", &tables, n)?,
+            ],
             keeps: table("keep")?,
             tolerances: table("tolerance")?,
         },
     };
-    let all = [bodies(&moving.0)?, bodies(&fixed.0)?];
-    let index = [index(moving.1.as_ref(), n)?, self::index(fixed.1.as_ref(), n)?];
+    let all = [read_bodies(&moving.0)?, read_bodies(&fixed.0)?];
+    let index = [read_index(moving.1.as_ref(), n)?, self::read_index(fixed.1.as_ref(), n)?];
     let work = Work {
         question,
         bodies: [
@@ -247,34 +261,39 @@ pub(crate) fn ask_many<'py>(
         featured,
     };
     let repeats = py.detach(|| work.repeats(n));
-    let by = repeats.as_ref().map(Answerers::of);
+    let by = repeats.as_ref().map(RowAnswerers::new);
     let outcomes = question.outcomes();
     let plan = Plan { rows: n, chunk: CHUNK, columns: &columns, featured, outcomes, threads };
-    plan.run(py, |row| work.answer(row, &by.as_ref().map_or(By::Cast, |by| by.of_row(row))))
+    plan.run(py, |row| {
+        work.answer(row, &by.as_ref().map_or(RowAnswerer::Cast, |by| by.for_row(row)))
+    })
 }
 
 /// The arguments by name.
 type Arguments<'py> = HashMap<String, Argument<'py>>;
 
-fn argument<'a, 'py>(name: &str, of: &'a Arguments<'py>) -> PyResult<&'a Argument<'py>> {
+fn find_argument<'a, 'py>(name: &str, of: &'a Arguments<'py>) -> PyResult<&'a Argument<'py>> {
     of.get(name).ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
 }
 
 /// Returns one motion for all rows, one for each row, or the numbers of the motions.
-fn motions<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Motions<'a>> {
-    match argument(name, of)? {
+fn read_motions<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Motions<'a>> {
+    match find_argument(name, of)? {
         Argument::Motions(all) if all.len() == n || all.len() == 1 => {
             Ok(Motions::Listed(all.iter().map(|motion| &motion.get().0).collect()))
         }
         Argument::Motions(all) => {
             Err(PyValueError::new_err(format!("{name}: {} motions", all.len())))
         }
-        Argument::Numbers(_) => numbers(name, of, n).map(Motions::Numbers),
+        Argument::Numbers(_) => read_numbers(name, of, n).map(Motions::Numbers),
     }
 }
 
 /// Returns the body index of every row.
-fn index<'a>(of: Option<&'a PyReadonlyArray1<'_, i64>>, n: usize) -> PyResult<Option<&'a [i64]>> {
+fn read_index<'a>(
+    of: Option<&'a PyReadonlyArray1<'_, i64>>,
+    n: usize,
+) -> PyResult<Option<&'a [i64]>> {
     let index = of.map(PyReadonlyArray1::as_slice).transpose()?;
     if index.is_some_and(|index| index.len() != n) {
         return Err(PyValueError::new_err("not an index for every row"));
@@ -283,8 +302,8 @@ fn index<'a>(of: Option<&'a PyReadonlyArray1<'_, i64>>, n: usize) -> PyResult<Op
 }
 
 /// Returns a table with one row or `n` rows.
-fn numbers<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Table<'a>> {
-    let Argument::Numbers(numbers) = argument(name, of)? else {
+fn read_numbers<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Table<'a>> {
+    let Argument::Numbers(numbers) = find_argument(name, of)? else {
         return Err(PyValueError::new_err(format!("{name} is not a table of numbers")));
     };
     let (rows, width) = (numbers.shape()[0], numbers.shape()[1]);

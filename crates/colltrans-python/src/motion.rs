@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{Numbers, Shape, Vector, coordinates, row, vector};
 use crate::body;
-use crate::errors::{OrRaise, error, input, query_error};
+use crate::errors::{OrRaise, error, input_error, query_error};
 use crate::features::{Feature, Features};
 use crate::frozen::{Options, Shown, getters, html, pickled, show};
 use crate::pair::Of;
-use crate::pose::{Bare, Pose, bare_numbers, of_bare, pose};
+use crate::pose::{Bare, Pose, bare_numbers, pose, pose_from_bare};
 use crate::solid::Piece;
-use crate::solid_cast::patiently;
+use crate::solid_cast::run_patiently;
 
 /// A motion: the pose of a body at every time from 0 to 1.
 ///
@@ -97,7 +97,7 @@ impl Motion {
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let angle = angle_in_radians("turn(point, axis", angle, degrees, radians)?;
-        Self::of_screw(point, axis, angle, 0.0, pose)
+        Self::from_screw(point, axis, angle, 0.0, pose)
     }
 
     /// Builds a screw: a rotation about an axis that itself moves along its direction by ``rise``.
@@ -120,7 +120,7 @@ impl Motion {
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let angle = angle_in_radians("screw(point, axis, rise=...", angle, degrees, radians)?;
-        Self::of_screw(point, axis, angle, rise, pose)
+        Self::from_screw(point, axis, angle, rise, pose)
     }
 
     /// Builds the motion of a thrown body.
@@ -222,7 +222,7 @@ impl Motion {
 }
 
 impl Motion {
-    fn of_screw(
+    fn from_screw(
         point: &Bound<'_, PyAny>,
         axis: &Bound<'_, PyAny>,
         angle: f64,
@@ -256,7 +256,7 @@ fn angle_in_radians(
             _ => "has no unit",
         };
         let calls = ["degrees", "radians"].map(|unit| format!("Motion.{call}, {unit}={given})"));
-        input("angle", format_args!("it {wrong}: call {} or {}", calls[0], calls[1]))
+        input_error("angle", format_args!("it {wrong}: call {} or {}", calls[0], calls[1]))
     })
 }
 
@@ -273,7 +273,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
     let bare = bare_numbers(given, name)?;
     if let Bare::Numbers(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
         let vector = [x, y, z].map(|c| c + 0.0);
-        return Err(input(
+        return Err(input_error(
             name,
             format_args!(
                 "{vector:?} could be a displacement or a position: Motion.slide({vector:?}) moves the \
@@ -281,7 +281,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
             ),
         ));
     }
-    Ok(motion::Motion::still(of_bare(given.py(), &bare, name)?))
+    Ok(motion::Motion::still(pose_from_bare(given.py(), &bare, name)?))
 }
 
 /// Two bodies and their motions, as a value: query the first contact, save and replay it.
@@ -329,7 +329,7 @@ pub(crate) struct MotionCast {
 }
 
 /// The cast of the library.
-type Asked<'a> = Of<motion::MotionCast<'a>, motion::MotionCast<'a, Solid>>;
+type AnyMotionCast<'a> = Of<motion::MotionCast<'a>, motion::MotionCast<'a, Solid>>;
 
 /// The bodies, and all other arguments by name.
 type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
@@ -340,7 +340,7 @@ impl MotionCast {
         Dents::of(self.bodies.each_ref().map(Piece::dent))
     }
 
-    pub(crate) fn of(
+    pub(crate) fn from_arguments(
         bodies: [&Bound<'_, PyAny>; 2],
         motions: [Option<&Bound<'_, PyAny>>; 2],
         keep: f64,
@@ -350,7 +350,10 @@ impl MotionCast {
         let start_overlap =
             if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         Ok(Self {
-            bodies: [Piece::of(bodies[0], "moving")?, Piece::of(bodies[1], "fixed")?],
+            bodies: [
+                Piece::from_python(bodies[0], "moving")?,
+                Piece::from_python(bodies[1], "fixed")?,
+            ],
             motions: [
                 motion_of(motions[0], "moving_motion")?,
                 motion_of(motions[1], "fixed_motion")?,
@@ -362,7 +365,7 @@ impl MotionCast {
     }
 
     /// Builds the cast of the library.
-    fn asked(&self) -> PyResult<Asked<'_>> {
+    fn asked(&self) -> PyResult<AnyMotionCast<'_>> {
         let [a, b] = &self.motions;
         if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
             let (p, q): (&ConvexPolyhedron, &ConvexPolyhedron) = (&p.get().0, &q.get().0);
@@ -379,7 +382,7 @@ impl MotionCast {
     /// Computes the first contact without the interpreter's lock, because it may take long.
     pub(crate) fn first(slf: &Bound<'_, Self>) -> PyResult<Found> {
         let query = slf.clone().unbind();
-        patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
+        run_patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
             Of::Convex(cast) => {
                 let found = cast.first_contact();
                 found
@@ -395,7 +398,7 @@ impl MotionCast {
     /// Computes the clearance without the interpreter's lock, because it may take long.
     fn cleared(slf: &Bound<'_, Self>) -> PyResult<Cleared> {
         let query = slf.clone().unbind();
-        patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
+        run_patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
             Of::Convex(cast) => {
                 let found = cast.clearance();
                 found
@@ -471,7 +474,8 @@ impl MotionCast {
         ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
         let motions = [moving_motion, fixed_motion];
-        let query = Self::of([moving, fixed], motions, keep, tolerance, ignore_start_overlaps)?;
+        let query =
+            Self::from_arguments([moving, fixed], motions, keep, tolerance, ignore_start_overlaps)?;
         if let [Piece::Convex(_), Piece::Convex(_)] = query.bodies {
             if tolerance.is_some() && keep != 0.0 {
                 return Err(error("QueryError", EITHER));
@@ -641,11 +645,11 @@ getters!(FirstContact, |it| {
         match it.query.get().asked()? {
             Of::Convex(cast) => {
                 let [p, q] = cast.bodies();
-                of(Feature::of(moving, p), Feature::of(fixed, q))
+                of(Feature::from_feature(moving, p), Feature::from_feature(fixed, q))
             }
             Of::Solids(cast) => {
                 let [p, q] = cast.bodies();
-                of(Feature::of(moving, p), Feature::of(fixed, q))
+                of(Feature::from_feature(moving, p), Feature::from_feature(fixed, q))
             }
         }
     };
@@ -667,13 +671,13 @@ impl FirstContact {
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         let (query, found) = (self.query.clone_ref(py), self.found.clone());
         let refused = |what: motion::MotionProofError| error("CertificateError", what);
-        patiently(py, &self.query.get().bodies, move || {
+        run_patiently(py, &self.query.get().bodies, move || {
             match (query.get().asked()?, &found) {
                 (Of::Convex(cast), Of::Convex(found)) => cast.verify(found.proof()),
                 (Of::Solids(cast), _) => {
                     cast.verify(cast.certified_first_contact().or_raise()?.proof())
                 }
-                _ => return Err(other_bodies()),
+                _ => return Err(other_bodies_error()),
             }
             .map(|_| ())
             .map_err(refused)
@@ -688,7 +692,7 @@ impl FirstContact {
 }
 
 /// Builds the error for an answer that does not belong to the bodies of its query.
-fn other_bodies() -> PyErr {
+fn other_bodies_error() -> PyErr {
     error("CaseError", "an answer of other bodies")
 }
 
@@ -705,7 +709,7 @@ impl Answer for Found {
             (Self::Solids(found), Of::Solids(cast)) => {
                 Ok(MotionRecord::of_solids(found, &cast).into())
             }
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 
@@ -715,7 +719,7 @@ impl Answer for Found {
                 Ok(ProofFile::of_motion(&cast, found).to_json())
             }
             (Self::Solids(_), Of::Solids(cast)) => solid_proof(&cast),
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 }
@@ -752,7 +756,7 @@ struct Stop {
 }
 
 impl Stop {
-    fn of<P>(found: &motion::MotionClearance<P>) -> Option<Self> {
+    fn from_clearance<P>(found: &motion::MotionClearance<P>) -> Option<Self> {
         let motion::MotionClearance::Blocked { contact, .. } = found else { return None };
         let (place, shrunk) = (contact.time, &contact.shrunk);
         Some(Self {
@@ -771,8 +775,8 @@ fn bounds([lower, upper]: [f64; 2]) -> (f64, Option<f64>) {
 impl MotionClearance {
     fn stop(&self) -> Option<Stop> {
         match &self.found {
-            Of::Convex(found) => Stop::of(found),
-            Of::Solids(found) => Stop::of(found),
+            Of::Convex(found) => Stop::from_clearance(found),
+            Of::Solids(found) => Stop::from_clearance(found),
         }
     }
 }
@@ -820,19 +824,19 @@ impl MotionClearance {
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         let (query, found) = (self.query.clone_ref(py), self.found.clone());
         let refused = |what: motion::MotionProofError| error("CertificateError", what);
-        patiently(py, &self.query.get().bodies, move || {
+        run_patiently(py, &self.query.get().bodies, move || {
             match (query.get().asked()?, &found) {
                 (Of::Convex(cast), Of::Convex(found)) => {
-                    let outcome = first_of(found).ok_or_else(unproven)?;
+                    let outcome = first_of(found).ok_or_else(unproven_error)?;
                     cast.cleared().verify(outcome.proof())
                 }
                 (Of::Solids(cast), Of::Solids(found)) => {
                     if first_of(found).is_none() || query.get().ignore_start_overlaps() {
-                        return Err(unproven());
+                        return Err(unproven_error());
                     }
                     cast.verify(cast.certified_first_contact().or_raise()?.proof())
                 }
-                _ => return Err(other_bodies()),
+                _ => return Err(other_bodies_error()),
             }
             .map(|_| ())
             .map_err(refused)
@@ -845,7 +849,7 @@ impl MotionClearance {
     }
 }
 
-fn unproven() -> PyErr {
+fn unproven_error() -> PyErr {
     error("CertificateError", "of bodies that overlap when the motion begins nothing is proven")
 }
 
@@ -878,23 +882,23 @@ impl Answer for Cleared {
             (Self::Solids(found), Of::Solids(cast)) => {
                 Ok(MotionRecord::of_solid_clearance(found, &cast).into())
             }
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 
     fn proof(&self, query: &Bound<'_, MotionCast>) -> PyResult<String> {
         match (self, query.get().asked()?) {
             (Self::Convex(found), Of::Convex(cast)) => {
-                let outcome = first_of(found).ok_or_else(unproven)?;
+                let outcome = first_of(found).ok_or_else(unproven_error)?;
                 Ok(ProofFile::of_motion(&cast.cleared(), &outcome).to_json())
             }
             (Self::Solids(found), Of::Solids(cast)) => {
                 if first_of(found).is_none() || query.get().ignore_start_overlaps() {
-                    return Err(unproven());
+                    return Err(unproven_error());
                 }
                 solid_proof(&cast)
             }
-            _ => Err(other_bodies()),
+            _ => Err(other_bodies_error()),
         }
     }
 }

@@ -15,9 +15,9 @@ use pyo3::types::PyDict;
 
 use crate::arrays::vector;
 use crate::bulk::each;
-use crate::errors::{OrRaise, input};
+use crate::errors::{OrRaise, input_error};
 use crate::pose::{Pose, pose};
-use crate::scene::{Asked, Scene, keeping};
+use crate::scene::{Scene, SceneRequest, with_min_gap};
 use crate::scene_answers::{
     NearbyObstacles, NearestObstacle, ObstacleClearance, outcome_of, upper_of,
 };
@@ -67,14 +67,14 @@ impl Obstacles {
         (body, at): (Piece, colltrans::Pose),
         ignore: HashSet<u64>,
         question: impl FnOnce(&Among<'_>) -> Result<T, QueryError> + Send,
-    ) -> PyResult<(T, Asked)> {
+    ) -> PyResult<(T, SceneRequest)> {
         let asked = || {
             let kept = self.scene.read();
             let found = kept.ask((&body, at), &ignore, question)?;
             Ok::<_, QueryError>((found, kept.changes))
         };
         let (found, changes) = py.detach(asked).or_raise()?;
-        Ok((found, Asked { scene: self.scene.clone(), changes, body, at, ignore }))
+        Ok((found, SceneRequest { scene: self.scene.clone(), changes, body, at, ignore }))
     }
 
     /// Runs a query for many poses, on several threads.
@@ -104,25 +104,25 @@ fn clearance_keeping(
     before: f64,
     keep: f64,
 ) -> Result<ClearanceAmong, QueryError> {
-    keeping(among, keep)?.clearance_before(direction, before)
+    with_min_gap(among, keep)?.clearance_before(direction, before)
 }
 
 fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn unknown(obstacle: u64) -> PyErr {
+fn unknown_obstacle_error(obstacle: u64) -> PyErr {
     PyKeyError::new_err(format!(
         "there is no obstacle {obstacle}: it was never added, or was removed"
     ))
 }
 
 /// Reads the poses of an array or a sequence.
-fn poses(of: &Bound<'_, PyAny>) -> PyResult<Vec<colltrans::Pose>> {
+fn read_poses(of: &Bound<'_, PyAny>) -> PyResult<Vec<colltrans::Pose>> {
     of.try_iter()?.map(|one| pose(Some(&one?), "poses")).collect()
 }
 
-fn vectors(py: Python<'_>, all: Vec<[f64; 3]>) -> PyResult<Bound<'_, PyAny>> {
+fn vector_table(py: Python<'_>, all: Vec<[f64; 3]>) -> PyResult<Bound<'_, PyAny>> {
     let n = all.len();
     Ok(all.into_flattened().into_pyarray(py).reshape([n, 3])?.into_any())
 }
@@ -175,14 +175,14 @@ impl Obstacles {
         body: &Bound<'_, PyAny>,
         poses: &Bound<'_, PyAny>,
     ) -> PyResult<Vec<u64>> {
-        let poses = self::poses(poses)?;
-        if Piece::of(body, "body").is_ok() {
+        let poses = read_poses(poses)?;
+        if Piece::from_python(body, "body").is_ok() {
             return self.insert(py, std::slice::from_ref(body), poses);
         }
         let bodies = body.try_iter()?.collect::<PyResult<Vec<_>>>()?;
         if bodies.len() != poses.len() {
             let what = format!("{} bodies for {} poses", bodies.len(), poses.len());
-            return Err(input("body", what));
+            return Err(input_error("body", what));
         }
         self.insert(py, &bodies, poses)
     }
@@ -196,7 +196,7 @@ impl Obstacles {
     fn set_pose(&self, py: Python<'_>, obstacle: u64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let at = self::pose(Some(pose), "pose")?;
         let set = || self.scene.change(|all| all.set_pose(ObstacleId(obstacle), at));
-        py.detach(set).map_err(|_| unknown(obstacle))
+        py.detach(set).map_err(|_| unknown_obstacle_error(obstacle))
     }
 
     /// Moves many obstacles in one pass: all of them, or none if a number is unknown (KeyError).
@@ -206,14 +206,14 @@ impl Obstacles {
         obstacles: Vec<u64>,
         poses: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let poses = self::poses(poses)?;
+        let poses = read_poses(poses)?;
         if obstacles.len() != poses.len() {
             let what = format!("{} obstacles for {} poses", obstacles.len(), poses.len());
-            return Err(input("poses", what));
+            return Err(input_error("poses", what));
         }
         let moves: Vec<_> = obstacles.into_iter().map(ObstacleId).zip(poses).collect();
         py.detach(|| self.scene.change(|all| all.set_poses(&moves)))
-            .map_err(|what| unknown(what.id.0))
+            .map_err(|what| unknown_obstacle_error(what.id.0))
     }
 
     /// Removes an obstacle.
@@ -224,7 +224,7 @@ impl Obstacles {
     ///     There is no such obstacle.
     fn remove(&self, py: Python<'_>, obstacle: u64) -> PyResult<()> {
         let removed = py.detach(|| self.scene.change(|all| all.remove(ObstacleId(obstacle))));
-        removed.map(|_| ()).ok_or_else(|| unknown(obstacle))
+        removed.map(|_| ()).ok_or_else(|| unknown_obstacle_error(obstacle))
     }
 
     /// Returns the pose of an obstacle.
@@ -234,7 +234,7 @@ impl Obstacles {
     /// Pose
     fn pose(&self, py: Python<'_>, obstacle: u64) -> PyResult<Pose> {
         let at = || self.scene.read().obstacles.get(ObstacleId(obstacle)).map(|(_, pose)| pose);
-        py.detach(at).map(Pose).ok_or_else(|| unknown(obstacle))
+        py.detach(at).map(Pose).ok_or_else(|| unknown_obstacle_error(obstacle))
     }
 
     fn __len__(&self, py: Python<'_>) -> usize {
@@ -275,9 +275,9 @@ impl Obstacles {
         py: Python<'_>,
         body: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
-        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<Option<NearestObstacle>> {
-        let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
+        let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
         let (found, asked) = self.ask(py, (body, at), ignore, |among| among.nearest())?;
         Ok(found.map(|found| NearestObstacle { found, asked }))
     }
@@ -304,9 +304,9 @@ impl Obstacles {
         body: &Bound<'_, PyAny>,
         length: f64,
         pose: Option<&Bound<'_, PyAny>>,
-        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<NearbyObstacles> {
-        let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
+        let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
         let (found, asked) = self.ask(py, (body, at), ignore, |among| among.within(length))?;
         Ok(NearbyObstacles { found, length, asked })
     }
@@ -339,9 +339,9 @@ impl Obstacles {
         pose: Option<&Bound<'_, PyAny>>,
         before: Option<f64>,
         keep: f64,
-        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<ObstacleClearance> {
-        let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
+        let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, keep);
@@ -370,10 +370,10 @@ impl Obstacles {
         py: Python<'py>,
         body: &Bound<'py, PyAny>,
         poses: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (body, poses) = (Piece::of(body, "body")?, self::poses(poses)?);
+        let (body, poses) = (Piece::from_python(body, "body")?, read_poses(poses)?);
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, |_, a| a.nearest())?;
         let column = |of: fn(&colltrans::Nearest) -> f64| -> Vec<f64> {
             found.iter().map(|n| n.as_ref().map_or(f64::INFINITY, of)).collect()
@@ -381,7 +381,7 @@ impl Obstacles {
         let points = |of: fn(&colltrans::AnyDistance) -> DVec3| {
             let point = |n: &colltrans::Nearest| of(&n.distance).to_array();
             let all = found.iter().map(|n| n.as_ref().map_or([f64::NAN; 3], point));
-            vectors(py, all.collect())
+            vector_table(py, all.collect())
         };
         let id = |n: &Option<colltrans::Nearest>| n.map_or(-1, |n| n.obstacle.0 as i64);
         let ids: Vec<i64> = found.iter().map(id).collect();
@@ -422,16 +422,16 @@ impl Obstacles {
         poses: &Bound<'py, PyAny>,
         before: Option<f64>,
         keep: f64,
-        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (body, poses) = (Piece::of(body, "body")?, self::poses(poses)?);
+        let (body, poses) = (Piece::from_python(body, "body")?, read_poses(poses)?);
         let one = vector(directions, "directions").map(|one| vec![one]);
         let rows = || directions.try_iter()?.map(|one| vector(&one?, "directions")).collect();
         let directions: Vec<DVec3> = one.or_else(|_| rows())?;
         if directions.len() != 1 && directions.len() != poses.len() {
             let what = format!("{} for {} poses", directions.len(), poses.len());
-            return Err(input("directions", what));
+            return Err(input_error("directions", what));
         }
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |k: usize, among: &Among<'_>| {
@@ -474,7 +474,7 @@ impl Obstacles {
 
     /// Returns the stored body of a Python object, which is converted once.
     fn body(&self, body: &Bound<'_, PyAny>) -> PyResult<AnyBody> {
-        let piece = Piece::of(body, "body")?;
+        let piece = Piece::from_python(body, "body")?;
         let mut bodies = lock(&self.bodies);
         let (_, kept) = bodies.entry(body.as_ptr() as usize).or_insert_with(|| {
             let kept = match &piece {
@@ -488,6 +488,6 @@ impl Obstacles {
 }
 
 /// Reads the numbers of obstacles.
-fn numbers(of: &Bound<'_, PyAny>) -> PyResult<HashSet<u64>> {
+fn obstacle_numbers(of: &Bound<'_, PyAny>) -> PyResult<HashSet<u64>> {
     of.try_iter()?.map(|one| one?.extract()).collect()
 }

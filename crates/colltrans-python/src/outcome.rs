@@ -39,7 +39,7 @@ getters!(Contact, |it| {
         Ok(row(py, points.on_moving))
     };
     /// Features: The vertex, edge or face of each body in the contact plane.
-    features: PyResult<Features> = it.query.get().with(|cast| Features::of(&it.contact, cast));
+    features: PyResult<Features> = it.query.get().with(|cast| Features::from_contact(&it.contact, cast));
     /// Certificate: Both bounds with their proofs.
     certificate(py): Certificate =
         Certificate { proof: it.contact.certificate, query: it.query.clone_ref(py) };
@@ -159,7 +159,7 @@ getters!(ContactRange, |it| {
             Range::Grazing { last, .. } => Outcome::Grazing(last),
             Range::Separated(separated) => Outcome::Separated(separated),
         };
-        LastContact::of(py, last, &it.query)
+        LastContact::from_outcome(py, last, &it.query)
     };
 });
 
@@ -185,7 +185,7 @@ match_args!(LastContact("translation", "normal", "point"));
 
 impl LastContact {
     /// Builds a last contact from the outcome of the reversed query.
-    pub(crate) fn of(py: Python<'_>, found: Outcome, query: &Py<Cast>) -> PyResult<Self> {
+    pub(crate) fn from_outcome(py: Python<'_>, found: Outcome, query: &Py<Cast>) -> PyResult<Self> {
         let turned = Py::new(py, query.get().reversed(py))?;
         Ok(Self { found, query: query.clone_ref(py), turned })
     }
@@ -217,7 +217,7 @@ getters!(LastContact, |it| {
     /// Features: The vertex, edge or face of each body in the contact plane.
     features: PyResult<Features> = {
         let contact = it.contact()?;
-        it.turned.get().with(|cast| Features::of(contact, cast))
+        it.turned.get().with(|cast| Features::from_contact(contact, cast))
     };
     /// Cast: The query.
     query(py): Py<Cast> = it.query.clone_ref(py);
@@ -234,7 +234,7 @@ impl LastContact {
 
     #[staticmethod]
     fn _of(py: Python<'_>, query: Py<Cast>, text: &str) -> PyResult<Self> {
-        Self::of(py, read(text)?, &query)
+        Self::from_outcome(py, read(text)?, &query)
     }
 
     fn __repr__(&self) -> PyResult<String> {

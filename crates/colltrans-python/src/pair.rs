@@ -9,7 +9,7 @@ use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, html, show};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
-use crate::solid_cast::{patiently, placed_bodies};
+use crate::solid_cast::{placed_bodies, run_patiently};
 
 /// Two bodies at fixed poses, as a value: query their distance or the depth of their overlap.
 ///
@@ -47,7 +47,7 @@ pub(crate) enum Of<C, S> {
 type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
 
 /// The pair of the library.
-pub(crate) type Asked<'a> = Of<colltrans::Pair<'a>, colltrans::Pair<'a, Solid>>;
+pub(crate) type AnyPair<'a> = Of<colltrans::Pair<'a>, colltrans::Pair<'a, Solid>>;
 
 impl Pair {
     /// Returns the dents of the two meshes, if these are convex only within the tolerance.
@@ -55,19 +55,19 @@ impl Pair {
         Dents::of(self.bodies.each_ref().map(Piece::dent))
     }
 
-    pub(crate) fn of(
+    pub(crate) fn from_arguments(
         moving: &Bound<'_, PyAny>,
         fixed: &Bound<'_, PyAny>,
         poses: [Option<&Bound<'_, PyAny>>; 2],
     ) -> PyResult<Self> {
         Ok(Self {
-            bodies: [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?],
+            bodies: [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?],
             poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
         })
     }
 
     /// Builds the pair of the library.
-    pub(crate) fn asked(&self) -> PyResult<Asked<'_>> {
+    pub(crate) fn asked(&self) -> PyResult<AnyPair<'_>> {
         let [at, to] = self.poses;
         let pair = if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
             let (p, q): (&ConvexPolyhedron, &ConvexPolyhedron) = (&p.get().0, &q.get().0);
@@ -84,7 +84,7 @@ impl Pair {
     pub(crate) fn ask<T: Send + 'static>(
         slf: &Bound<'_, Self>,
         is_long: bool,
-        question: impl FnOnce(&Asked<'_>) -> Result<T, QueryError> + Send + 'static,
+        question: impl FnOnce(&AnyPair<'_>) -> Result<T, QueryError> + Send + 'static,
     ) -> PyResult<T> {
         let query = slf.clone().unbind();
         let work = move || {
@@ -97,7 +97,7 @@ impl Pair {
         match &slf.get().bodies {
             [Piece::Convex(_), Piece::Convex(_)] if !is_long => work(),
             [Piece::Convex(_), Piece::Convex(_)] => slf.py().detach(work),
-            bodies => patiently(slf.py(), bodies, work),
+            bodies => run_patiently(slf.py(), bodies, work),
         }
     }
 
@@ -131,7 +131,7 @@ impl Pair {
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let query = Self::of(moving, fixed, [moving_pose, fixed_pose])?;
+        let query = Self::from_arguments(moving, fixed, [moving_pose, fixed_pose])?;
         query.asked()?;
         Ok(query)
     }

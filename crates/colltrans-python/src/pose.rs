@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PySequence;
 
 use crate::arrays::{Numbers, Shape, Vector, numbers, plain_numbers, row, table};
-use crate::errors::{OrRaise, input, warn_of_rounded_pose};
+use crate::errors::{OrRaise, input_error, warn_of_rounded_pose};
 use crate::frozen::getters;
 
 /// A rigid placement of a body in the world: ``x_world = R @ x_body + t``.
@@ -99,7 +99,7 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
     if let Ok(pose) = of.cast::<Pose>() {
         return Ok(pose.get().0);
     }
-    of_bare(of.py(), &bare_numbers(of, name)?, name)
+    pose_from_bare(of.py(), &bare_numbers(of, name)?, name)
 }
 
 /// The numbers of an argument that is not a [`Pose`].
@@ -123,10 +123,10 @@ pub(crate) fn bare_numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Bare> 
 }
 
 /// Builds a pose from three or seven numbers or from a matrix.
-pub(crate) fn of_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<colltrans::Pose> {
+pub(crate) fn pose_from_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<colltrans::Pose> {
     let found = match bare {
         Bare::Numbers(found) => found,
-        Bare::Matrix(found) => return of_matrix(py, found, true, name),
+        Bare::Matrix(found) => return pose_from_matrix(py, found, true, name),
     };
     let [x, y, z, ..] = found.values;
     let translation = DVec3::new(x, y, z);
@@ -136,15 +136,15 @@ pub(crate) fn of_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<collt
             let [_, _, _, x, y, z, w, ..] = found.values;
             let rotation = DQuat::from_xyzw(x, y, z, w);
             let rounded = colltrans::Pose::from_rounded(rotation, translation).or_raise()?;
-            reported(py, rounded, name)
+            warn_if_rounded(py, rounded, name)
         }
-        _ => of_matrix(py, found, false, name),
+        _ => pose_from_matrix(py, found, false, name),
     }
 }
 
 /// Builds a pose from a matrix with three or four rows. A matrix `(3, 3)` is accepted if `rotation_alone` is
 /// set.
-fn of_matrix(
+fn pose_from_matrix(
     py: Python<'_>,
     found: &Numbers,
     rotation_alone: bool,
@@ -155,7 +155,7 @@ fn of_matrix(
         Shape::Table(3, 4) => (4, DVec3::new(v[3], v[7], v[11])),
         Shape::Table(4, 4) if v[12..] == [0.0, 0.0, 0.0, 1.0] => (4, DVec3::new(v[3], v[7], v[11])),
         Shape::Table(4, 4) => {
-            return Err(input(
+            return Err(input_error(
                 name,
                 format_args!("the last row is {:?}, not 0, 0, 0, 1", &v[12..]),
             ));
@@ -164,17 +164,17 @@ fn of_matrix(
         shape => {
             let shape = shape.text();
             let what = format_args!("an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4)");
-            return Err(input(name, what));
+            return Err(input_error(name, what));
         }
     };
     let column = |j: usize| DVec3::new(v[j], v[columns + j], v[2 * columns + j]);
     let matrix = DMat3::from_cols(column(0), column(1), column(2));
     let rounded = colltrans::Pose::from_rounded_matrix(matrix, translation).or_raise()?;
-    reported(py, rounded, name)
+    warn_if_rounded(py, rounded, name)
 }
 
 /// Returns the pose, and warns if its rotation was replaced by the nearest one.
-fn reported(
+fn warn_if_rounded(
     py: Python<'_>,
     (pose, defect): (colltrans::Pose, Option<f64>),
     name: &str,
@@ -190,7 +190,7 @@ fn refuse_list_of_poses(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
         return Ok(());
     }
     let count = list.len()?;
-    Err(input(
+    Err(input_error(
         name,
         format_args!(
             "a list of {count} poses, where one is expected; functions in bulk (cast_many, \

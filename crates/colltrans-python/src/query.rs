@@ -78,7 +78,7 @@ impl Cast {
     }
 
     /// Builds a query without checking it.
-    pub(crate) fn of(arguments: Arguments<'_, '_>) -> PyResult<Self> {
+    pub(crate) fn from_arguments(arguments: Arguments<'_, '_>) -> PyResult<Self> {
         let Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver } =
             arguments;
         Ok(Self {
@@ -171,8 +171,15 @@ impl Cast {
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
         let (moving, fixed) = (&moving.0, &fixed.0);
-        let query =
-            Self::of(Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver })?;
+        let query = Self::from_arguments(Arguments {
+            moving,
+            fixed,
+            direction,
+            poses,
+            graze_tolerance,
+            keep,
+            solver,
+        })?;
         query.with(|_| ())?;
         Ok(query)
     }

@@ -17,7 +17,7 @@ use crate::solid_cast::SolidCast;
 use crate::solver::options_of;
 
 /// Runs a query and converts its answer to a Python object.
-fn answered<'py, A: Answer<Query = Cast>>(
+fn run_query<'py, A: Answer<Query = Cast>>(
     query: &Bound<'py, Cast>,
     question: impl FnOnce(&colltrans::Cast<'_>) -> Result<A, QueryError> + Send,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -28,27 +28,27 @@ fn answered<'py, A: Answer<Query = Cast>>(
 impl Cast {
     /// Computes the translation at which the bodies first meet; see :func:`cast`.
     fn first_contact<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        answered(slf, |cast| cast.first_contact())
+        run_query(slf, |cast| cast.first_contact())
     }
 
     /// Computes the translations at which the bodies first and last meet; see :func:`contact_range`.
     fn contact_range<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        answered(slf, |cast| cast.contact_range())
+        run_query(slf, |cast| cast.contact_range())
     }
 
     /// Computes how far the moving body can move from its pose; see :func:`clearance`.
     fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        answered(slf, |cast| cast.clearance())
+        run_query(slf, |cast| cast.clearance())
     }
 
     /// Computes how far the moving body must go back until the overlap ends; see :func:`directional_depth`.
     fn directional_depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        answered(slf, |cast| cast.directional_depth())
+        run_query(slf, |cast| cast.directional_depth())
     }
 
     /// Checks whether the bodies meet at their poses; see :func:`intersects`.
     fn intersects<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        answered(slf, |cast| cast.intersects())
+        run_query(slf, |cast| cast.intersects())
     }
 
     /// Checks a proof with the two bodies alone, without a search.
@@ -221,7 +221,7 @@ macro_rules! question {
             let (moving, fixed) = (&moving.0, &fixed.0);
             let asked =
                 Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
-            answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask())
+            run_query(&Bound::new(py, Cast::from_arguments(asked)?)?, |cast| cast.$ask())
         }
     };
 }
@@ -258,7 +258,7 @@ macro_rules! question_of_any {
                 let graze_tolerance = graze_tolerance.unwrap_or_default();
                 let asked =
                     Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
-                return answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask());
+                return run_query(&Bound::new(py, Cast::from_arguments(asked)?)?, |cast| cast.$ask());
             }
             if graze_tolerance.is_some() || options_of(solver)?.solver != Solver::Auto {
                 return Err(error("QueryError", FOR_CONVEX));
@@ -480,7 +480,7 @@ pub(crate) fn distance<'py>(
     moving_pose: Option<&Bound<'py, PyAny>>,
     fixed_pose: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    distance_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?)
+    distance_of(&Bound::new(py, Pair::from_arguments(moving, fixed, [moving_pose, fixed_pose])?)?)
 }
 
 /// Computes how deep two bodies overlap: the shortest translation, over all directions, that separates them.
@@ -513,7 +513,7 @@ pub(crate) fn depth<'py>(
     moving_pose: Option<&Bound<'py, PyAny>>,
     fixed_pose: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    depth_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?)
+    depth_of(&Bound::new(py, Pair::from_arguments(moving, fixed, [moving_pose, fixed_pose])?)?)
 }
 
 /// Checks whether two bodies at fixed poses are closer than a length. The search ends when the comparison is
@@ -553,5 +553,8 @@ pub(crate) fn within<'py>(
     moving_pose: Option<&Bound<'py, PyAny>>,
     fixed_pose: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    within_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?, length)
+    within_of(
+        &Bound::new(py, Pair::from_arguments(moving, fixed, [moving_pose, fixed_pose])?)?,
+        length,
+    )
 }

@@ -120,40 +120,40 @@ impl<'a> Repeats<'a> {
 }
 
 /// The method that answers a row.
-pub(crate) enum By<'m, 'r, 'a> {
+pub(crate) enum RowAnswerer<'m, 'r, 'a> {
     Cast,
     Rotations(&'m FixedRotations<'a>),
     Approach(&'m Approach<'r, 'a>),
 }
 
 /// The groups, with an approach map for each group that has a single direction.
-pub(crate) struct Answerers<'r, 'a> {
+pub(crate) struct RowAnswerers<'r, 'a> {
     repeats: &'r Repeats<'a>,
     maps: Vec<OnceLock<Option<Approach<'r, 'a>>>>,
 }
 
-impl<'r, 'a> Answerers<'r, 'a> {
-    pub(crate) fn of(repeats: &'r Repeats<'a>) -> Self {
+impl<'r, 'a> RowAnswerers<'r, 'a> {
+    pub(crate) fn new(repeats: &'r Repeats<'a>) -> Self {
         Self { repeats, maps: repeats.groups.iter().map(|_| OnceLock::new()).collect() }
     }
 
-    pub(crate) fn of_row(&self, row: usize) -> By<'_, 'r, 'a> {
+    pub(crate) fn for_row(&self, row: usize) -> RowAnswerer<'_, 'r, 'a> {
         let Some(which) = self.repeats.of_row.get(row).filter(|which| **which != NONE) else {
-            return By::Cast;
+            return RowAnswerer::Cast;
         };
         let group = &self.repeats.groups[*which as usize];
-        let Some(poses) = group.poses else { return By::Cast };
+        let Some(poses) = group.poses else { return RowAnswerer::Cast };
         let [moving, fixed] = group.bodies;
         let rotations = group
             .rotations
             .get_or_init(|| FixedRotations::new(moving.at(poses[0]), fixed.at(poses[1])));
         let map = self.maps[*which as usize]
             .get_or_init(|| group.direction.and_then(|along| rotations.along(along).ok()));
-        map.as_ref().map_or(By::Rotations(rotations), By::Approach)
+        map.as_ref().map_or(RowAnswerer::Rotations(rotations), RowAnswerer::Approach)
     }
 }
 
-impl<'a> By<'_, '_, 'a> {
+impl<'a> RowAnswerer<'_, '_, 'a> {
     pub(crate) fn first_contact(&self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
         match self {
             Self::Cast => cast.first_contact(),

@@ -19,7 +19,7 @@ use crate::answer::save;
 use crate::arrays::{Vector, coordinates, row, table};
 use crate::bulk::{Answered, Plan};
 use crate::columns::{self, Row};
-use crate::errors::{OrRaise, error, input};
+use crate::errors::{OrRaise, error, input_error};
 use crate::frozen::{
     Options, Reduced, Shown, getters, match_args, plain, read, reduced, show, written,
 };
@@ -41,7 +41,7 @@ pub(crate) struct Robot {
 }
 
 /// A query for one path or many: the robot in its scene, and the minimum gap.
-struct Asked {
+struct PathRequest {
     cell: Cell,
     keep: f64,
 }
@@ -67,32 +67,33 @@ impl Robot {
         scene: Option<&Bound<'_, PyAny>>,
         ignore: &[[String; 2]],
         keep: f64,
-    ) -> PyResult<Asked> {
+    ) -> PyResult<PathRequest> {
         let (mut bodies, mut dents) = (Vec::new(), Vec::new());
         if let Some(scene) = scene {
             let named = PyDict::new(scene.py());
             let Ok(mapping) = scene.cast() else {
                 let kind = scene.get_type().name()?;
                 let what = "a dict of names to bodies, such as {\"wire\": body}";
-                return Err(input("scene", format_args!("{what}, not a {kind}")));
+                return Err(input_error("scene", format_args!("{what}, not a {kind}")));
             };
             named.update(mapping)?;
             for (name, body) in named {
                 let name: String = name.extract()?;
-                let piece = Piece::of(&body, &format!("scene[{name:?}]"))?;
+                let piece = Piece::from_python(&body, &format!("scene[{name:?}]"))?;
                 dents.extend(piece.dent().map(|depth| (name.clone(), depth)));
                 bodies.push((name, any_body(&piece)));
             }
         }
         let cell = Cell::new(self.arm.clone(), bodies, self.listed.as_deref());
-        let cell = cell.map_err(|what| input("srdf", what))?;
-        let cell = cell.with_dents(dents).ignoring(ignore).map_err(|what| input("ignore", what))?;
-        let cell = cell.with_a_pair().map_err(|what| input("scene", what))?;
-        Ok(Asked { cell, keep })
+        let cell = cell.map_err(|what| input_error("srdf", what))?;
+        let cell =
+            cell.with_dents(dents).ignoring(ignore).map_err(|what| input_error("ignore", what))?;
+        let cell = cell.with_a_pair().map_err(|what| input_error("scene", what))?;
+        Ok(PathRequest { cell, keep })
     }
 }
 
-impl Asked {
+impl PathRequest {
     fn path(&self, rows: &Rows) -> Result<(JointPath, Vec<String>), String> {
         let path = self.cell.robot().path(&rows.table, &rows.rest);
         path.map_err(|what| format!("{}{what}", rows.place))
@@ -112,7 +113,7 @@ impl Asked {
 
 impl Rows {
     /// Reads the rows of a file or an array.
-    fn of(
+    fn read(
         path: &Bound<'_, PyAny>,
         columns: Option<Vec<String>>,
         times: Option<&Bound<'_, PyAny>>,
@@ -124,7 +125,7 @@ impl Rows {
             return Ok(Self { place, table, rest });
         }
         if columns.is_some() || times.is_some() {
-            return Err(input(
+            return Err(input_error(
                 "path",
                 "columns and times are given, but a path file has its own; drop them",
             ));
@@ -132,9 +133,9 @@ impl Rows {
         let file: PathBuf = path.extract()?;
         let place = file.display().to_string();
         let text = colltrans_mesh::file::text(&file)
-            .map_err(|what| input("path", format_args!("cannot read {place}: {what}")))?;
-        let table =
-            Table::parse(&text).map_err(|what| input("path", format_args!("{place}: {what}")))?;
+            .map_err(|what| input_error("path", format_args!("cannot read {place}: {what}")))?;
+        let table = Table::parse(&text)
+            .map_err(|what| input_error("path", format_args!("{place}: {what}")))?;
         Ok(Self { place: format!("{place}: "), table, rest })
     }
 }
@@ -148,21 +149,21 @@ fn table_of(
     let floats = rows.py().import("colltrans._arrays")?.getattr("floats")?;
     let array = floats.call1((rows, "path"))?;
     let shape = array.getattr("shape")?;
-    let array: PyReadonlyArray2<'_, f64> = array
-        .extract()
-        .map_err(|_| input("path", format_args!("an array of shape {shape}, not (N, joints)")))?;
+    let array: PyReadonlyArray2<'_, f64> = array.extract().map_err(|_| {
+        input_error("path", format_args!("an array of shape {shape}, not (N, joints)"))
+    })?;
     let rows: Vec<Vec<f64>> = array.as_array().outer_iter().map(|row| row.to_vec()).collect();
     if let Some(names) = &names
         && let Some(row) = rows.first().filter(|row| row.len() != names.len())
     {
         let what = format!("{} names for rows of {} values", names.len(), row.len());
-        return Err(input("columns", what));
+        return Err(input_error("columns", what));
     }
     let times = times
         .map(|times| {
             let array = floats.call1((times, "times"))?;
             let array: PyReadonlyArray1<'_, f64> =
-                array.extract().map_err(|_| input("times", "not an array of shape (N,)"))?;
+                array.extract().map_err(|_| input_error("times", "not an array of shape (N,)"))?;
             Ok::<_, PyErr>(array.as_array().to_vec())
         })
         .transpose()?;
@@ -242,8 +243,8 @@ impl Robot {
             let listed = srdf.as_deref().map(read::disabled).transpose().or_raise()?;
             // Checks that the names in the SRDF file are links of this robot.
             arm.pairs(listed.as_deref()).map_err(|what| match &srdf {
-                Some(file) => input("srdf", format_args!("{}: {what}", file.display())),
-                None => input("srdf", what),
+                Some(file) => input_error("srdf", format_args!("{}: {what}", file.display())),
+                None => input_error("srdf", what),
             })?;
             Ok(Self { arm, listed })
         })
@@ -297,15 +298,15 @@ impl Robot {
         times: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PathAnswer> {
         let asked = Arc::new(self.asked(scene, &ignore, keep)?);
-        let rows = Rows::of(path, columns, times, joints)?;
-        let (path, said) = asked.path(&rows).map_err(|what| input("path", what))?;
+        let rows = Rows::read(path, columns, times, joints)?;
+        let (path, said) = asked.path(&rows).map_err(|what| input_error("path", what))?;
         let notes = [asked.cell.notes(), &said].concat();
-        let found = answered(py, || asked.first_contact(&path))?;
+        let found = run_interruptible(py, || asked.first_contact(&path))?;
         let (found, mut record) = found.map_err(|what| error("QueryError", what))?;
         record.hulls = asked.cell.hulls();
         record.dents.clone_from(asked.cell.dents());
         record.notes = rows.table.straight().into_iter().collect();
-        let (end, question) = (end_of(&path), Question::Asked(asked, path));
+        let (end, question) = (end_of(&path), Question::Request(asked, path));
         Ok(PathAnswer { question, end, found, record, notes })
     }
 
@@ -317,7 +318,7 @@ impl Robot {
 
 /// Runs work on a thread of its own and polls for signals. If a signal handler raises, the exception is
 /// returned after the work ends.
-fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let done = Mutex::new(None);
     py.detach(|| {
         std::thread::scope(|scope| {
@@ -364,7 +365,7 @@ pub(crate) struct PathAnswer {
 
 /// The query of an answer: of a robot, or restored from a pickle.
 enum Question {
-    Asked(Arc<Asked>, JointPath),
+    Request(Arc<PathRequest>, JointPath),
     Saved(Box<ProofFile>),
 }
 
@@ -375,7 +376,7 @@ impl Question {
         of: impl FnOnce(&PathCast<'_>, &[String]) -> Result<T, String>,
     ) -> Result<T, String> {
         match self {
-            Self::Asked(asked, path) => of(&asked.cast(path)?, asked.cell.names()),
+            Self::Request(asked, path) => of(&asked.cast(path)?, asked.cell.names()),
             Self::Saved(file) => {
                 let (cast, names) = file.path().ok_or(NO_PATH)?;
                 of(&cast, &names)
@@ -402,7 +403,7 @@ fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
 type NamedMesh<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 
 /// Returns the vertices of a body in its frame, and its triangles. Faces with more vertices become fans.
-fn mesh(body: AnyPlaced<'_>) -> (&[DVec3], Vec<[u32; 3]>) {
+fn mesh_of(body: AnyPlaced<'_>) -> (&[DVec3], Vec<[u32; 3]>) {
     match body {
         AnyPlaced::Solid(placed) => (placed.body.vertices(), placed.body.triangles().to_vec()),
         AnyPlaced::Convex(placed) => {
@@ -435,8 +436,8 @@ impl PathAnswer {
     }
 
     /// Runs the query again and returns its answer and the file with its proof.
-    fn saved(&self, py: Python<'_>) -> PyResult<(PathOutcome, ProofFile)> {
-        let told = answered(py, || {
+    fn outcome_and_proof(&self, py: Python<'_>) -> PyResult<(PathOutcome, ProofFile)> {
+        let told = run_interruptible(py, || {
             self.question.with(|cast, names| {
                 ProofFile::with_path(cast, names).map_err(|what| what.to_string())
             })
@@ -489,7 +490,7 @@ impl PathAnswer {
     /// CertificateError
     ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
-        let checked = answered(py, || {
+        let checked = run_interruptible(py, || {
             self.question
                 .with(|cast, _| cast.verify(self.found.proof()).map_err(|what| what.to_string()))
         })?;
@@ -505,7 +506,7 @@ impl PathAnswer {
     /// -------
     /// str
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(self.saved(py)?.1.to_json())
+        Ok(self.outcome_and_proof(py)?.1.to_json())
     }
 
     /// Writes :meth:`proof_json` to a file.
@@ -555,7 +556,7 @@ impl PathAnswer {
         let is_one =
             (0.0..=1.0).contains(&share) && (row < self.end.1 || (row, share) == (self.end.1, 0.0));
         if !is_one {
-            return Err(input(
+            return Err(input_error(
                 "place",
                 format_args!("a path of {} rows has no {row}, {share}", self.end.1 + 1),
             ));
@@ -564,7 +565,7 @@ impl PathAnswer {
             let place = Place { row, share };
             let all = cast.bodies().zip(names).enumerate();
             let placed = |(k, (body, name)): (usize, (AnyPlaced<'_>, &String))| {
-                let ((vertices, triangles), pose) = (mesh(body), cast.pose(k, place));
+                let ((vertices, triangles), pose) = (mesh_of(body), cast.pose(k, place));
                 let vertices = vertices.iter().map(|v| pose.transform_point(*v).to_array());
                 (name.clone(), vertices.collect::<Vec<_>>(), triangles)
             };
@@ -588,7 +589,7 @@ impl PathAnswer {
         &self,
         py: Python<'py>,
     ) -> PyResult<Reduced<'py, (String, String, Vec<String>)>> {
-        let (mut found, file) = self.saved(py)?;
+        let (mut found, file) = self.outcome_and_proof(py)?;
         let record = file.path().map(|(cast, names)| PathRecord::of(&found, &cast, &names));
         if record.is_none_or(|record| record != self.record) {
             return Err(error("CaseError", "the saved proof file restores other bodies"));
@@ -644,16 +645,16 @@ fn row_of(outcome: &PathOutcome) -> Row {
     };
     let point = of.points.map(|points| points[0]);
     let row = Row { outcome: code, ..Row::NONE }
-        .with(columns::AT_LEAST, of.lower)
-        .with(columns::AT_MOST, if of.upper.is_finite() { of.upper } else { f64::NAN })
-        .with(columns::ROW, of.place.row as f64)
-        .with(columns::SHARE, of.place.share)
-        .with(columns::FIRST, of.pair[0] as f64)
-        .with(columns::SECOND, of.pair[1] as f64);
+        .with_number(columns::AT_LEAST, of.lower)
+        .with_number(columns::AT_MOST, if of.upper.is_finite() { of.upper } else { f64::NAN })
+        .with_number(columns::ROW, of.place.row as f64)
+        .with_number(columns::SHARE, of.place.share)
+        .with_number(columns::FIRST, of.pair[0] as f64)
+        .with_number(columns::SECOND, of.pair[1] as f64);
     [(columns::NORMAL, of.normal), (columns::POINT, point)]
         .into_iter()
         .fold(row, |row, (k, vector)| {
-            vector.map_or(row, |vector| row.along(k, coordinates(vector)))
+            vector.map_or(row, |vector| row.with_vector(k, coordinates(vector)))
         })
 }
 
@@ -676,7 +677,7 @@ pub(crate) fn ask_paths<'py>(
     let asked = robot.get().asked(scene, &ignore, keep)?;
     let rows = paths.iter().enumerate().map(|(k, path)| {
         let times = times.as_ref().map(|all| &all[k]);
-        Rows::of(path, columns.clone(), times, joints.clone())
+        Rows::read(path, columns.clone(), times, joints.clone())
     });
     let rows: Vec<Rows> = rows.collect::<PyResult<_>>()?;
     let plan = Plan {

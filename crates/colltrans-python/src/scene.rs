@@ -12,17 +12,17 @@ use crate::solid::Piece;
 
 /// Obstacles behind a lock. Callers release the interpreter's lock before they wait for it.
 #[derive(Default)]
-pub(crate) struct Scene(RwLock<Kept>);
+pub(crate) struct Scene(RwLock<SceneState>);
 
 /// The obstacles, and the number of their changes.
 #[derive(Default)]
-pub(crate) struct Kept {
+pub(crate) struct SceneState {
     pub(crate) obstacles: colltrans::Obstacles,
     pub(crate) changes: u64,
 }
 
 impl Scene {
-    pub(crate) fn read(&self) -> RwLockReadGuard<'_, Kept> {
+    pub(crate) fn read(&self) -> RwLockReadGuard<'_, SceneState> {
         self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -34,7 +34,7 @@ impl Scene {
     }
 }
 
-impl Kept {
+impl SceneState {
     /// Runs a query of a body among all obstacles that are not ignored.
     pub(crate) fn ask<T, E: From<QueryError>>(
         &self,
@@ -56,13 +56,13 @@ fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
 }
 
 /// Returns the scene query with a minimum gap.
-pub(crate) fn keeping<'a>(among: &Among<'a>, keep: f64) -> Result<Among<'a>, QueryError> {
+pub(crate) fn with_min_gap<'a>(among: &Among<'a>, keep: f64) -> Result<Among<'a>, QueryError> {
     let keeping = among.with_options(Options::default().with_keep(keep))?;
     Ok(keeping.with_solid_options(SolidOptions::default().with_keep(keep)))
 }
 
 /// The query of an answer: a body among obstacles.
-pub(crate) struct Asked {
+pub(crate) struct SceneRequest {
     pub(crate) scene: Arc<Scene>,
     /// Number of changes of the scene before the query.
     pub(crate) changes: u64,
@@ -71,7 +71,7 @@ pub(crate) struct Asked {
     pub(crate) ignore: HashSet<u64>,
 }
 
-impl Asked {
+impl SceneRequest {
     /// Builds the proof of an answer by running the query again. Fails if the obstacles have changed since.
     pub(crate) fn proof(
         &self,

@@ -12,7 +12,7 @@ use crate::answer::save;
 use crate::arrays::{Vector, row};
 use crate::errors::OrRaise;
 use crate::frozen::getters;
-use crate::scene::{Asked, keeping};
+use crate::scene::{SceneRequest, with_min_gap};
 
 /// Defines the methods for the proof, which all answers share.
 macro_rules! proven {
@@ -66,7 +66,7 @@ macro_rules! proven {
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct NearestObstacle {
     pub(crate) found: colltrans::Nearest,
-    pub(crate) asked: Asked,
+    pub(crate) asked: SceneRequest,
 }
 
 proven!(NearestObstacle);
@@ -106,7 +106,7 @@ impl NearestObstacle {
 pub(crate) struct NearbyObstacles {
     pub(crate) found: Nearby,
     pub(crate) length: f64,
-    pub(crate) asked: Asked,
+    pub(crate) asked: SceneRequest,
 }
 
 proven!(NearbyObstacles);
@@ -161,7 +161,7 @@ pub(crate) struct ObstacleClearance {
     pub(crate) found: ClearanceAmong,
     pub(crate) direction: DVec3,
     pub(crate) keep: f64,
-    pub(crate) asked: Asked,
+    pub(crate) asked: SceneRequest,
 }
 
 proven!(ObstacleClearance);
@@ -169,7 +169,8 @@ proven!(ObstacleClearance);
 impl ObstacleClearance {
     fn proof(&self, py: Python<'_>) -> PyResult<ProofFile> {
         let of = |among: &Among<'_>| {
-            ProofFile::of_scene_clearance(&keeping(among, self.keep)?, self.direction).map(Some)
+            ProofFile::of_scene_clearance(&with_min_gap(among, self.keep)?, self.direction)
+                .map(Some)
         };
         self.asked.proof(py, of)
     }

@@ -16,10 +16,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{maker, refuse_mesh};
+use crate::arguments::{loader_hint, refuse_mesh};
 use crate::arrays::{self, Indices, faces, ids, points, read_only, table};
 use crate::body::ConvexPolyhedron;
-use crate::errors::{OrRaise, input};
+use crate::errors::{OrRaise, input_error};
 use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::ShrinkReport;
 
@@ -39,7 +39,7 @@ pub(crate) enum Piece {
 
 impl Piece {
     /// Reads the body of the argument called `name`.
-    pub(crate) fn of(thing: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
+    pub(crate) fn from_python(thing: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
         if let Ok(body) = thing.cast::<ConvexPolyhedron>() {
             return Ok(Self::Convex(body.clone().unbind()));
         }
@@ -49,7 +49,7 @@ impl Piece {
         let what = thing.get_type().name()?;
         let message = format!(
             "{name}: neither a ConvexPolyhedron nor a Solid, but {what}; {}",
-            maker(thing)?
+            loader_hint(thing)?
         );
         Err(PyTypeError::new_err(message))
     }
@@ -144,7 +144,11 @@ impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
              distance(moving, fixed) take solids"
                 .into()
         } else {
-            format!("{} is not a ConvexPolyhedron; {}", given.get_type().name()?, maker(&given)?)
+            format!(
+                "{} is not a ConvexPolyhedron; {}",
+                given.get_type().name()?,
+                loader_hint(&given)?
+            )
         };
         Err(PyTypeError::new_err(message))
     }
@@ -184,7 +188,7 @@ pub(crate) struct Solid {
 }
 
 /// Vertices, faces, whether shells may be open, scale, precision of the file, notes.
-type OfMesh<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyAny>>, bool, f64, f64, Vec<String>);
+type MeshAndReport<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyAny>>, bool, f64, f64, Vec<String>);
 
 impl Solid {
     fn of_mesh(mesh: Mesh, options: BodyOptions) -> Result<Self, Refused> {
@@ -255,7 +259,7 @@ impl Solid {
         refuse_mesh(vertices, "vertices", "Solid", "Solid.from_trimesh(mesh)")?;
         let Some(faces) = faces else {
             let what = "they are missing; ConvexPolyhedron(points) makes the hull of points alone";
-            return Err(input("faces", what));
+            return Err(input_error("faces", what));
         };
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
         let options = BodyOptions::default().with_open(open);
@@ -282,8 +286,10 @@ impl Solid {
     /// Solid(16 vertices, 24 triangles)
     #[staticmethod]
     fn from_pieces(pieces: Vec<Bound<'_, PyAny>>) -> PyResult<Self> {
-        let pieces: Vec<Piece> =
-            pieces.iter().map(|piece| Piece::of(piece, "pieces")).collect::<PyResult<_>>()?;
+        let pieces: Vec<Piece> = pieces
+            .iter()
+            .map(|piece| Piece::from_python(piece, "pieces"))
+            .collect::<PyResult<_>>()?;
         let solids: Result<Vec<_>, _> = pieces.iter().map(Piece::solid).collect();
         let solid = colltrans::Solid::from_pieces(solids.or_raise()?).or_raise()?;
         let precision = pieces.iter().map(Piece::precision).fold(0.0, f64::max);
@@ -339,7 +345,7 @@ impl Solid {
         merge_tolerance: Option<f64>,
     ) -> PyResult<Self> {
         if !scale.is_finite() || scale <= 0.0 {
-            return Err(input("scale", format_args!("{scale} is not positive")));
+            return Err(input_error("scale", format_args!("{scale} is not positive")));
         }
         let options = BodyOptions::default()
             .with_scale(scale)
@@ -416,7 +422,7 @@ impl Solid {
                 let vertices = table(py, mesh.vertices.iter().map(DVec3::to_array))?.into_any();
                 let face = |f: &Vec<u32>| f.clone().into_pyarray(py).into_any();
                 let faces: Vec<_> = mesh.faces.iter().map(face).collect();
-                let state: OfMesh<'_> =
+                let state: MeshAndReport<'_> =
                     (vertices, faces, *open, *scale, mesh.precision, self.notes.clone());
                 Ok((class.getattr("_mesh")?, state.into_pyobject(py)?))
             }

@@ -46,9 +46,9 @@ getters!(SolidContact, |it| {
     /// Feature: The feature of the moving body in contact: a vertex, a whole edge, or the whole polygon of a
     /// face.
     moving_feature: PyResult<Feature> =
-        feature(it.contact.moving_feature, &it.query.get().bodies[0]);
+        convert_feature(it.contact.moving_feature, &it.query.get().bodies[0]);
     /// Feature: The feature of the fixed body in contact.
-    fixed_feature: PyResult<Feature> = feature(it.contact.fixed_feature, &it.query.get().bodies[1]);
+    fixed_feature: PyResult<Feature> = convert_feature(it.contact.fixed_feature, &it.query.get().bodies[1]);
 });
 
 #[pymethods]
@@ -59,8 +59,8 @@ impl SolidContact {
     }
 }
 
-fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
-    Ok(Feature::of(feature, body.solid().or_raise()?))
+fn convert_feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
+    Ok(Feature::from_feature(feature, body.solid().or_raise()?))
 }
 
 /// A solid can move until it touches.
@@ -83,7 +83,7 @@ getters!(SolidBlocked, |it| {
     contact(py): SolidContact = SolidContact { contact: it.contact, query: it.query(py) };
     /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
     /// interior is not known.
-    surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
+    surfaces: PyResult<Vec<&'static str>> = surface_names(&it.query);
 });
 
 #[pymethods]
@@ -112,7 +112,7 @@ getters!(SolidFree, |it| {
     normal(py): Option<Vector<'py>> = it.free.separation.map(|s| row(py, s.normal));
     /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
     /// interior is not known.
-    surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
+    surfaces: PyResult<Vec<&'static str>> = surface_names(&it.query);
 });
 
 #[pymethods]
@@ -153,7 +153,7 @@ getters!(SolidOverlapping, |it| {
     };
     /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
     /// interior is not known.
-    surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
+    surfaces: PyResult<Vec<&'static str>> = surface_names(&it.query);
 });
 
 #[pymethods]
@@ -166,7 +166,7 @@ impl SolidOverlapping {
     }
 }
 
-fn surfaces(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
+fn surface_names(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
     let mut found = Vec::new();
     for (name, body) in ["moving", "fixed"].into_iter().zip(&query.get().bodies) {
         if !body.solid().or_raise()?.is_closed() {

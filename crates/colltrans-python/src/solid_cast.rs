@@ -97,7 +97,7 @@ impl SolidCast {
         question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T + Send + 'static,
     ) -> PyResult<T> {
         let query = slf.clone().unbind();
-        patiently(slf.py(), &slf.get().bodies, move || query.get().run(question))
+        run_patiently(slf.py(), &slf.get().bodies, move || query.get().run(question))
     }
 }
 
@@ -122,7 +122,7 @@ placed_bodies!(SolidCast);
 
 /// Runs work without the interpreter's lock. For large bodies it runs on a thread of its own; if a signal
 /// handler raises, the call returns and the thread is abandoned.
-pub(crate) fn patiently<T: Send + 'static>(
+pub(crate) fn run_patiently<T: Send + 'static>(
     py: Python<'_>,
     bodies: &[Piece; 2],
     work: impl FnOnce() -> PyResult<T> + Send + 'static,
@@ -178,7 +178,7 @@ impl SolidCast {
         let start_overlap =
             if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let cast = Self {
-            bodies: [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?],
+            bodies: [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?],
             poses: [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?],
             direction: vector(direction, "direction")?,
             options: SolidOptions::default()

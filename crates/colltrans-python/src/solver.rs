@@ -52,10 +52,11 @@ impl Cta {
     #[pyo3(signature = (*, start=None, until=None), text_signature = "(*, start='center', until='exit')")]
     fn new(start: Option<&str>, until: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let cta::Options { start: default, .. } = cta::Options::default();
-        let start = start.map_or(Ok(default), |name| name.parse::<cta::Start>().map_err(refused));
+        let start =
+            start.map_or(Ok(default), |name| name.parse::<cta::Start>().map_err(solver_error));
         let until = match until {
             None => Ok(cta::Until::default()),
-            Some(until) => until.str()?.to_str()?.parse::<cta::Until>().map_err(refused),
+            Some(until) => until.str()?.to_str()?.parse::<cta::Until>().map_err(solver_error),
         };
         Ok(Self(cta::Options::new(start?, until?)))
     }
@@ -76,7 +77,7 @@ impl Cta {
     }
 }
 
-fn refused(what: impl std::fmt::Display) -> PyErr {
+fn solver_error(what: impl std::fmt::Display) -> PyErr {
     error("QueryError", what)
 }
 

@@ -97,7 +97,10 @@ impl Tracker {
 }
 
 /// Reads the options of a tracker. Missing options have their defaults.
-fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Focus>> {
+fn tracker_focus(
+    features: Option<bool>,
+    region: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<Focus>> {
     if features.is_none() && region.is_none() {
         return Ok(None);
     }
@@ -129,7 +132,7 @@ macro_rules! questions {
             #[new]
             #[pyo3(signature = (*, features=None, region=None))]
             fn new(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-                let focus = focus(features, region)?;
+                let focus = tracker_focus(features, region)?;
                 Ok(Self { tracked: None, focus, steps: colltrans::Steps::default() })
             }
 
@@ -177,7 +180,7 @@ macro_rules! questions {
                         keep,
                         solver,
                     };
-                    let query = Bound::new(py, Cast::of(arguments)?)?;
+                    let query = Bound::new(py, Cast::from_arguments(arguments)?)?;
                     self.ask(py, query.get(), |tracker, cast| tracker.$ask(cast))?.object(&query)
                 }
             )*

@@ -11,7 +11,7 @@ use crate::errors::{OrRaise, error};
 use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
-use crate::solid_cast::{patiently, placed_bodies};
+use crate::solid_cast::{placed_bodies, run_patiently};
 
 /// A sequence of moves by which one body leaves another; see :func:`ways_out`.
 #[pyclass(frozen, module = "colltrans")]
@@ -22,15 +22,18 @@ pub(crate) struct WaysOut {
     record: WaysRecord,
 }
 
-type Placing<'a> = [Placed<'a, colltrans::Solid>; 2];
+type PlacedPair<'a> = [Placed<'a, colltrans::Solid>; 2];
 
-fn placed<'a>(bodies: &'a [Piece; 2], poses: &[colltrans::Pose; 2]) -> PyResult<Placing<'a>> {
+fn place_bodies<'a>(
+    bodies: &'a [Piece; 2],
+    poses: &[colltrans::Pose; 2],
+) -> PyResult<PlacedPair<'a>> {
     let [moving, fixed] =
         [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
     Ok([moving.at(poses[0]), fixed.at(poses[1])])
 }
 
-fn raised(what: FreeError) -> PyErr {
+fn free_error(what: FreeError) -> PyErr {
     match what {
         FreeError::NotProven(what) => error("CertificateError", what),
         what => error("QueryError", what),
@@ -66,13 +69,13 @@ impl WaysOut {
     ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
-            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             match &self.answer {
                 colltrans::ways::WaysOut::Found(way) => way.verify(&[moving, fixed]),
                 colltrans::ways::WaysOut::Proven(proof) => proof.verify(&moving, &fixed),
                 colltrans::ways::WaysOut::NotFound { .. } => Ok(()),
             }
-            .map_err(raised)
+            .map_err(free_error)
         })
     }
 
@@ -151,7 +154,7 @@ pub(crate) fn ways_out(
     if legs == 0 {
         return Err(error("InputError", "legs: 0 is out of range; accepted: at least 1"));
     }
-    let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
+    let bodies = [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
     let directions = directions.map_or_else(|| Ok(Vec::new()), |all| points(all, "directions"))?;
     let options = WayOptions::default()
@@ -161,9 +164,9 @@ pub(crate) fn ways_out(
         .with_looks(looks)
         .with_cells(cells);
     let copies = [bodies[0].copy(py), bodies[1].copy(py)];
-    patiently(py, &copies, move || {
-        let [moving, fixed] = placed(&bodies, &poses)?;
-        let answer = colltrans::ways::WaysOut::of(&moving, &fixed, &options).map_err(raised)?;
+    run_patiently(py, &copies, move || {
+        let [moving, fixed] = place_bodies(&bodies, &poses)?;
+        let answer = colltrans::ways::WaysOut::of(&moving, &fixed, &options).map_err(free_error)?;
         let record = WaysRecord::of(&answer);
         Ok(WaysOut { bodies, poses, answer, record })
     })

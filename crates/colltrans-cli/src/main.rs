@@ -54,7 +54,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 use colltrans::record::PairQuestion;
 
-use args::{Arguments, Command};
+use args::{Arguments, Command, PlacedArguments};
+use failure::Failure;
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|bug| {
@@ -66,12 +67,13 @@ fn main() -> ExitCode {
     };
     let result = match arguments.command {
         Command::Cast(arguments) => cast::run(&arguments),
-        Command::Clearance(arguments) => clearance::run(&arguments),
+        Command::Clearance(arguments) if arguments.among.is_empty() => clearance::run(&arguments),
+        Command::Clearance(arguments) => among::clearance(&arguments),
         Command::Directions(arguments) => directions::run(&arguments),
-        Command::Distance(arguments) => distance::run(&arguments, PairQuestion::Distance),
-        Command::Depth(arguments) => distance::run(&arguments, PairQuestion::Depth),
+        Command::Distance(arguments) => answer_pair(&arguments, PairQuestion::Distance),
+        Command::Depth(arguments) => answer_pair(&arguments, PairQuestion::Depth),
         Command::Within(arguments) => {
-            distance::run(&arguments.placed, PairQuestion::Within(arguments.length))
+            answer_pair(&arguments.placed, PairQuestion::Within(arguments.length))
         }
         Command::Motion(arguments) => motion::run(&arguments),
         Command::Path(arguments) => path::run(&arguments),
@@ -85,6 +87,15 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
+    }
+}
+
+/// Answers a question about two bodies without a direction, or about a body and a scene if there is one.
+fn answer_pair(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
+    if arguments.among.is_empty() {
+        distance::run(arguments, question)
+    } else {
+        among::placed(arguments, question)
     }
 }
 

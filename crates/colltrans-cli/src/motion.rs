@@ -11,14 +11,13 @@ use colltrans::{Pose, ProofFile, QueryError, Stalled};
 use crate::args::MotionArguments;
 use crate::body::Part;
 use crate::case;
-use crate::clearance::overlaps;
 use crate::driver::{AnswerOutputs, OutputTargets};
 use crate::failure::{Code, Failure, note};
 use crate::load;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::picture::{Moved, Surface, draw_motion};
 use crate::record::Line;
-use crate::report::{features, hulls, kept, line, never};
+use crate::report::{features, hulls, kept, line, never, overlaps};
 use crate::solid::{self, PartsMotion, surface_of};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {

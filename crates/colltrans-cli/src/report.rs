@@ -5,14 +5,14 @@ use std::fmt::Write as _;
 use colltrans::glam::DVec3;
 use colltrans::record::{
     Answer, CastRecord, ContactRecord, Ending, FeatureRecord, FeaturesRecord, MotionRecord,
-    Question, Record,
+    Question, Record, StartOverlapRecord,
 };
 use colltrans::{
     Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
     WhyFree,
 };
 
-use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
+use crate::numbers::{about, decade, known, known_vector, number, six_digits, unit_vector};
 use crate::record::{Hulls, Line};
 use crate::terminal::shown;
 
@@ -352,4 +352,49 @@ fn work(solver: Solver, steps: Steps) -> String {
     format!(
         "{solver}: {planar_problems} planar problems{sections}, {supports} supports, {pivots} pivots"
     )
+}
+
+/// Returns which flags let bodies move that overlap at the start.
+pub(crate) fn remedy(overlaps: &[StartOverlapRecord]) -> &'static str {
+    if overlaps.iter().all(|overlap| overlap.least_tolerance.is_some()) {
+        "--tolerance allows for it, --ignore-start-overlaps lets it pass"
+    } else {
+        "--ignore-start-overlaps lets it pass"
+    }
+}
+
+/// What overlaps what, a line each.
+pub(crate) fn overlaps(text: &mut String, overlaps: &[StartOverlapRecord], name: &str) {
+    for StartOverlapRecord { moving, fixed, least_tolerance } in overlaps {
+        let [moving, fixed] =
+            [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
+        let remedy = match least_tolerance {
+            Some(least) => format!("a tolerance of {} would part them", above(*least)),
+            None => "no tolerance would part them".into(),
+        };
+        line(text, name, &format!("{moving} in {fixed}: {remedy}"));
+    }
+}
+
+/// A few digits, and no less than the value.
+fn above(value: f64) -> String {
+    let short: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    let step: f64 = format!("1e{}", decade(value) - 3).parse().unwrap_or(0.0);
+    let rounded = if short >= value { short } else { short + step };
+    let shown: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
+    number(if shown >= value { shown } else { value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_suggested_tolerance_suffices() {
+        for value in [0.1, 0.12345, 0.999_96, 7.0, 1e-7 / 3.0, 2.0 / 3.0, 123_456.7] {
+            let shown: f64 = above(value).parse().unwrap();
+            assert!(shown >= value && shown <= value * 1.002, "{value} as {shown}");
+        }
+        assert_eq!(above(0.25), "0.25");
+    }
 }

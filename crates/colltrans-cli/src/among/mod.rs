@@ -2,7 +2,7 @@
 //! `clearance` which one the body meets first.
 
 mod scene;
-mod words;
+mod text;
 
 use std::path::PathBuf;
 use std::slice;
@@ -60,7 +60,7 @@ pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Res
         }
         let prove = || ProofFile::of_within(&among, length).map(Some);
         let told = scene.told(record, None);
-        return write_answer(targets, &told, |record| words::within(record, length), prove);
+        return write_answer(targets, &told, |record| text::within(record, length), prove);
     }
     // There is a file, and so an obstacle.
     let found = among.nearest()?.ok_or(Failure::new(Code::Input, "no obstacles"))?;
@@ -69,7 +69,7 @@ pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Res
     record.fixed = scene.name(found.obstacle);
     let prove = || ProofFile::of_nearest(&among);
     let told = scene.told(record, Some(found.obstacle));
-    write_answer(targets, &told, |record| words::nearest(record, error), prove)
+    write_answer(targets, &told, |record| text::nearest(record, error), prove)
 }
 
 /// `colltrans clearance`.
@@ -106,7 +106,7 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let is_default = arguments.tolerance.is_none();
     let graze = arguments.pair.graze_tolerance;
     let in_words =
-        |record: &_| words::clearance(record, direction, error, is_default) + &words::grazed(graze);
+        |record: &_| text::clearance(record, direction, error, is_default) + &text::grazed(graze);
     let prove = || ProofFile::of_scene_clearance(&among, direction).map(Some);
     write_answer(targets, &scene.told(record, obstacle), in_words, prove)
 }

@@ -1,13 +1,12 @@
 //! `colltrans clearance`: how far a body can move before another blocks it. Two convex meshes are asked as
 //! `cast` asks them; this is the way of all others, the parts.
 
-mod words;
+mod text;
 
 use std::path::PathBuf;
 
 use colltrans::record::Question;
 
-use crate::among;
 use crate::args::ClearanceArguments;
 use crate::cast::{Directions, Request};
 use crate::driver::{AnswerOutputs, answer_directions};
@@ -17,12 +16,8 @@ use crate::picture::draw_solids;
 use crate::progress;
 use crate::record::Line;
 use crate::solid::{self, PartsQuery};
-pub(crate) use words::{overlaps, remedy};
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
-    if !arguments.among.is_empty() {
-        return among::clearance(arguments);
-    }
     let sides = arguments.sides()?;
     let request = Request::of(&arguments.pair, sides.files)?;
     match load::convex_bodies(&sides, &arguments.pair.body_options())? {
@@ -57,14 +52,14 @@ fn parts(
             let prove = || question.prove(answer.record.tolerance.unwrap_or_default());
             return targets.write_answer(AnswerOutputs {
                 record: &told,
-                words: || words::answer(&answer, direction, tolerance.is_none()),
+                words: || text::answer(&answer, direction, tolerance.is_none()),
                 proof: || Ok(Some(prove()?.to_json())),
                 picture: || Ok(draw_solids(&question, &answer)),
             });
         }
     };
     if !targets.json {
-        print(&words::scan_head())?;
+        print(&text::scan_head())?;
     }
     let mut noted = false;
     let ask = |direction| {
@@ -76,5 +71,5 @@ fn parts(
         }
         Ok(Line::of(answer.record.into()))
     };
-    answer_directions(targets.json, all, ask, words::scan_line)
+    answer_directions(targets.json, all, ask, text::scan_line)
 }

@@ -1,13 +1,13 @@
 //! `colltrans directions`: all directions along which a body leaves another one, proven.
 
-mod words;
+mod text;
 
 use crate::args::DirectionsArguments;
 use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
 use crate::failure::{Failure, note};
 use crate::load;
 use crate::solid::{FreeAnswer, PartsFree};
-pub(crate) use words::{told, verified};
+pub(crate) use text::{told, verified};
 
 pub(crate) fn run(arguments: &DirectionsArguments) -> Result<(), Failure> {
     let files = arguments.sides()?.files;
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &DirectionsArguments) -> Result<(), Failure> {
     }
     targets.write_answer(AnswerOutputs {
         record: &record,
-        words: || words::answer(&record),
+        words: || text::answer(&record),
         proof: || {
             if proof.is_none() {
                 note("no proof is written: nothing is told of bodies that overlap");

@@ -1,14 +1,13 @@
 //! `colltrans distance`, `depth` and `within`: two bodies where they are. Two convex meshes are asked as
 //! convex bodies, all others as parts.
 
-mod words;
+mod text;
 
 use std::path::PathBuf;
 
 use colltrans::Pair;
 use colltrans::record::PairQuestion;
 
-use crate::among;
 use crate::args::PlacedArguments;
 use crate::body::Part;
 use crate::driver::{AnswerOutputs, OutputTargets};
@@ -17,12 +16,9 @@ use crate::load;
 use crate::picture::draw_pair;
 use crate::record::Line;
 use crate::solid::{PartsPair, surface_of};
-pub(crate) use words::distance;
+pub(crate) use text::distance;
 
 pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
-    if !arguments.among.is_empty() {
-        return among::placed(arguments, question);
-    }
     let sides = arguments.sides(question)?;
     let PlacedArguments { json, save_proof, picture, .. } = arguments;
     let inputs = load::input_files(sides.files);
@@ -48,7 +44,7 @@ fn convex(
     let surface = |k: usize, origin| surface_of(&bodies[k].body, &poses[k], origin);
     targets.write_answer(AnswerOutputs {
         record: &told,
-        words: || words::answer(question, &told, 0.0),
+        words: || text::answer(question, &told, 0.0),
         proof: || Ok(answer.proof(&pair).map(|proof| proof.to_json())),
         picture: || Ok(draw_pair(&told.record, &surface)),
     })
@@ -75,7 +71,7 @@ fn parts(
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     targets.write_answer(AnswerOutputs {
         record: &told,
-        words: || words::answer(question, &told, asked.error()),
+        words: || text::answer(question, &told, asked.error()),
         proof: || Ok(proof?.map(|proof| proof.to_json())),
         picture: || Ok(draw_pair(&told.record, &surface)),
     })

@@ -2,10 +2,9 @@
 
 use colltrans::record::{DepthRecord, DistanceRecord, Ending, PairQuestion, Record};
 
-use crate::clearance::overlaps;
 use crate::numbers::{known, known_vector, number, unit_vector};
 use crate::record::Line;
-use crate::report::{features, hulls, line};
+use crate::report::{features, hulls, line, overlaps};
 
 /// The readable answer; lengths may be off by what the files' precision leaves.
 pub(crate) fn answer(question: PairQuestion, told: &Line, error: f64) -> String {

@@ -1,13 +1,12 @@
 //! The answer in words.
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Ending, Record, StartOverlapRecord};
+use colltrans::record::{Ending, Record};
 
-use crate::numbers::{decade, known_vector, number, unit_vector};
+use crate::numbers::{known_vector, number, unit_vector};
 use crate::record::Line;
-use crate::report::{features, kept, line, safely, times};
+use crate::report::{features, kept, line, overlaps, remedy, safely, times};
 use crate::solid::Answer;
-use crate::terminal::shown;
 
 /// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
 const HARDLY: f64 = 4.0;
@@ -101,50 +100,5 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
         line(text, "normal", &unit_vector(normal.into()));
         line(text, "point", &known_vector(point.into(), answer.error));
-    }
-}
-
-/// Returns which flags let bodies move that overlap at the start.
-pub(crate) fn remedy(overlaps: &[StartOverlapRecord]) -> &'static str {
-    if overlaps.iter().all(|overlap| overlap.least_tolerance.is_some()) {
-        "--tolerance allows for it, --ignore-start-overlaps lets it pass"
-    } else {
-        "--ignore-start-overlaps lets it pass"
-    }
-}
-
-/// What overlaps what, a line each.
-pub(crate) fn overlaps(text: &mut String, overlaps: &[StartOverlapRecord], name: &str) {
-    for StartOverlapRecord { moving, fixed, least_tolerance } in overlaps {
-        let [moving, fixed] =
-            [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
-        let remedy = match least_tolerance {
-            Some(least) => format!("a tolerance of {} would part them", above(*least)),
-            None => "no tolerance would part them".into(),
-        };
-        line(text, name, &format!("{moving} in {fixed}: {remedy}"));
-    }
-}
-
-/// A few digits, and no less than the value.
-fn above(value: f64) -> String {
-    let short: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    let step: f64 = format!("1e{}", decade(value) - 3).parse().unwrap_or(0.0);
-    let rounded = if short >= value { short } else { short + step };
-    let shown: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
-    number(if shown >= value { shown } else { value })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_suggested_tolerance_suffices() {
-        for value in [0.1, 0.12345, 0.999_96, 7.0, 1e-7 / 3.0, 2.0 / 3.0, 123_456.7] {
-            let shown: f64 = above(value).parse().unwrap();
-            assert!(shown >= value && shown <= value * 1.002, "{value} as {shown}");
-        }
-        assert_eq!(above(0.25), "0.25");
     }
 }

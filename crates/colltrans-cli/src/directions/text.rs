@@ -6,9 +6,8 @@ use colltrans::free::FreeArc;
 use colltrans::glam::DVec3;
 use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord};
 
-use crate::clearance;
 use crate::numbers::{counted, number, six_digits, unit_vector};
-use crate::report::line;
+use crate::report::{line, overlaps, remedy};
 use crate::terminal::shown;
 
 /// Regions, arcs, points and what blocks are listed up to so many, and corners up to so many.
@@ -26,8 +25,8 @@ pub(super) fn answer(record: &FreeRecord) -> String {
     .to_owned();
     told(&mut text, record);
     if record.outcome == Ending::Overlapping {
-        clearance::overlaps(&mut text, &record.start_overlaps, "overlap");
-        line(&mut text, "", clearance::remedy(&record.start_overlaps));
+        overlaps(&mut text, &record.start_overlaps, "overlap");
+        line(&mut text, "", remedy(&record.start_overlaps));
     }
     if let Some(tolerance) = record.tolerance {
         let how = if tolerance > 0.0 { " (both bodies are shrunk by half of it)" } else { "" };

@@ -1,9 +1,12 @@
-//! `assembly`: which parts come out.
+//! `colltrans assembly`: plans which parts of an assembly come out.
 //!
-//! Data flow: source -> parts -> overlaps, contacts, directions, matrix, plan, maps (all of them
-//! `colltrans_assembly`'s), all directions ([`free`]) -> text, JSON or files ([`output`]).
+//! Data flow:
+//! - The source file becomes parts ([`step`] converts STEP files), with the options of [`constraints`].
+//! - `colltrans_assembly` computes overlaps, contacts, directions, the blocking matrix, the plan and maps.
+//! - [`free`] computes all removal directions of the requested groups.
+//! - [`output`] writes text, JSON or files.
 
-mod asked;
+mod constraints;
 mod free;
 mod output;
 mod step;
@@ -28,24 +31,25 @@ use crate::args::{AssemblyArguments, direction};
 use crate::failure::{Code, Failure};
 
 pub(crate) fn run(arguments: &AssemblyArguments) -> Result<(), Failure> {
-    let Some(threads) = arguments.threads else { return inside(arguments) };
+    let Some(threads) = arguments.threads else { return plan_in_pool(arguments) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build();
     let pool = pool.map_err(|e| Failure::new(Code::Usage, format!("--threads: {e}")))?;
-    pool.install(|| inside(arguments))
+    pool.install(|| plan_in_pool(arguments))
 }
 
-fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
-    let given = given_directions(arguments)?;
-    if arguments.only && given.is_empty() && arguments.direction.is_empty() {
-        let why = "--only asks the directions that are given, and there are none: give --direction, --directions or --samples";
+/// Plans the assembly in the current thread pool, and writes the answer.
+fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
+    let sampled = sampled_directions(arguments)?;
+    if arguments.only && sampled.is_empty() && arguments.direction.is_empty() {
+        let why = "--only needs directions; give --direction, --directions or --samples";
         return Err(Failure::new(Code::Usage, why));
     }
-    let assembly = assembly(arguments)?;
-    let groups = groups(&arguments.map, &assembly)?;
-    let leaving = self::groups(&arguments.free, &assembly)?;
+    let assembly = read_assembly(arguments)?;
+    let mapped_groups = named_groups(&arguments.map, &assembly)?;
+    let removed_groups = named_groups(&arguments.free, &assembly)?;
     let wanted = assembly.group(&arguments.asked.remove)?;
-    let times = asked::times(arguments.times.as_deref())?;
-    output::refuse_inputs(arguments, &assembly)?;
+    let times = constraints::handling_times(arguments.times.as_deref())?;
+    output::check_output_paths(arguments, &assembly)?;
     let fit = match (arguments.tolerance, arguments.keep_apart) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
         (None, Some(length)) => Fit::Apart(length),
@@ -63,44 +67,47 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         }
     };
     let watch = Watch::default().with_progress(&progress);
-    let question = question(arguments, &given, wanted);
-    let once = Bodies::new(&assembly, fit)?;
-    let mut found = question.ask(&once, watch)?;
+    let question = plan_question(arguments, &sampled, wanted);
+    let given_bodies = Bodies::new(&assembly, fit)?;
+    let mut found = question.ask(&given_bodies, watch)?;
     let suggested;
-    let again;
+    let suggested_bodies;
     if arguments.roles.auto && !found.suggestions.is_empty() && !found.plan.stuck.is_empty() {
         suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
-        again = Bodies::new(&suggested, fit)?;
-        found = question.ask(&again, watch)?;
+        suggested_bodies = Bodies::new(&suggested, fit)?;
+        found = question.ask(&suggested_bodies, watch)?;
     }
     let bodies = found.bodies;
-    found.more = more_rooms(bodies, &given, overlap(arguments), watch)?;
-    found.maps = maps(bodies, &groups, &found.candidates, overlap(arguments), watch)?;
+    found.more = free_travels(bodies, &sampled, start_overlap(arguments), watch)?;
+    found.maps =
+        removal_maps(bodies, &mapped_groups, &found.candidates, start_overlap(arguments), watch)?;
     if arguments.output.is_some() {
-        // The table of all pairs is one of the files.
+        // matrix.csv has all pairs.
         found.matrix.complete(watch)?;
     }
     found.times = times;
     let with_proofs = arguments.output.is_some();
-    let free = free::all(bodies, leaving, arguments.work.options(), with_proofs)?;
+    let removals =
+        free::group_removals(bodies, removed_groups, arguments.work.options(), with_proofs)?;
     bar.finish_and_clear();
-    output::write(&found, &free, arguments)
+    output::write(&found, &removals, arguments)
 }
 
-/// What is asked of the parts, with whatever fit.
-fn question(arguments: &AssemblyArguments, given: &[DVec3], wanted: Vec<usize>) -> Question {
+/// Returns the question about the plan. `sampled` are the directions of the file and the samples, `wanted` the parts to
+/// remove.
+fn plan_question(arguments: &AssemblyArguments, sampled: &[DVec3], wanted: Vec<usize>) -> Question {
     let choice =
         Choice::default().with_given(arguments.direction.clone()).with_search(!arguments.only);
     let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
     let options = PlanOptions::default()
-        .with_start(overlap(arguments))
+        .with_start(start_overlap(arguments))
         .with_samples(samples)
         .with_legs(arguments.legs)
         .with_proofs(!arguments.no_proofs && !arguments.only)
-        .with_looks(arguments.work.looks());
+        .with_looks(arguments.work.max_looks());
     let question = Question::default()
         .with_choice(choice)
-        .with_finer(given.to_vec())
+        .with_finer(sampled.to_vec())
         .with_options(options)
         .with_wanted(wanted);
     match arguments.gravity {
@@ -109,11 +116,13 @@ fn question(arguments: &AssemblyArguments, given: &[DVec3], wanted: Vec<usize>) 
     }
 }
 
-fn overlap(arguments: &AssemblyArguments) -> StartOverlap {
+/// Returns how parts that overlap at the start are treated.
+fn start_overlap(arguments: &AssemblyArguments) -> StartOverlap {
     if arguments.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse }
 }
 
-fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
+/// Reads the source, and applies the roles and constraints of the command line.
+fn read_assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     let usage = |text: String| Failure::new(Code::Usage, text);
     let geometry = if arguments.visual { Geometry::Visual } else { Geometry::Collision };
     let mut options = ReadOptions::default()
@@ -127,49 +136,51 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
         let parts = joint.split_once('=').and_then(|(n, v)| Some((n, v.trim().parse().ok()?)));
         let (name, value): (&str, f64) = parts
             .filter(|p: &(&str, f64)| p.1.is_finite())
-            .ok_or_else(|| usage(format!("--joint {joint}: not NAME=VALUE")))?;
+            .ok_or_else(|| usage(format!("--joint {joint}: expected NAME=VALUE")))?;
         options.joints.insert(name.trim().to_owned(), value);
     }
     for scale in &arguments.scale {
-        let (name, factor) = asked::halves("--scale", scale, "PART=FACTOR")?;
+        let (name, factor) = constraints::split_at_equals("--scale", scale, "PART=FACTOR")?;
         let factor: Option<f64> = factor.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
-        let factor = factor.ok_or_else(|| usage(format!("--scale {scale}: not PART=FACTOR")))?;
+        let factor = factor.ok_or_else(|| {
+            usage(format!("--scale {scale}: expected PART=FACTOR with a positive factor"))
+        })?;
         options.scales.insert(name.to_owned(), factor);
     }
-    let refused = |e: ReadError| Failure::new(Code::Input, format!("{e}{}", advice(&e)));
+    let refused = |e: ReadError| Failure::new(Code::Input, format!("{e}{}", read_error_hint(&e)));
     let source = &arguments.source;
     let assembly = if step::is_step(source) {
-        let glb = step::converted(source, arguments.chord)?;
+        let glb = step::convert_to_glb(source, arguments.chord)?;
         let read = read::glb_with(source, &glb, &options).map_err(refused)?;
         read.with_files(vec![source.clone()])
     } else {
         read::read(source, &options).map_err(refused)?
     };
-    let ignore = asked::pairs("--ignore", &arguments.ignore)?;
-    let always = asked::pairs("--ignore-always", &arguments.ignore_always)?;
+    let ignore = constraints::name_pairs("--ignore", &arguments.ignore)?;
+    let always = constraints::name_pairs("--ignore-always", &arguments.ignore_always)?;
     let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;
     let assembly = assembly.with_ignored(&always, Ignored::Always)?;
-    let assembly = asked::with_roles(assembly, &arguments.roles)?;
-    asked::constrained(assembly, &arguments.asked)
+    let assembly = constraints::with_roles(assembly, &arguments.roles)?;
+    constraints::with_constraints(assembly, &arguments.asked)
 }
 
-/// Returns which flag of `assembly` and `path` helps.
-pub(crate) fn advice(error: &ReadError) -> &'static str {
+/// Returns the option of `assembly` and `path` that avoids an error; empty if there is none.
+pub(crate) fn read_error_hint(error: &ReadError) -> &'static str {
     match error {
         ReadError::Outside { .. } => " (--allow-outside reads it)",
         ReadError::Missing { .. } => {
-            " (--package DIR says where packages are, --skip-missing leaves out what is not there)"
+            " (--package DIR names the folder of packages, --skip-missing skips missing meshes)"
         }
         ReadError::Assembly {
             source: AssemblyError::Part { source: Refused::Mended(_), .. },
             ..
-        } => " (without --as-is it is mended)",
+        } => " (without --as-is it is repaired)",
         _ => "",
     }
 }
 
-/// The directions of the file and the samples, of length 1.
-fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure> {
+/// Returns the directions of the file `--directions` and of `--samples`, normalised.
+fn sampled_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure> {
     let mut all = Vec::new();
     if let Some(path) = &arguments.directions {
         let text = if path == Path::new("-") {
@@ -188,8 +199,8 @@ fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure
             let refused = |reason: String| {
                 Failure::new(Code::Input, format!("{}: line {}: {reason}", path.display(), k + 1))
             };
-            let given = direction(line).map_err(refused)?;
-            all.push(unit(given).map_err(|e| refused(e.to_string()))?);
+            let direction = direction(line).map_err(refused)?;
+            all.push(unit(direction).map_err(|e| refused(e.to_string()))?);
         }
     }
     if let Some(samples) = arguments.samples.filter(|n| *n > 0) {
@@ -198,16 +209,20 @@ fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure
     Ok(all)
 }
 
-/// The groups that are asked about, with their names.
-fn groups(asked: &[String], assembly: &Assembly) -> Result<Vec<(String, Vec<usize>)>, Failure> {
+/// Returns the groups of parts that options name, with these names.
+fn named_groups(
+    given: &[String],
+    assembly: &Assembly,
+) -> Result<Vec<(String, Vec<usize>)>, Failure> {
     let group = |names: &String| {
         let parts: Vec<&str> = names.split(',').collect();
         Ok((names.clone(), assembly.group(&parts)?))
     };
-    asked.iter().map(group).collect()
+    given.iter().map(group).collect()
 }
 
-fn more_rooms(
+/// Returns the free travel of each part in each direction.
+fn free_travels(
     bodies: &Bodies,
     directions: &[DVec3],
     start: StartOverlap,
@@ -221,7 +236,8 @@ fn more_rooms(
     Ok(directions.iter().enumerate().map(|(k, d)| (*d, column(k))).collect())
 }
 
-fn maps(
+/// Returns a map of the free travel of each group, over the candidate directions.
+fn removal_maps(
     bodies: &Bodies,
     groups: &[(String, Vec<usize>)],
     found: &Candidates,

@@ -1,5 +1,4 @@
-//! From mesh files to bodies, in the words of the command line: notes name the file, and what is refused
-//! names the options that would help.
+//! Reads mesh files as convex bodies. Notes name the file, errors the options that avoid them.
 
 use std::path::Path;
 
@@ -7,84 +6,86 @@ use colltrans::solid::SolidError;
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_mesh::body::{BodyOptions, Excess, LoadError, Loaded, Note, Refused, Take};
 
-/// A convex body, and what is to be said about how it came to be.
+/// A convex body of a mesh file, with the differences between them.
 #[derive(Debug)]
 pub(crate) struct Part {
     pub(crate) body: ConvexPolyhedron,
-    /// What its hull has more than the mesh, where the hull was asked for and there is a
-    /// difference.
+    /// By how much the body exceeds the mesh; `None` if no hull was requested, or if it equals the mesh.
     pub(crate) excess: Option<Excess>,
-    /// How deep the surface of its mesh lies below it, where that is more than its file rounds.
+    /// Depth of the mesh's surface below the body; `None` if it is within the precision of the file.
     pub(crate) dent: Option<f64>,
-    /// How far its file rounds coordinates, in the unit of the body.
+    /// Rounding error of the coordinates in the file, in the unit of the body.
     pub(crate) precision: f64,
-    /// What was mended when it was read.
+    /// Notes about repairs of the mesh.
     pub(crate) notes: Vec<String>,
 }
 
 impl Part {
-    /// A body that is not of a file.
-    pub(crate) const fn of(body: ConvexPolyhedron) -> Self {
+    /// Returns a part of a body without a file.
+    pub(crate) const fn from_body(body: ConvexPolyhedron) -> Self {
         Self { body, excess: None, dent: None, precision: 0.0, notes: Vec::new() }
     }
 }
 
 /// Reads a mesh file as a convex body.
+///
+/// # Errors
+/// The file cannot be read, or its mesh is not convex and no hull is requested.
 pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, LoadError> {
     let loaded = colltrans_mesh::body::load_convex(path, options)?;
     let dent = loaded.dent();
     let Loaded { body, notes, precision } = loaded;
     let mut excess = None;
     let others = notes.iter().filter(|note| match note {
-        // Said with the answer, because the answer means something else then.
+        // Reported with the answer, because it changes the meaning of the answer.
         Note::Exceeds(found) => {
             excess = Some(*found);
             false
         }
         _ => true,
     });
-    let notes = others.map(|note| of_file(path, note)).collect();
+    let notes = others.map(|note| note_of_file(path, note)).collect();
     Ok(Part { body, excess, dent, precision, notes })
 }
 
-/// A note with the name of its file.
-pub(crate) fn of_file(path: &Path, note: &Note) -> String {
+/// Returns a note with the name of its file.
+pub(crate) fn note_of_file(path: &Path, note: &Note) -> String {
     format!("{}: {note}", path.display())
 }
 
-/// Whether the mesh could be taken as a part, though it is not convex: closed, or as it is.
-pub(crate) fn is_part(error: &LoadError) -> bool {
+/// Checks whether a mesh that is not convex can be read as a closed part or as an open surface.
+pub(crate) fn can_be_part(error: &LoadError) -> bool {
     let LoadError::Body { source, .. } = error else { return false };
     source.instead().iter().any(|take| matches!(take, Take::Solid | Take::Open))
 }
 
-/// Why no body was made of a file, and what would help.
-pub(crate) fn refusal(error: &LoadError) -> String {
+/// Returns the error of a file with a hint at options that avoid it.
+pub(crate) fn load_error_message(error: &LoadError) -> String {
     match error {
-        LoadError::Body { source, .. } => format!("{error}{}", hint(source)),
+        LoadError::Body { source, .. } => format!("{error}{}", option_hint(source)),
         LoadError::Mesh(_) => error.to_string(),
     }
 }
 
-/// Which options would help.
-pub(crate) fn hint(refused: &Refused) -> &'static str {
+/// Returns a hint at the options that avoid an error; empty if there are none.
+pub(crate) fn option_hint(refused: &Refused) -> &'static str {
     match (refused, refused.instead()) {
         (Refused::Convex(BuildError::NotConvex { .. }), _) => {
-            "; `colltrans clearance` takes parts that are not convex, --hull takes the convex hull, \
-             --convex-tolerance allows more"
+            "; `colltrans clearance` accepts parts that are not convex, --hull takes the convex hull, \
+             --convex-tolerance permits deeper dents"
         }
         (Refused::Convex(_), [Take::Solid, ..]) => {
-            "; `colltrans clearance` takes parts that are not convex, --hull takes the convex hull of \
+            "; `colltrans clearance` accepts parts that are not convex, --hull takes the convex hull of \
              its vertices"
         }
         (Refused::Convex(_), [_, ..]) => {
             "; --merge-tolerance closes gaps, --hull takes the convex hull of its vertices"
         }
         (Refused::Solid(SolidError::Empty), _) => {
-            "; --hull takes the convex hull of its vertices, also of points without faces"
+            "; --hull takes the convex hull of its vertices, with or without faces"
         }
         (Refused::Solid(_), [Take::Open, ..]) => {
-            "; --merge-tolerance closes gaps, `clearance --open` takes it as a surface without an inside"
+            "; --merge-tolerance closes gaps, `clearance --open` accepts it as a surface without an interior"
         }
         _ => "",
     }

@@ -1,4 +1,4 @@
-//! Saves a query that does not converge as a file, which `colltrans replay` reads.
+//! Saves a query that does not converge as a file for `colltrans replay`.
 
 use std::io::ErrorKind;
 use std::path::PathBuf;
@@ -9,19 +9,20 @@ use colltrans::{Cast, QueryError};
 use crate::failure::{Code, Failure};
 use crate::outputs;
 
-/// What to say about a query that has no answer: one that did not converge is saved as a file.
-pub(crate) fn failure(error: QueryError, cast: &Cast<'_>) -> Failure {
-    saved(error, || cast.to_json())
+/// Returns the failure of a cast. Saves the query if it did not converge; the message then names the file.
+pub(crate) fn cast_failure(error: QueryError, cast: &Cast<'_>) -> Failure {
+    failure_with_case(error, || cast.to_json())
 }
 
-/// The same of a motion.
+/// Returns the failure of a motion. Saves the query if it did not converge; the message then names the file.
 pub(crate) fn motion_failure(error: QueryError, cast: &MotionCast<'_>) -> Failure {
-    saved(error, || MotionCase::of(cast).to_json())
+    failure_with_case(error, || MotionCase::of(cast).to_json())
 }
 
-fn saved(error: QueryError, json: impl FnOnce() -> String) -> Failure {
+/// Returns the failure of a query, whose case is `json`.
+fn failure_with_case(error: QueryError, json: impl FnOnce() -> String) -> Failure {
     let QueryError::NotConverged { .. } = error else { return error.into() };
-    match save(&json()) {
+    match save_case(&json()) {
         Some(path) => {
             Failure::new(Code::Query, format!("{error}; it was saved as {}", path.display()))
         }
@@ -29,8 +30,8 @@ fn saved(error: QueryError, json: impl FnOnce() -> String) -> Failure {
     }
 }
 
-/// Writes the query to a file of the working directory that does not exist yet.
-fn save(json: &str) -> Option<PathBuf> {
+/// Writes a query to a new file in the working directory. Returns its name; `None` if it cannot be written.
+fn save_case(json: &str) -> Option<PathBuf> {
     for number in 1..1000 {
         let path = PathBuf::from(format!("colltrans-case-{number}.json"));
         match outputs::write_new(&path, json.as_bytes()) {

@@ -1,4 +1,4 @@
-//! Queries on two convex meshes: `colltrans cast`, and `colltrans clearance` where they are convex.
+//! Casts of two convex meshes: `colltrans cast`, and `colltrans clearance` if both meshes are convex.
 
 use std::path::{Path, PathBuf};
 use std::slice;
@@ -8,25 +8,26 @@ use colltrans::record::{Answer, Question};
 use colltrans::{Cast, Options, Pose};
 
 use crate::args::{self, CastArguments, DirectionArguments, PairArguments};
-use crate::body::{Part, refusal};
+use crate::body::{Part, load_error_message};
 use crate::case;
 use crate::driver::{AnswerOutputs, OutputTargets, answer_directions};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::read_text_or_stdin;
 use crate::load;
-use crate::picture::{Scene, draw};
+use crate::picture::{CastPicture, draw_cast};
 use crate::record::{Hulls, Line};
 use crate::report;
 
 pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
     let files = [&arguments.moving, &arguments.fixed].map(slice::from_ref);
-    let request = Request::of(&arguments.pair, files)?;
-    let bodies = load::only_convex(files, &arguments.pair.body_options());
-    let [moving, fixed] = bodies.map_err(|error| Failure::new(Code::Input, refusal(&error)))?;
-    request.convex(Question::Contact, [&moving[0], &fixed[0]])
+    let request = Request::from_arguments(&arguments.pair, files)?;
+    let bodies = load::read_convex(files, &arguments.pair.body_options());
+    let [moving, fixed] =
+        bodies.map_err(|error| Failure::new(Code::Input, load_error_message(&error)))?;
+    request.answer_convex(Question::Contact, [&moving[0], &fixed[0]])
 }
 
-/// What is asked of two bodies, checked before they are read.
+/// A query along one or many directions. Its outputs and poses are checked before the meshes are read.
 pub(crate) struct Request<'a> {
     arguments: &'a PairArguments,
     pub(crate) targets: OutputTargets<'a>,
@@ -35,7 +36,11 @@ pub(crate) struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
-    pub(crate) fn of(
+    /// Returns the request of a command line.
+    ///
+    /// # Errors
+    /// An output would overwrite an input, or a pose or the file of directions is invalid.
+    pub(crate) fn from_arguments(
         arguments: &'a PairArguments,
         files: [&[PathBuf]; 2],
     ) -> Result<Self, Failure> {
@@ -43,13 +48,17 @@ impl<'a> Request<'a> {
         let inputs = load::input_files(files);
         let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &inputs)?;
         let poses = places.poses()?;
-        Ok(Self { arguments, targets, poses, directions: Directions::of(directions)? })
+        Ok(Self { arguments, targets, poses, directions: Directions::from_arguments(directions)? })
     }
 
-    /// Asked of convex bodies.
-    pub(crate) fn convex(self, question: Question, parts: [&Part; 2]) -> Result<(), Failure> {
+    /// Answers the request for convex bodies, and writes the answer.
+    pub(crate) fn answer_convex(
+        self,
+        question: Question,
+        parts: [&Part; 2],
+    ) -> Result<(), Failure> {
         let Self { arguments, targets, poses, directions } = self;
-        load::report_notes(&arguments.places, parts.iter().flat_map(|part| &part.notes));
+        load::print_notes(&arguments.places, parts.iter().flat_map(|part| &part.notes));
         let options = Options::default()
             .with_solver(arguments.solver)
             .with_narrowing(arguments.narrowing()?)
@@ -57,50 +66,50 @@ impl<'a> Request<'a> {
             .with_keep(arguments.keep);
         let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
         let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
-        let ask = |cast: &Cast<'_>| -> Result<(Answer, Line), Failure> {
-            let answer = question.ask(cast).map_err(|error| case::failure(error, cast))?;
+        let answer_cast = |cast: &Cast<'_>| -> Result<(Answer, Line), Failure> {
+            let answer = question.ask(cast).map_err(|error| case::cast_failure(error, cast))?;
             Ok((answer, Line::from(answer.record(cast)).with_parts(parts)))
         };
         let all = match directions {
             Directions::Many(all) => all,
             Directions::One(direction) => {
                 let cast = cast(direction)?;
-                let (answer, told) = ask(&cast)?;
+                let (answer, line) = answer_cast(&cast)?;
                 return targets.write_answer(AnswerOutputs {
-                    record: &told,
-                    words: || report::answer(&answer, &told, cast.direction()),
+                    record: &line,
+                    text: || report::cast_answer_text(&answer, &line, cast.direction()),
                     proof: || Ok(Some(answer.proof(&cast).to_json())),
                     picture: || {
                         let range = match answer {
                             Answer::Contact(range) => range,
                             Answer::Clearance(_) => cast.contact_range()?,
                         };
-                        Ok(draw(&Scene { cast: &cast, answer: &range }))
+                        Ok(draw_cast(&CastPicture { cast: &cast, answer: &range }))
                     },
                 });
             }
         };
         if !targets.json {
-            print(&report::scan_head(question))?;
-            for (name, excess) in Hulls::of(parts).iter().flat_map(Hulls::named) {
+            print(&report::scan_header(question))?;
+            for (name, excess) in Hulls::from_parts(parts).iter().flat_map(Hulls::named_excesses) {
                 note(&format!("{name}: {excess}"));
             }
         }
-        let ask = |direction| Ok(ask(&cast(direction)?)?.1);
-        answer_directions(targets.json, all, ask, report::scan_line)
+        let line_of = |direction| Ok(answer_cast(&cast(direction)?)?.1);
+        answer_directions(targets.json, all, line_of, report::scan_line)
     }
 }
 
-/// One answer in full, or one a line.
+/// One direction, whose answer is printed in full, or many with one line each.
 pub(crate) enum Directions {
     One(DVec3),
     Many(Vec<DVec3>),
 }
 
 impl Directions {
-    /// What `--direction` and `--directions` say.
-    fn of(asked: &DirectionArguments) -> Result<Self, Failure> {
-        match (asked.direction, asked.directions.as_deref()) {
+    /// Returns the directions of `--direction` or `--directions`.
+    fn from_arguments(arguments: &DirectionArguments) -> Result<Self, Failure> {
+        match (arguments.direction, arguments.directions.as_deref()) {
             (_, Some(file)) => read_directions(file).map(Self::Many),
             (Some(direction), None) => Ok(Self::One(direction)),
             (None, None) => Err(Failure::new(Code::Usage, "give --direction or --directions")),
@@ -108,7 +117,10 @@ impl Directions {
     }
 }
 
-/// One direction a line; the first line that is none ends the command.
+/// Reads a file with one direction per line.
+///
+/// # Errors
+/// A line is not a direction, or the file has none.
 fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
     let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", file.display()));
     let text = read_text_or_stdin(file)?;
@@ -119,18 +131,18 @@ fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
         if content.is_empty() {
             continue;
         }
-        // Commas or blanks between the numbers.
-        let commas = if content.contains(',') {
+        // Numbers are separated by commas or blanks.
+        let with_commas = if content.contains(',') {
             content.to_owned()
         } else {
             content.split_whitespace().collect::<Vec<_>>().join(",")
         };
-        let direction = args::direction(&commas)
+        let direction = args::direction(&with_commas)
             .map_err(|what| input(format!("line {}: {what}", number + 1)))?;
         found.push(direction);
     }
     if found.is_empty() {
-        return Err(input("holds no directions".into()));
+        return Err(input("contains no directions".into()));
     }
     Ok(found)
 }

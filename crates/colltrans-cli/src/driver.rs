@@ -1,4 +1,4 @@
-//! Writes the answer of every question: prints it, then writes its proof and its picture.
+//! Writes the answer of each question: prints it, then writes its proof and its picture.
 //!
 //! A question describes its outputs in [`AnswerOutputs`]. [`OutputTargets::write_answer`] computes only
 //! those that the command line requests. [`answer_directions`] prints one line for each of many directions.
@@ -9,7 +9,7 @@ use colltrans::glam::DVec3;
 use serde::Serialize;
 
 use crate::failure::{Code, Failure, print, print_json};
-use crate::inputs::{refuse_picture, refuse_proof};
+use crate::inputs::{check_picture_path, check_proof_path};
 use crate::outputs;
 use crate::record::{self, Line};
 
@@ -22,23 +22,26 @@ pub(crate) struct OutputTargets<'a> {
 }
 
 /// Outputs of one answer. Text, proof and picture are computed only on request.
-pub(crate) struct AnswerOutputs<'a, R, Words, Proof, Picture> {
+pub(crate) struct AnswerOutputs<'a, R, Text, Proof, Picture> {
     /// Record that is serialised as JSON.
     pub(crate) record: &'a R,
-    pub(crate) words: Words,
+    pub(crate) text: Text,
     /// Returns `None` if this answer has no proof.
     pub(crate) proof: Proof,
     pub(crate) picture: Picture,
 }
 
-/// Takes the place of the picture in commands without `--picture`.
+/// Returns an empty picture for commands without `--picture`.
 #[expect(clippy::unnecessary_wraps, reason = "it has the type of pictures that can fail")]
 pub(crate) fn no_picture() -> Result<String, Failure> {
     Ok(String::new())
 }
 
 impl<'a> OutputTargets<'a> {
-    /// Returns the targets; fails if a file would overwrite an input, or if both files are the same.
+    /// Returns the targets of a command line.
+    ///
+    /// # Errors
+    /// A file would overwrite an input, or both files are the same.
     pub(crate) fn new(
         json: bool,
         save_proof: Option<&'a PathBuf>,
@@ -46,12 +49,15 @@ impl<'a> OutputTargets<'a> {
         inputs: &[&Path],
     ) -> Result<Self, Failure> {
         let [save_proof, picture] = [save_proof, picture].map(|path| path.map(PathBuf::as_path));
-        refuse_picture(picture, inputs)?;
-        refuse_proof(save_proof, picture, inputs)?;
+        check_picture_path(picture, inputs)?;
+        check_proof_path(save_proof, picture, inputs)?;
         Ok(Self { json, save_proof, picture })
     }
 
     /// Prints the answer, then writes its proof and its picture.
+    ///
+    /// # Errors
+    /// The proof has an error, or an output cannot be written.
     pub(crate) fn write_answer<R: Serialize>(
         self,
         answer: AnswerOutputs<
@@ -63,9 +69,9 @@ impl<'a> OutputTargets<'a> {
         >,
     ) -> Result<(), Failure> {
         if self.json {
-            print_json(&record::json(answer.record))?;
+            print_json(&record::json_line(answer.record))?;
         } else {
-            print(&(answer.words)())?;
+            print(&(answer.text)())?;
         }
         if let Some(path) = self.save_proof
             && let Some(proof) = (answer.proof)()?
@@ -79,20 +85,23 @@ impl<'a> OutputTargets<'a> {
     }
 }
 
-/// Prints one line for each direction. Fails after the last line if any direction has no answer.
+/// Prints one line for each direction.
+///
+/// # Errors
+/// A direction has no answer. The error is returned after the last line.
 pub(crate) fn answer_directions(
     as_json: bool,
     directions: Vec<DVec3>,
-    mut ask: impl FnMut(DVec3) -> Result<Line, Failure>,
-    words: impl Fn(&Line, DVec3) -> String,
+    mut answer: impl FnMut(DVec3) -> Result<Line, Failure>,
+    text: impl Fn(&Line, DVec3) -> String,
 ) -> Result<(), Failure> {
     let (count, mut failed) = (directions.len(), 0);
     for direction in directions {
-        let answered = ask(direction);
-        let mut line = answered.unwrap_or_else(|failure| Line::error(failure.into_message()));
+        let mut line =
+            answer(direction).unwrap_or_else(|failure| Line::error(failure.into_message()));
         failed += usize::from(line.is_error());
         line.record = line.record.with_direction(direction.to_array());
-        print(&if as_json { record::json(&line) } else { words(&line, direction) })?;
+        print(&if as_json { record::json_line(&line) } else { text(&line, direction) })?;
     }
     if failed > 0 {
         let message = format!("{failed} of {count} directions have no answer");

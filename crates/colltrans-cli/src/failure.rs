@@ -1,20 +1,20 @@
-//! How a command fails: with one message and one exit code.
+//! Failures of a command, with messages and an exit code, and notes on standard error.
 
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use crate::streams::standard_output;
-use crate::terminal::{plain, plain_json, shown};
+use crate::terminal::{escape_json, escape_line, escape_lines};
 
-/// The exit codes that are not 0, as `--help` documents them.
+/// The exit codes other than 0, as `colltrans help files` documents them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Code {
     /// Some lines of a batch have no answer.
     Lines = 1,
     /// The command line is wrong.
     Usage = 2,
-    /// A file cannot be read or is no convex body.
+    /// A file cannot be read, or is not an acceptable body.
     Input = 3,
     /// The query has no certified answer.
     Query = 4,
@@ -26,68 +26,71 @@ pub(crate) enum Code {
     Partial = 7,
 }
 
-/// Says something on standard error that does not end the command.
+/// Prints a note on standard error. The command continues.
 pub(crate) fn note(text: &str) {
-    // Not `eprintln!`, which panics when standard error is closed.
-    let line = format!("note: {}\n", shown(text));
+    // `eprintln!` would panic if standard error is closed.
+    let line = format!("note: {}\n", escape_line(text));
     let _ = io::stderr().write_all(line.as_bytes());
 }
 
-/// Says an answer in words on standard output.
+/// Prints an answer as text on standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    put(&plain(text))
+    write_output(&escape_lines(text))
 }
 
-/// Says an answer in JSON on standard output.
+/// Prints an answer in JSON on standard output.
 pub(crate) fn print_json(text: &str) -> Result<(), Failure> {
-    put(&plain_json(text))
+    write_output(&escape_json(text))
 }
 
-fn put(text: &str) -> Result<(), Failure> {
+/// Writes text to standard output, and flushes it.
+fn write_output(text: &str) -> Result<(), Failure> {
     let written = standard_output().and_then(|mut out| {
         out.write_all(text.as_bytes())?;
         out.flush()
     });
-    written.map_err(|error| Failure::output("standard output", &error))
+    written.map_err(|error| Failure::write_error("standard output", &error))
 }
 
-/// Why a command did not succeed.
+/// The error of a command.
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: Code,
-    /// None where nobody listens any more: the reader of a pipe has gone.
+    /// Empty if the reader of a pipe has closed it, which is not an error.
     messages: Vec<String>,
 }
 
 impl Failure {
+    /// Returns a failure with one message.
     pub(crate) fn new(code: Code, message: impl Into<String>) -> Self {
         Self { code, messages: vec![message.into()] }
     }
 
-    /// Several things that are wrong, each with a message of its own.
-    pub(crate) fn several(code: Code, messages: Vec<String>) -> Self {
+    /// Returns a failure with several messages.
+    pub(crate) fn with_messages(code: Code, messages: Vec<String>) -> Self {
         Self { code, messages }
     }
 
-    /// The answer could not be written to `place`.
-    pub(crate) fn output(place: impl Display, error: &io::Error) -> Self {
-        let is_heard = error.kind() != io::ErrorKind::BrokenPipe;
-        let message = is_heard.then(|| format!("{place}: cannot be written: {error}"));
+    /// Returns the failure that an output cannot be written to `place`. A closed pipe has no message.
+    pub(crate) fn write_error(place: impl Display, error: &io::Error) -> Self {
+        let is_reported = error.kind() != io::ErrorKind::BrokenPipe;
+        let message = is_reported.then(|| format!("{place}: cannot be written: {error}"));
         Self { code: Code::Output, messages: message.into_iter().collect() }
     }
 
-    /// What is said, for a line among others.
+    /// Returns all messages as one line.
     pub(crate) fn into_message(self) -> String {
         self.messages.join("; ")
     }
 
+    /// Prints the messages on standard error. Returns the exit code: success if there are none.
     pub(crate) fn report(self) -> ExitCode {
         if self.messages.is_empty() {
             return ExitCode::SUCCESS;
         }
-        // Not `eprintln!`, which panics when standard error is closed.
+        // `eprintln!` would panic if standard error is closed.
         for message in &self.messages {
-            let line = format!("error: {}\n", shown(message));
+            let line = format!("error: {}\n", escape_line(message));
             let _ = io::stderr().write_all(line.as_bytes());
         }
         ExitCode::from(self.code as u8)

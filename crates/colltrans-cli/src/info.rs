@@ -9,7 +9,7 @@ use colltrans_mesh::{Mesh, NumberFormat, ReadOptions};
 use crate::args::InfoArguments;
 use crate::failure::{Code, Failure, print};
 use crate::numbers::{about, counted, known, six_digits, vector};
-use crate::report::line;
+use crate::report::push_line;
 use crate::solid;
 use crate::terminal::shown;
 
@@ -36,26 +36,26 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
 
 fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     let mut text = format!("{}\n", shown(path.display()));
-    line(&mut text, "vertices", &vertices(mesh));
-    line(&mut text, "faces", &faces(mesh));
+    push_line(&mut text, "vertices", &vertices(mesh));
+    push_line(&mut text, "faces", &faces(mesh));
     let not_finite = mesh.vertices.iter().position(|v| !v.is_finite());
     let no_number = not_finite.map(|vertex| format!("none: vertex {vertex} is not finite"));
     if let Some(why) = &no_number {
-        line(&mut text, "extent", why);
+        push_line(&mut text, "extent", why);
     } else if let Some([low, high]) = mesh.bounds() {
         let [x, y, z] = (high - low).to_array().map(|c| known(c, 1e-14 * mesh.extent()));
-        line(&mut text, "extent", &format!("{x} x {y} x {z}"));
-        line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
+        push_line(&mut text, "extent", &format!("{x} x {y} x {z}"));
+        push_line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
     }
     if mesh.format != NumberFormat::Double {
         let what = format!("{}, known to within {}", mesh.format, about(mesh.precision));
-        line(&mut text, "coordinates", &what);
+        push_line(&mut text, "coordinates", &what);
     }
     if let Some(merged) = Note::merged(mesh) {
-        line(&mut text, "merged", &merged.to_string());
+        push_line(&mut text, "merged", &merged.to_string());
     }
     if !mesh.faces.is_empty() {
-        line(&mut text, "surface", &surface(mesh));
+        push_line(&mut text, "surface", &surface(mesh));
     }
     let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
     let signed = mesh.signed_volume();
@@ -64,38 +64,38 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         _ if is_closed => computed(signed),
         _ => "none: the faces do not enclose a body".into(),
     };
-    line(&mut text, "volume", &volume);
+    push_line(&mut text, "volume", &volume);
     for (name, what) in solid::describe(mesh) {
-        line(&mut text, name, &what);
+        push_line(&mut text, name, &what);
     }
     for (name, what) in parts(mesh) {
-        line(&mut text, name, &what);
+        push_line(&mut text, name, &what);
     }
     // Tolerance 0 makes the library say how deep the worst face lies, however little.
     match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
-        Ok(_) => line(&mut text, "convex", "yes, to rounding error"),
+        Ok(_) => push_line(&mut text, "convex", "yes, to rounding error"),
         Err(BuildError::NotConvex { face, depth, .. }) => {
-            line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
+            push_line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
         }
-        Err(error) => line(&mut text, "convex", &format!("no: {error}")),
+        Err(error) => push_line(&mut text, "convex", &format!("no: {error}")),
     }
     match body::hull(mesh) {
         Ok(hull) => {
-            line(&mut text, "hull", &counts(&hull));
-            line(&mut text, "hull volume", &computed(hull.volume()));
+            push_line(&mut text, "hull", &counts(&hull));
+            push_line(&mut text, "hull volume", &computed(hull.volume()));
             let excess = Excess::of(mesh, &hull);
             let tolerance = tolerance(mesh, asked_tolerance);
             if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
-                line(&mut text, "hull exceeds", &excess.to_string());
+                push_line(&mut text, "hull exceeds", &excess.to_string());
             }
             let error = about(hull.hull_error());
-            line(
+            push_line(
                 &mut text,
                 "hull error",
                 &format!("{error} (no vertex in use is farther from the hull)"),
             );
         }
-        Err(error) => line(&mut text, "hull", &format!("none: {error}")),
+        Err(error) => push_line(&mut text, "hull", &format!("none: {error}")),
     }
     text
 }

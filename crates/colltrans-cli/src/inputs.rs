@@ -1,5 +1,6 @@
-//! Reads text, and refuses outputs that would overwrite an input. Files are compared by identity, not by
-//! name.
+//! Reads text, and rejects outputs that would overwrite an input.
+//!
+//! Files are compared by identity, because links give one file several names.
 
 use std::fs::Metadata;
 use std::io::{self, Read as _};
@@ -8,75 +9,87 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use crate::failure::{Code, Failure};
 
-/// A file by its identity: another name, a symbolic or a hard link leads to the same.
+/// The identity of a file, which all its names, symbolic links and hard links share.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) enum Identity {
     /// Device and inode.
     #[cfg(unix)]
     Inode(u64, u64),
-    /// The canonical path, where there are no inodes: hard links are not seen through.
+    /// The canonical path on systems without inodes. Hard links have different ones.
     #[cfg(not(unix))]
     Path(std::path::PathBuf),
 }
 
 impl Identity {
-    /// The identity of an ordinary file; `None` of one that is not there, or a folder, a device, a
-    /// pipe, which are not overwritten.
-    pub(crate) fn of(path: &Path) -> Option<Self> {
+    /// Returns the identity of a regular file; `None` if there is none of this name. Folders, devices and pipes are
+    /// not overwritten and have none.
+    pub(crate) fn of_path(path: &Path) -> Option<Self> {
         let metadata = path.metadata().ok()?;
-        if metadata.is_file() { Self::of_file(path, &metadata).ok() } else { None }
+        if metadata.is_file() { Self::of_regular_file(path, &metadata).ok() } else { None }
     }
 
     #[cfg(unix)]
-    #[expect(clippy::unnecessary_wraps, reason = "elsewhere it can fail")]
-    fn of_file(_: &Path, metadata: &Metadata) -> io::Result<Self> {
+    #[expect(clippy::unnecessary_wraps, reason = "it can fail on systems without inodes")]
+    fn of_regular_file(_: &Path, metadata: &Metadata) -> io::Result<Self> {
         use std::os::unix::fs::MetadataExt;
         Ok(Self::Inode(metadata.dev(), metadata.ino()))
     }
 
     #[cfg(not(unix))]
-    fn of_file(path: &Path, _: &Metadata) -> io::Result<Self> {
+    fn of_regular_file(path: &Path, _: &Metadata) -> io::Result<Self> {
         path.canonicalize().map(Self::Path)
     }
 }
 
-/// The one of the inputs that an output would overwrite.
-pub(crate) fn overwritten<'a>(output: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
-    let output = Identity::of(output)?;
-    inputs.iter().copied().find(|input| Identity::of(input).as_ref() == Some(&output))
+/// Returns the input that an output would overwrite; `None` if there is none.
+pub(crate) fn overwritten_input<'a>(output: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
+    let output = Identity::of_path(output)?;
+    inputs.iter().copied().find(|input| Identity::of_path(input).as_ref() == Some(&output))
 }
 
-/// A picture must not take the place of what is read.
-pub(crate) fn refuse_picture(picture: Option<&Path>, inputs: &[&Path]) -> Result<(), Failure> {
+/// Checks that a picture does not overwrite an input.
+///
+/// # Errors
+/// It would.
+pub(crate) fn check_picture_path(picture: Option<&Path>, inputs: &[&Path]) -> Result<(), Failure> {
     picture.map_or(Ok(()), |picture| {
-        refuse_overwriting(picture, inputs, "give the picture another name")
+        check_output_path(picture, inputs, "give the picture another name")
     })
 }
 
-/// A proof must not take the place of what is read, nor of the picture.
-pub(crate) fn refuse_proof(
+/// Checks that a proof overwrites neither an input nor the picture.
+///
+/// # Errors
+/// It would.
+pub(crate) fn check_proof_path(
     proof: Option<&Path>,
     picture: Option<&Path>,
     inputs: &[&Path],
 ) -> Result<(), Failure> {
     let Some(proof) = proof else { return Ok(()) };
     if picture == Some(proof) {
-        return Err(Failure::new(Code::Usage, "--save-proof and --picture name one file"));
+        return Err(Failure::new(
+            Code::Usage,
+            "--save-proof and --picture name the same file; give them two names",
+        ));
     }
-    refuse_overwriting(proof, inputs, "give the proof another name")
+    check_output_path(proof, inputs, "give the proof another name")
 }
 
-/// An output must not take the place of what is read; says what to do instead.
-pub(crate) fn refuse_overwriting(
+/// Checks that an output does not overwrite an input. `advice` ends the error message.
+///
+/// # Errors
+/// It would overwrite an input.
+pub(crate) fn check_output_path(
     output: &Path,
     inputs: &[&Path],
-    instead: &str,
+    advice: &str,
 ) -> Result<(), Failure> {
-    match overwritten(output, inputs) {
+    match overwritten_input(output, inputs) {
         Some(input) => Err(Failure::new(
             Code::Input,
             format!(
-                "{}: is the same file as {}, which would be lost; {instead}",
+                "{}: is the same file as the input {}, which would be lost; {advice}",
                 output.display(),
                 input.display()
             ),
@@ -87,7 +100,7 @@ pub(crate) fn refuse_overwriting(
 
 /// Reads a text file.
 pub(crate) fn read_text(file: &Path) -> Result<String, Failure> {
-    or_unreadable(file, colltrans_mesh::file::text(file))
+    with_file_name(file, colltrans_mesh::file::text(file))
 }
 
 /// Reads a text file, or standard input if the name is `-`.
@@ -97,38 +110,41 @@ pub(crate) fn read_text_or_stdin(file: &Path) -> Result<String, Failure> {
     }
     let mut text = String::new();
     let result = io::stdin().read_to_string(&mut text).map(|_| text);
-    or_unreadable(file, result)
+    with_file_name(file, result)
 }
 
-fn or_unreadable(file: &Path, text: io::Result<String>) -> Result<String, Failure> {
-    let why = |error| format!("{}: cannot be read: {error}", file.display());
-    text.map_err(|error| Failure::new(Code::Input, why(error)))
+/// Converts the error of reading a file into a failure that names it.
+fn with_file_name(file: &Path, text: io::Result<String>) -> Result<String, Failure> {
+    let message = |error| format!("{}: cannot be read: {error}", file.display());
+    text.map_err(|error| Failure::new(Code::Input, message(error)))
 }
 
-/// Whether a file is one of obstacles, by its name.
-pub(crate) fn is_list(file: &Path) -> bool {
+/// Checks whether a file is one of obstacles, by its extension.
+pub(crate) fn is_obstacle_list(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("jsonl"))
 }
 
-/// A file that must not be read, because something else will take its place; by any thread.
+/// A file that an output will replace. Threads record whether any of them reads it.
 #[derive(Debug)]
-pub(crate) struct Watched {
+pub(crate) struct ReplacedFile {
     identity: Option<Identity>,
     was_read: AtomicBool,
 }
 
-impl Watched {
+impl ReplacedFile {
+    /// Returns the record of a file; `None` stands for an output that replaces no file.
     pub(crate) const fn new(identity: Option<Identity>) -> Self {
         Self { identity, was_read: AtomicBool::new(false) }
     }
 
-    /// To be called before a file is read.
-    pub(crate) fn note(&self, path: &Path) {
-        if self.identity.is_some() && Identity::of(path) == self.identity {
+    /// Records that a file will be read. To be called before each file is read.
+    pub(crate) fn record_read(&self, path: &Path) {
+        if self.identity.is_some() && Identity::of_path(path) == self.identity {
             self.was_read.store(true, Relaxed);
         }
     }
 
+    /// Checks whether the file was read.
     pub(crate) fn was_read(&self) -> bool {
         self.was_read.load(Relaxed)
     }

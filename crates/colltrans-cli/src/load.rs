@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 
 use colltrans_mesh::body::{BodyOptions, LoadError};
 
-use crate::args::{PlaceArguments, Sides, Taken};
-use crate::body::{self, Part, is_part, refusal};
+use crate::args::{BodyMode, InputPair, PlaceArguments};
+use crate::body::{self, Part, can_be_part, load_error_message};
 use crate::failure::{Code, Failure, note};
 use crate::progress;
 use crate::solid::Body;
 
 /// Lists the files of both sides.
-pub(crate) fn input_files(files: [&[PathBuf]; 2]) -> Vec<&Path> {
+pub(crate) fn input_paths(files: [&[PathBuf]; 2]) -> Vec<&Path> {
     files.into_iter().flatten().map(AsRef::as_ref).collect()
 }
 
 /// Reads each file as a convex body.
-pub(crate) fn only_convex(
+pub(crate) fn read_convex(
     files: [&[PathBuf]; 2],
     options: &[BodyOptions; 2],
 ) -> Result<[Vec<Part>; 2], LoadError> {
@@ -28,37 +28,37 @@ pub(crate) fn only_convex(
 
 /// Reads each file as a convex body. Returns `None` if the bodies are to be read as parts: because the
 /// command line requests parts, or because a mesh is not convex and the command line leaves the kind open.
-pub(crate) fn convex_bodies(
-    sides: &Sides<'_>,
+pub(crate) fn read_if_convex(
+    inputs: &InputPair<'_>,
     options: &[BodyOptions; 2],
 ) -> Result<Option<[Vec<Part>; 2]>, Failure> {
-    if sides.taken == Taken::Parts {
+    if inputs.mode == BodyMode::Parts {
         return Ok(None);
     }
-    match only_convex(sides.files, options) {
+    match read_convex(inputs.files, options) {
         Ok(bodies) => Ok(Some(bodies)),
-        Err(error) if sides.taken == Taken::AsTheyAre && is_part(&error) => Ok(None),
-        Err(error) => Err(Failure::new(Code::Input, refusal(&error))),
+        Err(error) if inputs.mode == BodyMode::Automatic && can_be_part(&error) => Ok(None),
+        Err(error) => Err(Failure::new(Code::Input, load_error_message(&error))),
     }
 }
 
 /// Reads the files of each side as one body of parts.
-pub(crate) fn parts(
+pub(crate) fn read_parts(
     files: [&[PathBuf]; 2],
     options: &[BodyOptions; 2],
 ) -> Result<[Body; 2], Failure> {
-    let bar = progress::steps(files.iter().map(|side| side.len()).sum(), "reading");
+    let bar = progress::step_bar(files.iter().map(|side| side.len()).sum(), "reading");
     let load = |k: usize| Body::load(files[k], &options[k], || bar.inc(1));
     let bodies = load(0).and_then(|moving| Ok([moving, load(1)?]));
     bar.finish_and_clear();
     bodies.map_err(|message| Failure::new(Code::Input, message))
 }
 
-/// Reports changes to poses and repairs of files.
-pub(crate) fn report_notes<'a>(
+/// Prints notes about normalised poses and repairs of files.
+pub(crate) fn print_notes<'a>(
     places: &PlaceArguments,
-    mended: impl IntoIterator<Item = &'a String>,
+    repairs: impl IntoIterator<Item = &'a String>,
 ) {
     places.notes().iter().flatten().for_each(|text| note(text));
-    mended.into_iter().for_each(|text| note(text));
+    repairs.into_iter().for_each(|text| note(text));
 }

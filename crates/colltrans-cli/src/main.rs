@@ -4,15 +4,14 @@
 //! - [`args`] parses the command line.
 //! - [`load`] reads mesh files as convex bodies ([`body`]) or as parts ([`solid`]).
 //! - A question calls the library: [`cast`], [`clearance`], [`distance`], [`directions`], [`motion`],
-//!   [`path`], and [`among`] for one body among many.
+//!   [`path`], and [`among`] for one body and a scene.
 //! - [`driver`] prints the answer as JSON ([`record`]) or as text ([`report`], [`numbers`]), then writes its
-//!   proof and its [`picture`].
+//!   proof and its [`picture`]. [`case`] saves a query that does not converge.
 //!
 //! Other commands: [`batch`] answers every line of a file, [`assembly`] plans for many parts, [`info`]
-//! describes a mesh, [`replay`] answers a query that [`case`] has saved, [`verify`] checks saved proofs,
-//! and [`setup`] installs man pages and completions.
+//! describes a mesh, [`replay`] answers a saved query, [`verify`] checks saved proofs, and [`setup`] installs man pages and completions.
 //!
-//! Files and streams: [`inputs`] reads text and refuses outputs that would overwrite an input. [`outputs`]
+//! Files and streams: [`inputs`] reads text and rejects outputs that would overwrite an input. [`outputs`]
 //! writes a file completely or not at all. [`terminal`] escapes control characters in names. [`progress`]
 //! draws bars.
 
@@ -55,7 +54,7 @@ use clap::{CommandFactory, Parser};
 use colltrans::record::PairQuestion;
 
 use args::{Arguments, Command, PlacedArguments};
-use failure::Failure;
+use failure::{Failure, print};
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|bug| {
@@ -63,12 +62,12 @@ fn main() -> ExitCode {
     }));
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(told) => return told_by_the_parser(told),
+        Err(error) => return report_parser_result(error),
     };
     let result = match arguments.command {
         Command::Cast(arguments) => cast::run(&arguments),
         Command::Clearance(arguments) if arguments.among.is_empty() => clearance::run(&arguments),
-        Command::Clearance(arguments) => among::clearance(&arguments),
+        Command::Clearance(arguments) => among::answer_clearance(&arguments),
         Command::Directions(arguments) => directions::run(&arguments),
         Command::Distance(arguments) => answer_pair(&arguments, PairQuestion::Distance),
         Command::Depth(arguments) => answer_pair(&arguments, PairQuestion::Depth),
@@ -83,6 +82,8 @@ fn main() -> ExitCode {
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Setup(arguments) => setup::run(&arguments),
+        Command::Files => print(&format!("{}\n", args::files_topic())),
+        Command::Json => print(&format!("{}\n", args::json_topic())),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -95,45 +96,51 @@ fn answer_pair(arguments: &PlacedArguments, question: PairQuestion) -> Result<()
     if arguments.among.is_empty() {
         distance::run(arguments, question)
     } else {
-        among::placed(arguments, question)
+        among::answer_placed(arguments, question)
     }
 }
 
-/// Help, the version, or what is wrong with the arguments: these may be names of files, so they are
-/// written out where they would steer a terminal.
-fn told_by_the_parser(mut told: clap::Error) -> ExitCode {
-    if !told.use_stderr() {
+/// Prints the help, the version, or the error of the arguments. Returns the exit code.
+///
+/// Errors repeat arguments, which may contain control characters; these are escaped.
+fn report_parser_result(mut error: clap::Error) -> ExitCode {
+    if error.kind() == ErrorKind::DisplayHelp {
+        // The layout of help is computed only here, because it renders the help of every subcommand.
+        error = args::compact_command().try_get_matches().err().unwrap_or(error);
+    }
+    if !error.use_stderr() {
         let printed = streams::standard_output().and_then(|mut out| {
-            told.print()?;
+            error.print()?;
             out.flush()
         });
         return printed.map_or(ExitCode::FAILURE, |()| ExitCode::SUCCESS);
     }
-    if let Some(tip) = tip(&told) {
-        told.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    if let Some(tip) = usage_tip(&error) {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
-    let text = told.render().to_string();
-    let _ = io::stderr().write_all(terminal::plain(&text).as_bytes());
-    ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
+    let text = error.render().to_string();
+    let _ = io::stderr().write_all(terminal::escape_lines(&text).as_bytes());
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
-/// Where what a command does not know belongs: an option of other commands, or one mesh more.
-fn tip(told: &clap::Error) -> Option<String> {
-    let Some(ContextValue::String(unknown)) = told.get(ContextKind::InvalidArg) else {
+/// Returns a tip for an unknown argument: the commands that have this option, or how to pass several meshes; `None` for
+/// other errors.
+fn usage_tip(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(unknown)) = error.get(ContextKind::InvalidArg) else {
         return None;
     };
-    if told.kind() != ErrorKind::UnknownArgument {
+    if error.kind() != ErrorKind::UnknownArgument {
         return None;
     }
     let Some(long) = unknown.strip_prefix("--") else {
         let is_mesh = colltrans_mesh::Format::of_path(Path::new(unknown)).is_ok();
-        let tip = "`colltrans clearance MOVING --among MESH...` asks about one body among many";
+        let tip = "`colltrans clearance MOVING --among MESH...` takes several meshes as a scene";
         return is_mesh.then(|| tip.to_owned());
     };
-    let has_it =
+    let has_option =
         |command: &&clap::Command| command.get_arguments().any(|a| a.get_long() == Some(long));
-    let all = Arguments::command();
-    let known = all.get_subcommands().filter(has_it);
+    let program = Arguments::command();
+    let known = program.get_subcommands().filter(has_option);
     let names: Vec<_> =
         known.map(|command| format!("`colltrans {}`", command.get_name())).collect();
     (!names.is_empty()).then(|| format!("--{long} belongs to {}", names.join(", ")))

@@ -1,5 +1,6 @@
-//! `colltrans motion`: when meshes that turn first meet others. Convex ones are asked as convex bodies, all
-//! others as parts.
+//! `colltrans motion`: the first contact of meshes that move along given motions.
+//!
+//! Convex meshes become convex bodies, all others parts.
 
 use std::path::PathBuf;
 
@@ -15,28 +16,30 @@ use crate::driver::{AnswerOutputs, OutputTargets};
 use crate::failure::{Code, Failure, note};
 use crate::load;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
-use crate::picture::{Moved, Surface, draw_motion};
+use crate::picture::{MotionPicture, Surface, draw_motion};
 use crate::record::Line;
-use crate::report::{features, hulls, kept, line, never, overlaps};
-use crate::solid::{self, PartsMotion, surface_of};
+use crate::report::{
+    never_statement, push_features, push_hulls, push_line, push_min_gap, push_start_overlaps,
+};
+use crate::solid::{self, PartsMotion, placed_surface};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
-    let sides = arguments.sides()?;
+    let inputs = arguments.input_pair()?;
     let MotionArguments { json, save_proof, picture, .. } = arguments;
-    let inputs = load::input_files(sides.files);
-    let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &inputs)?;
-    let (motions, rounded) = arguments.motions()?;
-    for text in &rounded {
+    let paths = load::input_paths(inputs.files);
+    let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &paths)?;
+    let (motions, notes) = arguments.motions()?;
+    for text in &notes {
         note(text);
     }
-    match load::convex_bodies(&sides, &arguments.body_options())? {
-        Some(bodies) => convex(arguments, targets, sides.files, &bodies, &motions),
-        None => parts(arguments, targets, sides.files, &motions),
+    match load::read_if_convex(&inputs, &arguments.body_options())? {
+        Some(bodies) => answer_convex(arguments, targets, inputs.files, &bodies, &motions),
+        None => answer_parts(arguments, targets, inputs.files, &motions),
     }
 }
 
-/// Asked of convex meshes.
-fn convex(
+/// Answers the question for convex bodies, and writes the answer.
+fn answer_convex(
     arguments: &MotionArguments,
     targets: OutputTargets<'_>,
     files: [&[PathBuf]; 2],
@@ -44,26 +47,27 @@ fn convex(
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
     if arguments.tolerance.is_some() && arguments.keep > 0.0 {
-        let why = "convex meshes have either --keep or --tolerance";
+        let why = "convex meshes accept either --keep or --tolerance; drop one of them";
         return Err(Failure::new(Code::Usage, why));
     }
-    load::report_notes(&arguments.places, bodies.iter().flatten().flat_map(|part| &part.notes));
-    let (found, proofs) = first_of_all(arguments, files, [&bodies[0], &bodies[1]], motions)?;
-    let Found { mut told, pair, undecided } = found;
+    load::print_notes(&arguments.places, bodies.iter().flatten().flat_map(|part| &part.notes));
+    let (found, proofs) = first_of_pairs(arguments, files, [&bodies[0], &bodies[1]], motions)?;
+    let PairAnswer { mut line, pair, undecided } = found;
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
-    (told.record.moving, told.record.fixed) = (name(0), name(1));
+    (line.record.moving, line.record.fixed) = (name(0), name(1));
     let proof = || {
         let proof = ProofFile::of_motions(proofs);
         Ok(Some(proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?.to_json()))
     };
-    let surface = |k: usize, pose: &Pose, from| surface_of(&bodies[k][pair[k]].body, pose, from);
-    write_answer(targets, &told, motions, proof, &surface)?;
+    let surface =
+        |k: usize, pose: &Pose, from| placed_surface(&bodies[k][pair[k]].body, pose, from);
+    write_answer(targets, &line, motions, proof, &surface)?;
     undecided.map_or(Ok(()), Err)
 }
 
-/// Asked of parts that need not be convex.
-fn parts(
+/// Answers the question for parts that need not be convex, and writes the answer.
+fn answer_parts(
     arguments: &MotionArguments,
     targets: OutputTargets<'_>,
     files: [&[PathBuf]; 2],
@@ -71,70 +75,77 @@ fn parts(
 ) -> Result<(), Failure> {
     let MotionArguments { tolerance, keep, ignore_start_overlaps, .. } = *arguments;
     if targets.save_proof.is_some() && ignore_start_overlaps {
-        let why = "--save-proof has no proof of what --ignore-start-overlaps leaves out";
+        let why =
+            "--save-proof cannot prove an answer with --ignore-start-overlaps; drop one of them";
         return Err(Failure::new(Code::Usage, why));
     }
-    let loaded = load::parts(files, &arguments.part_options())?;
-    load::report_notes(&arguments.places, loaded.iter().flat_map(|body| &body.notes));
+    let loaded = load::read_parts(files, &arguments.part_options())?;
+    load::print_notes(&arguments.places, loaded.iter().flat_map(|body| &body.notes));
     let (bodies, clears) = (loaded.each_ref(), arguments.clearance);
-    let asked = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
-    let told = Line::of(asked.ask().map_err(|error| solid::refused(error, bodies, tolerance))?);
+    let query = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
+    let answered = query.answer();
+    let line = Line::from_record(
+        answered.map_err(|error| solid::query_failure(error, bodies, tolerance))?,
+    );
     let proof = || {
-        let proof = ProofFile::with_solid_motion(&asked.cast()?);
+        let proof = ProofFile::with_solid_motion(&query.cast()?);
         let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
         Ok(Some(proof.to_json()))
     };
-    write_answer(targets, &told, motions, proof, &|k, pose, origin| {
+    write_answer(targets, &line, motions, proof, &|k, pose, origin| {
         bodies[k].surface(pose, origin)
     })?;
-    match (told.record.outcome, told.record.time) {
-        (Ending::Undecided, Some(TimeRecord { lower, .. })) => Err(stalled(lower).into()),
+    match (line.record.outcome, line.record.time) {
+        (Ending::Undecided, Some(TimeRecord { lower, .. })) => Err(step_limit_error(lower).into()),
         _ => Ok(()),
     }
 }
 
-/// Writes the answer of either kind of bodies.
+/// Writes the answer for both kinds of bodies.
 fn write_answer(
     targets: OutputTargets<'_>,
-    told: &Line<MotionRecord>,
+    line: &Line<MotionRecord>,
     motions: &[Motion; 2],
     proof: impl FnOnce() -> Result<Option<String>, Failure>,
     surface: &dyn Fn(usize, &Pose, DVec3) -> Surface,
 ) -> Result<(), Failure> {
-    let (record, motions) = (&told.record, motions.each_ref());
+    let (record, motions) = (&line.record, motions.each_ref());
     targets.write_answer(AnswerOutputs {
-        record: told,
-        words: || words(told, motions),
+        record: line,
+        text: || answer_text(line, motions),
         proof,
-        picture: || Ok(draw_motion(Moved { record, motions, surface })),
+        picture: || Ok(draw_motion(MotionPicture { record, motions, surface })),
     })
 }
 
-/// The error of a search that took its maximum number of steps.
-pub(crate) fn stalled(free_until: f64) -> QueryError {
+/// Returns the error of a search that took its maximum number of steps and proved freedom until a time.
+pub(crate) fn step_limit_error(free_until: f64) -> QueryError {
     QueryError::NotConverged { reason: Stalled::Motion { free_until } }
 }
 
-/// The answer of two of the meshes.
-struct Found {
-    told: Line<MotionRecord>,
-    /// Which ones.
+/// The answer for one pair of meshes.
+struct PairAnswer {
+    line: Line<MotionRecord>,
+    /// The numbers of the moving and of the fixed mesh.
     pair: [usize; 2],
-    /// Why the answer proves less than was asked.
+    /// The failure of a search that took its maximum number of steps.
     undecided: Option<Failure>,
 }
 
-/// What comes first of all pairs: an overlap when the motion begins, else the least time, else nothing; and the proofs of
-/// all, where they are to be kept.
-fn first_of_all(
+/// Returns the first event of all pairs, and the proofs of all pairs if `--save-proof` is given. The first event is an
+/// overlap at the start, otherwise the contact with the least lower bound of the time.
+///
+/// # Errors
+/// A query fails.
+fn first_of_pairs(
     arguments: &MotionArguments,
     files: [&[PathBuf]; 2],
     parts: [&[Part]; 2],
     motions: &[Motion; 2],
-) -> Result<(Found, Vec<ProofFile>), Failure> {
-    let (mut first, mut proofs): (Option<Found>, _) = (None, Vec::new());
-    // When two are first proven to meet.
-    let mut meets: Option<(f64, [usize; 2])> = None;
+) -> Result<(PairAnswer, Vec<ProofFile>), Failure> {
+    let (mut first, mut proofs): (Option<PairAnswer>, _) = (None, Vec::new());
+    // The least proven upper bound of a contact time, and its pair.
+    let mut least_upper: Option<(f64, [usize; 2])> = None;
     for (i, moving) in parts[0].iter().enumerate() {
         for (j, fixed) in parts[1].iter().enumerate() {
             let cast =
@@ -156,129 +167,140 @@ fn first_of_all(
             } else {
                 let outcome = cast.first_contact().map_err(failed)?;
                 if let MotionOutcome::Undecided(open) = &outcome {
-                    undecided = Some(failed(stalled(open.lower)));
+                    undecided = Some(failed(step_limit_error(open.lower)));
                 }
                 if arguments.save_proof.is_some() {
                     proofs.push(ProofFile::of_motion(&cast, &outcome));
                 }
                 MotionRecord::of(&outcome, &cast)
             };
-            let told = Line::of(record).with_parts([moving, fixed]);
-            let found = Found { told, pair: [i, j], undecided };
-            let upper = found.told.record.time.and_then(|time| time.upper);
-            if let Some(upper) = upper.filter(|upper| meets.is_none_or(|least| *upper < least.0)) {
-                meets = Some((upper, [i, j]));
+            let line = Line::from_record(record).with_parts([moving, fixed]);
+            let found = PairAnswer { line, pair: [i, j], undecided };
+            let upper = found.line.record.time.and_then(|time| time.upper);
+            if let Some(upper) =
+                upper.filter(|upper| least_upper.is_none_or(|least| *upper < least.0))
+            {
+                least_upper = Some((upper, [i, j]));
             }
-            if first.as_ref().is_none_or(|first| found.begins() < first.begins()) {
+            if first.as_ref().is_none_or(|first| found.start_bound() < first.start_bound()) {
                 first = Some(found);
             }
         }
     }
-    // The command line has asked for at least one on each side.
+    // The command line has at least one mesh on each side.
     let mut first = first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))?;
-    let is_open = matches!(first.told.record.outcome, Ending::Grazing | Ending::Undecided);
-    if let (true, Some((upper, [i, j]))) = (is_open, meets) {
-        // Two that come near each other hide none that meet later.
+    let is_open = matches!(first.line.record.outcome, Ending::Grazing | Ending::Undecided);
+    if let (true, Some((upper, [i, j]))) = (is_open, least_upper) {
+        // A pair without a proven contact may come first although another pair is proven to meet later.
         let [moving, fixed] = [&files[0][i], &files[1][j]].map(|file| file.display());
-        note(&format!("{moving} and {fixed} are proven to meet by {}", number(upper)));
-        if let Some(time) = &mut first.told.record.time {
+        note(&format!("{moving} and {fixed} are proven to meet by time {}", number(upper)));
+        if let Some(time) = &mut first.line.record.time {
             time.upper = Some(upper);
         }
     }
     Ok((first, proofs))
 }
 
-impl Found {
-    /// From when on the bodies may meet.
-    fn begins(&self) -> f64 {
-        match (self.told.record.outcome, self.told.record.time) {
+impl PairAnswer {
+    /// Returns a lower bound of the time from which the bodies may meet; infinite if they never do.
+    fn start_bound(&self) -> f64 {
+        match (self.line.record.outcome, self.line.record.time) {
             (Ending::Overlapping, _) => f64::NEG_INFINITY,
             (_, time) => time.map_or(f64::INFINITY, |time| time.lower),
         }
     }
 }
 
-/// The readable answer; `motions` are those of both bodies.
-pub(crate) fn words(told: &Line<MotionRecord>, motions: [&Motion; 2]) -> String {
-    let record = &told.record;
+/// Returns the answer as text. `motions` are those of the moving and of the fixed body.
+pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> String {
+    let record = &line.record;
     let mut text = match record.outcome {
         Ending::Contact => "contact\n".into(),
-        Ending::Blocked => "blocked: it can go so far\n".into(),
-        Ending::Grazing => "grazing: the bodies come nearer than rounding can tell\n".into(),
+        Ending::Blocked => "blocked: the body can move until the time below\n".into(),
+        Ending::Grazing => "grazing: the bodies come nearer than rounding resolves\n".into(),
         Ending::Overlapping => "overlapping: the bodies overlap when the motion begins\n".into(),
         Ending::Undecided => "undecided: the search took its maximum number of steps\n".into(),
-        _ => format!("free: {} throughout the motion\n", never(record)),
+        _ => format!("free: {} throughout the motion\n", never_statement(record)),
     };
     for (name, file) in [("moving mesh", &record.moving), ("fixed mesh", &record.fixed)] {
         if let Some(file) = file {
-            line(&mut text, name, file);
+            push_line(&mut text, name, file);
         }
     }
     if let Some(time) = record.time {
         match time {
             TimeRecord { lower, upper: None } if record.outcome == Ending::Undecided => {
-                line(&mut text, "free until", &number(lower));
+                push_line(&mut text, "free until", &number(lower));
             }
             TimeRecord { lower, upper: Some(upper) }
                 if matches!(record.outcome, Ending::Grazing | Ending::Undecided) =>
             {
-                line(&mut text, "no earlier", &number(lower));
-                line(&mut text, "no later", &format!("{}, when others meet", number(upper)));
+                push_line(&mut text, "no earlier", &number(lower));
+                push_line(
+                    &mut text,
+                    "no later",
+                    &format!("{}, when another pair meets", number(upper)),
+                );
             }
-            _ => times(&mut text, time),
+            _ => push_times(&mut text, time),
         }
         if let Some(TimeRecord { lower, upper }) = record.shrunk_time {
             let upper = upper.map_or("not proven".into(), number);
-            line(
+            push_line(
                 &mut text,
-                "shrunk",
-                &format!("{} to {upper}, for the shrunk bodies", number(lower)),
+                "offset",
+                &format!("{} to {upper}, for the offset bodies", number(lower)),
             );
         }
-        pose(&mut text, "pose", motions[0], time.lower);
+        push_pose(&mut text, "pose", motions[0], time.lower);
         if *motions[1] != Motion::still(motions[1].start()) {
-            pose(&mut text, "fixed pose", motions[1], time.lower);
+            push_pose(&mut text, "fixed pose", motions[1], time.lower);
         }
     }
     if let Some(point) = record.point {
-        line(&mut text, "point", &known_vector(point.into(), 1e-12));
+        push_line(&mut text, "point", &known_vector(point.into(), 1e-12));
     }
     if let Some(normal) = record.normal {
-        line(&mut text, "normal", &unit_vector(DVec3::from_array(normal)));
+        push_line(&mut text, "normal", &unit_vector(DVec3::from_array(normal)));
     }
-    features(&mut text, record.features.as_ref(), [None; 2]);
+    push_features(&mut text, record.features.as_ref(), [None; 2]);
     if let Some(planes) = record.planes {
-        let [planes, looks] =
-            [counted(planes, "plane", "planes"), counted(record.looks as usize, "look", "looks")];
-        line(&mut text, "proof", &format!("{planes}, found in {looks}"));
+        let planes = counted(planes, "plane", "planes");
+        let samples = counted(record.looks as usize, "distance sample", "distance samples");
+        push_line(&mut text, "proof", &format!("{planes}, found with {samples}"));
     }
     if let Some(tolerance) = record.tolerance {
-        line(&mut text, "tolerance", &number(tolerance));
+        push_line(&mut text, "tolerance", &number(tolerance));
     }
     let is_overlap = record.outcome == Ending::Overlapping;
-    overlaps(&mut text, &record.start_overlaps, if is_overlap { "overlap" } else { "ignored" });
-    kept(&mut text, record.keep);
-    hulls(&mut text, told.hull, record.outcome, false);
+    push_start_overlaps(
+        &mut text,
+        &record.start_overlaps,
+        if is_overlap { "overlap" } else { "ignored" },
+    );
+    push_min_gap(&mut text, record.keep);
+    push_hulls(&mut text, line.hull, record.outcome, false);
     text
 }
 
-fn times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
+/// Appends the time and its bounds.
+fn push_times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
     if let Some(upper) = upper {
         let value = lower + 0.5 * (upper - lower);
-        // Of bounds that are far apart the middle says nothing.
+        // The middle of distant bounds is not an estimate.
         if upper - lower < 1e-3 {
-            line(text, "time", &format!("{} of the motion", known(value, upper - lower)));
+            push_line(text, "time", &format!("{} of the motion", known(value, upper - lower)));
         }
-        line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+        push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
     } else {
-        line(text, "no earlier", &number(lower));
+        push_line(text, "no earlier", &number(lower));
     }
 }
 
-/// Where a body is at a time.
-fn pose(text: &mut String, name: &str, motion: &Motion, time: f64) {
+/// Appends the pose of a body at a time.
+fn push_pose(text: &mut String, name: &str, motion: &Motion, time: f64) {
     let Ok(pose) = motion.at(time) else { return };
     let q = pose.rotation();
     let rotation = [q.x, q.y, q.z, q.w].map(|x| known(x, 1e-14)).join(",");
-    line(text, name, &format!("{},{rotation}", known_vector(pose.translation(), 1e-14)));
+    push_line(text, name, &format!("{},{rotation}", known_vector(pose.translation(), 1e-14)));
 }

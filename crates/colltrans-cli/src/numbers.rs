@@ -1,20 +1,22 @@
-//! Numbers and vectors for people.
+//! Formats numbers and vectors for text output.
 
 use colltrans::glam::DVec3;
 pub(crate) use colltrans_mesh::words::{about, counted, decade, known, number, six_digits};
 
-/// The error of the components of a unit vector that is worth showing.
+/// Rounding error of the components of unit vectors.
 const UNIT_ERROR: f64 = 1e-14;
 
-/// A unit vector.
+/// Returns a unit vector with the digits that its rounding error leaves.
 pub(crate) fn unit_vector(v: DVec3) -> String {
     known_vector(v, UNIT_ERROR)
 }
 
+/// Returns a vector with all digits.
 pub(crate) fn vector(v: DVec3) -> String {
     v.to_array().map(number).join(",")
 }
 
+/// Returns a vector whose components are known to within `error`.
 pub(crate) fn known_vector(v: DVec3, error: f64) -> String {
     v.to_array().map(|c| known(c, error)).join(",")
 }
@@ -24,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zero_is_zero() {
+    fn signed_zeros_print_as_zero() {
         assert_eq!(vector(DVec3::new(-0.0, 1.0, -2.5)), "0,1,-2.5");
         assert_eq!(unit_vector(DVec3::new(1e-17, -1e-16, -1.0)), "0,0,-1");
     }

@@ -1,8 +1,8 @@
-//! Writes files so that they appear whole or not at all.
+//! Writes files so that they appear completely or not at all.
 //!
-//! A file is written under another name beside its place (`NAME.PROCESS-N.partial`), and renamed when
-//! all of it is on the disk. So a run that is killed, or a full disk, leaves what was there before, and
-//! at most a file that nobody takes for a result. Devices and pipes are written as they are.
+//! A file is written under a temporary name in the same folder (`NAME.PROCESS-N.partial`), and renamed when
+//! all of it is on the disk. Therefore a killed run or a full disk leaves the previous file unchanged. Devices and pipes
+//! are written directly.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
@@ -11,69 +11,73 @@ use std::path::{Path, PathBuf};
 use crate::failure::Failure;
 use crate::inputs::Identity;
 
-/// A file in the making.
+/// A file that is being written. It is removed unless it is finished.
 pub(crate) struct Output {
     file: File,
     partial: Option<Partial>,
 }
 
-/// Where a file is written, and where it belongs.
+/// The temporary and the final path of a file.
 struct Partial {
-    written: PathBuf,
+    temporary: PathBuf,
     target: PathBuf,
-    /// Of the file whose place it takes.
+    /// Identity of the file that it replaces.
     replaced: Option<Identity>,
 }
 
 impl Output {
+    /// Creates the temporary file.
+    ///
+    /// # Errors
+    /// The folder or the file cannot be written.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
-        let replaced = Identity::of(path);
-        let is_there = path.metadata().is_ok();
-        if is_there && replaced.is_none() {
-            // A device or a pipe; of a folder the system says so.
+        let replaced = Identity::of_path(path);
+        let exists = path.metadata().is_ok();
+        if exists && replaced.is_none() {
+            // A device or a pipe. Opening a folder fails.
             let file = OpenOptions::new().write(true).open(path)?;
             return Ok(Self { file, partial: None });
         }
-        // Behind a symbolic link, which stays; a file that must not be written is refused.
-        let target = if is_there { path.canonicalize()? } else { path.to_owned() };
-        if is_there {
+        // Replaces the file behind a symbolic link. Opening it fails if it is read-only.
+        let target = if exists { path.canonicalize()? } else { path.to_owned() };
+        if exists {
             OpenOptions::new().append(true).open(&target)?;
         }
-        let (file, written) = create_beside(&target)?;
-        Ok(Self { file, partial: Some(Partial { written, target, replaced }) })
+        let (file, temporary) = create_temporary(&target)?;
+        Ok(Self { file, partial: Some(Partial { temporary, target, replaced }) })
     }
 
-    /// To write into.
+    /// Returns the file to write to.
     pub(crate) fn file(&self) -> io::Result<File> {
         self.file.try_clone()
     }
 
-    /// The file whose place this one takes.
-    pub(crate) fn replaced(&self) -> Option<&Identity> {
+    /// Returns the file that this one replaces; `None` if there is none.
+    pub(crate) fn replaced_file(&self) -> Option<&Identity> {
         self.partial.as_ref().and_then(|partial| partial.replaced.as_ref())
     }
 
-    /// Puts the file, all of which is written, in its place.
+    /// Moves the complete file to its final path.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         let Some(partial) = &self.partial else { return self.file.flush() };
-        // Disks that are full, or far away, may say so only now.
+        // Full or remote disks may report their error only now.
         self.file.sync_all()?;
         if partial.replaced.is_some() {
             let permissions = partial.target.metadata()?.permissions();
-            fs::set_permissions(&partial.written, permissions)?;
+            fs::set_permissions(&partial.temporary, permissions)?;
         }
-        fs::rename(&partial.written, &partial.target)?;
+        fs::rename(&partial.temporary, &partial.target)?;
         self.partial = None;
         Ok(())
     }
 
-    /// The same if there is no such file yet: a second name for it, of which there can be one only, then
-    /// the first is given up.
+    /// Gives the complete file its final path if no file exists there. A hard link decides atomically; the temporary name
+    /// is then removed.
     fn finish_new(self) -> io::Result<()> {
         let Some(partial) = &self.partial else { return Err(ErrorKind::AlreadyExists.into()) };
         self.file.sync_all()?;
-        if let Err(error) = fs::hard_link(&partial.written, &partial.target) {
-            // Some file systems have one name for each file.
+        if let Err(error) = fs::hard_link(&partial.temporary, &partial.target) {
+            // Some file systems have no hard links.
             if error.kind() == ErrorKind::AlreadyExists || partial.target.symlink_metadata().is_ok()
             {
                 return Err(ErrorKind::AlreadyExists.into());
@@ -83,28 +87,28 @@ impl Output {
         Ok(())
     }
 
-    /// Leaves the file under its other name, which is returned.
-    pub(crate) fn leave(mut self) -> Option<PathBuf> {
-        self.partial.take().map(|partial| partial.written)
+    /// Keeps the file under its temporary name, which is returned; `None` for devices and pipes.
+    pub(crate) fn keep_temporary(mut self) -> Option<PathBuf> {
+        self.partial.take().map(|partial| partial.temporary)
     }
 }
 
-/// What is not finished is no file.
+/// Removes a file that was not finished.
 impl Drop for Output {
     fn drop(&mut self) {
         if let Some(partial) = &self.partial {
-            let _ = fs::remove_file(&partial.written);
+            let _ = fs::remove_file(&partial.temporary);
         }
     }
 }
 
-/// Bytes of a name that are kept in that of the partial file: names have a limit.
-const KEPT: usize = 100;
+/// Maximum number of bytes of a name that a longer name repeats, because names have a limit.
+const MAX_NAME_BYTES: usize = 100;
 
-/// A new file in the same folder.
-fn create_beside(target: &Path) -> io::Result<(File, PathBuf)> {
+/// Creates a new file in the folder of `target`.
+fn create_temporary(target: &Path) -> io::Result<(File, PathBuf)> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
-    let name = &name[..name.floor_char_boundary(KEPT)];
+    let name = &name[..name.floor_char_boundary(MAX_NAME_BYTES)];
     let process = std::process::id();
     let mut attempt = 0;
     loop {
@@ -117,22 +121,24 @@ fn create_beside(target: &Path) -> io::Result<(File, PathBuf)> {
     }
 }
 
-/// Files that belong together: all are written before the first is put in its place.
+/// Files that belong together. All are written before the first is moved to its final path.
 #[derive(Default)]
 pub(crate) struct Outputs(Vec<(PathBuf, Output)>);
 
 impl Outputs {
+    /// Writes a file under its temporary name.
     pub(crate) fn write(&mut self, path: PathBuf, bytes: &[u8]) -> Result<(), Failure> {
-        let failed = |error| Failure::output(path.display(), &error);
+        let failed = |error| Failure::write_error(path.display(), &error);
         let mut output = Output::create(&path).map_err(failed)?;
         output.file.write_all(bytes).map_err(failed)?;
         self.0.push((path, output));
         Ok(())
     }
 
+    /// Moves all files to their final paths.
     pub(crate) fn finish(self) -> Result<(), Failure> {
         for (path, output) in self.0 {
-            output.finish().map_err(|error| Failure::output(path.display(), &error))?;
+            output.finish().map_err(|error| Failure::write_error(path.display(), &error))?;
         }
         Ok(())
     }
@@ -140,19 +146,22 @@ impl Outputs {
 
 /// Writes a file.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut one = Outputs::default();
-    one.write(path.to_owned(), bytes)?;
-    one.finish()
+    let mut outputs = Outputs::default();
+    outputs.write(path.to_owned(), bytes)?;
+    outputs.finish()
 }
 
-/// Writes a proof.
+/// Writes a proof with a final line feed.
 pub(crate) fn write_proof(path: &Path, proof: &str) -> Result<(), Failure> {
     write(path, format!("{proof}\n").as_bytes())
 }
 
-/// Writes a file that is not there yet; what is there, also by then, is left as it is.
+/// Writes a new file. Never changes an existing one, even if it appears in the meantime.
+///
+/// # Errors
+/// The file exists, or it cannot be written.
 pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // Nothing is written where it would be in vain.
+    // Checked first to write nothing in vain.
     if path.symlink_metadata().is_ok() {
         return Err(ErrorKind::AlreadyExists.into());
     }
@@ -161,16 +170,17 @@ pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     output.finish_new()
 }
 
-/// Names of files for names of anything: letters, digits and `-_.` stay; two names that would be one
-/// file, also where large and small letters are the same, get two.
+/// Makes distinct file names of arbitrary names. Letters, digits and `-_.` stay. Names that would be the same file,
+/// also on systems that ignore the case of letters, get different numbers.
 #[derive(Default)]
 pub(crate) struct FileNames(std::collections::HashSet<String>);
 
 impl FileNames {
-    pub(crate) fn of(&mut self, name: &str) -> String {
+    /// Returns the file name for a name.
+    pub(crate) fn unique_name(&mut self, name: &str) -> String {
         let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
         let plain: String = name.chars().map(safe).collect();
-        let plain = &plain[..plain.floor_char_boundary(KEPT)];
+        let plain = &plain[..plain.floor_char_boundary(MAX_NAME_BYTES)];
         let mut chosen = plain.to_owned();
         let mut number = 2;
         while !self.0.insert(chosen.to_lowercase()) {
@@ -187,7 +197,7 @@ mod tests {
     use colltrans_testkit::TemporaryFolder;
 
     #[test]
-    fn what_is_not_finished_is_not_there() {
+    fn unfinished_output_leaves_no_file() {
         let folder = TemporaryFolder::new();
         let path = folder.path().join("a.txt");
         let names = || fs::read_dir(folder.path()).unwrap().count();
@@ -200,22 +210,26 @@ mod tests {
         assert_eq!((fs::read(&path).unwrap(), names()), (b"whole".to_vec(), 1));
         let mut output = Output::create(&path).unwrap();
         output.file.write_all(b"other").unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"whole", "until the other is whole");
+        assert_eq!(
+            fs::read(&path).unwrap(),
+            b"whole",
+            "the old file stays until the new one is complete"
+        );
         output.finish().unwrap();
         assert_eq!((fs::read(&path).unwrap(), names()), (b"other".to_vec(), 1));
-        // As long as names may be.
+        // The longest permitted name.
         write(&folder.path().join("ä".repeat(127)), b"").unwrap();
     }
 
     #[test]
-    fn what_is_there_is_not_written_over_by_what_is_new() {
+    fn write_new_keeps_existing_files() {
         let folder = TemporaryFolder::new();
         let path = folder.path().join("case.json");
         let names = || fs::read_dir(folder.path()).unwrap().count();
         let mut late = Output::create(&path).unwrap();
         late.file.write_all(b"late").unwrap();
         write_new(&path, b"first").unwrap();
-        assert_eq!(names(), 2, "the one, and what is being written");
+        assert_eq!(names(), 2, "the new file and the temporary one");
         assert_eq!(write_new(&path, b"second").unwrap_err().kind(), ErrorKind::AlreadyExists);
         assert_eq!(late.finish_new().unwrap_err().kind(), ErrorKind::AlreadyExists);
         assert_eq!((fs::read(&path).unwrap(), names()), (b"first".to_vec(), 1));
@@ -223,16 +237,16 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_full_disk_is_said() {
+    fn write_to_full_device_returns_error() {
         assert!(write(Path::new("/dev/full"), b"all of it").is_err());
         write(Path::new("/dev/null"), b"all of it").unwrap();
     }
 
     #[test]
-    fn two_names_are_two_files() {
+    fn different_names_become_different_files() {
         let mut names = FileNames::default();
-        let found = ["a/b", "a_b", "A_B", "../x", "a_b_2"].map(|name| names.of(name));
+        let found = ["a/b", "a_b", "A_B", "../x", "a_b_2"].map(|name| names.unique_name(name));
         assert_eq!(found, ["a_b", "a_b_2", "A_B_3", ".._x", "a_b_2_2"]);
-        assert_eq!(names.of(&"x".repeat(500)).len(), KEPT);
+        assert_eq!(names.unique_name(&"x".repeat(500)).len(), MAX_NAME_BYTES);
     }
 }

@@ -1,12 +1,12 @@
-//! Progress bars for work that takes long: on standard error, and only where that is a terminal.
+//! Progress bars on standard error, if it is a terminal.
 
 use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar in a look of its own.
-pub(crate) fn bar(length: Option<u64>, template: &str) -> ProgressBar {
+/// Returns a bar with this template; hidden if standard error is not a terminal. `length` is `None` if it is unknown.
+pub(crate) fn bar_with_template(length: Option<u64>, template: &str) -> ProgressBar {
     if !io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -16,10 +16,10 @@ pub(crate) fn bar(length: Option<u64>, template: &str) -> ProgressBar {
     bar
 }
 
-/// A bar over a number of steps, any of which may take long.
-pub(crate) fn steps(count: usize, what: &str) -> ProgressBar {
+/// Returns a bar over a number of steps. Its spinner turns during long steps.
+pub(crate) fn step_bar(count: usize, what: &str) -> ProgressBar {
     let template = "{spinner} {msg} {wide_bar} {pos}/{len} {elapsed}";
-    let bar = bar(Some(count as u64), template).with_message(what.to_owned());
+    let bar = bar_with_template(Some(count as u64), template).with_message(what.to_owned());
     bar.enable_steady_tick(Duration::from_millis(120));
     bar
 }

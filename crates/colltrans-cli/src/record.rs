@@ -1,5 +1,6 @@
-//! A result as a line of JSON, in the fields that `batch --help` documents: the library's record, and
-//! what only files have.
+//! Serialises an answer as a line of JSON: the record of the library, and fields about the files.
+//!
+//! `colltrans help json` documents the fields.
 
 use colltrans::record::{Dents, Ending, ErrorRecord, Record};
 use colltrans_mesh::body::Excess;
@@ -8,9 +9,9 @@ use serde_json::value::RawValue;
 
 use crate::body::Part;
 use crate::numbers::{six_digits, unit_vector};
-use crate::terminal::plain_json;
+use crate::terminal::escape_json;
 
-/// One result.
+/// One answer.
 #[derive(Debug, Serialize)]
 pub(crate) struct Line<R = Record> {
     #[serde(flatten)]
@@ -18,106 +19,108 @@ pub(crate) struct Line<R = Record> {
     /// Depths of the dents of meshes that are convex only to within the tolerance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) dents: Option<Dents>,
-    /// For people: what is wrong.
+    /// Error message, or the direction of a grazing overlap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) message: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) hull: Option<Hulls>,
-    /// What was done to the meshes, in a batch; other commands say it on standard error.
+    /// Notes about repaired meshes in a batch. Other commands print them on standard error.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) notes: Vec<String>,
 }
 
-/// What the hulls have that their parts have not.
+/// By how much hulls exceed their meshes.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct Hulls {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) moving: Option<Excess>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fixed: Option<Excess>,
-    /// How far points of the parts may be beyond their hulls, as those that are so near to one are dropped.
+    /// Upper bound of the distance of mesh points from their hulls: the hull algorithm drops points that are this near.
     #[serde(skip)]
     pub(crate) dropped: f64,
 }
 
 impl Hulls {
-    /// Of the moving and the fixed body; `None` where they are what they were made of.
-    pub(crate) fn of(parts: [&Part; 2]) -> Option<Self> {
+    /// Returns the excesses of the moving and the fixed hull; `None` if both equal their meshes.
+    pub(crate) fn from_parts(parts: [&Part; 2]) -> Option<Self> {
         let [moving, fixed] = parts.map(|part| part.excess);
         let dropped = parts.map(|part| part.body.hull_error()).into_iter().sum();
         (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed, dropped })
     }
 
-    /// Those that there are, by name.
-    pub(crate) fn named(&self) -> impl Iterator<Item = (&'static str, Excess)> + use<> {
+    /// Returns the excesses with their names.
+    pub(crate) fn named_excesses(&self) -> impl Iterator<Item = (&'static str, Excess)> + use<> {
         let both = [("moving hull", self.moving), ("fixed hull", self.fixed)];
         both.into_iter().filter_map(|(name, excess)| Some((name, excess?)))
     }
 }
 
 impl From<Record> for Line {
-    /// A contact that is none for certain says so.
+    /// Builds the line of a record. A grazing contact has a message with its overlap.
     fn from(record: Record) -> Self {
         let message = record.contact().and_then(|contact| {
             let (overlap, along) = (six_digits(contact.overlap?), contact.sideways?);
             let along = unit_vector(along.into());
-            Some(format!("the shadows overlap by {overlap} along [{along}]"))
+            Some(format!("the projections overlap by {overlap} along [{along}]"))
         });
-        Self { message, ..Self::of(record) }
+        Self { message, ..Self::from_record(record) }
     }
 }
 
 impl<R> Line<R> {
-    /// Returns the line of a record and nothing else.
-    pub(crate) const fn of(record: R) -> Self {
+    /// Builds the line of a record without other fields.
+    pub(crate) const fn from_record(record: R) -> Self {
         Self { record, dents: None, message: None, hull: None, notes: Vec::new() }
     }
 
     /// Adds the dents and the hulls of two convex bodies.
     pub(crate) fn with_parts(self, parts: [&Part; 2]) -> Self {
         let dents = Dents::of(parts.map(|part| part.dent));
-        Self { dents, hull: Hulls::of(parts), ..self }
+        Self { dents, hull: Hulls::from_parts(parts), ..self }
     }
 }
 
 impl Line {
-    /// That there is no answer, and why.
-    pub(crate) fn error(message: String) -> Self {
-        Self { message: Some(message), ..Self::of(ErrorRecord::default().into()) }
+    /// Builds the line of an error.
+    pub(crate) fn from_error(message: String) -> Self {
+        Self { message: Some(message), ..Self::from_record(ErrorRecord::default().into()) }
     }
 
+    /// Checks whether the line has no answer.
     pub(crate) fn is_error(&self) -> bool {
         self.record.outcome() == Ending::Error
     }
 
-    /// Appends the line of a batch, with its end; the id comes first.
-    pub(crate) fn write_with(&self, id: Option<&RawValue>, text: &mut Vec<u8>) {
+    /// Appends the line with an id as its first field, and a line feed.
+    pub(crate) fn write_with_id(&self, id: Option<&RawValue>, text: &mut Vec<u8>) {
         text.extend_from_slice(b"{\"id\":");
         text.extend_from_slice(id.map_or("null", RawValue::get).as_bytes());
         let start = text.len();
-        write(self, text);
-        // The fields go on.
+        write_json_line(self, text);
+        // Replaces the opening brace, because the object has begun.
         text[start] = b',';
     }
 }
 
-/// Returns a record as a line of JSON with its line feed.
-pub(crate) fn json(record: &impl Serialize) -> String {
+/// Returns a record as a line of JSON with a line feed.
+pub(crate) fn json_line(record: &impl Serialize) -> String {
     let mut text = Vec::new();
-    write(record, &mut text);
+    write_json_line(record, &mut text);
     String::from_utf8(text).unwrap_or_default()
 }
 
-fn write(record: &impl Serialize, text: &mut Vec<u8>) {
+/// Appends a record as a line of JSON. Control characters are escaped.
+fn write_json_line(record: &impl Serialize, text: &mut Vec<u8>) {
     let start = text.len();
-    // Nothing in a line can fail to be written.
+    // No field of a line can fail to serialise.
     let written = serde_json::to_writer(&mut *text, record);
     debug_assert!(written.is_ok(), "{written:?}");
-    // What could steer a terminal is none of ASCII, whose control characters JSON has escaped, but one.
+    // JSON escapes the control characters of ASCII except for DEL. Others are beyond ASCII.
     let line = &text[start..];
-    // All bytes, in lanes: looking for one costs more than a search that could end early saves.
+    // The maximum of all bytes is computed in SIMD lanes, which a search that ends early would prevent.
     if line.iter().fold(0, |highest, &byte| byte.max(highest)) >= 0x7f {
-        let safe = plain_json(&String::from_utf8_lossy(line)).into_owned();
+        let safe = escape_json_line(&String::from_utf8_lossy(line)).into_owned();
         text.truncate(start);
         text.extend_from_slice(safe.as_bytes());
     }
@@ -137,20 +140,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_there_is_not_written() {
-        let line = Line::<Record>::of(ErrorRecord::default().into());
-        assert_eq!(json(&line), "{\"outcome\":\"error\"}\n");
+    fn absent_fields_are_omitted() {
+        let line = Line::<Record>::from_record(ErrorRecord::default().into());
+        assert_eq!(json_line(&line), "{\"outcome\":\"error\"}\n");
         let mut text = b"before\n".to_vec();
-        line.write_with(None, &mut text);
+        line.write_with_id(None, &mut text);
         assert_eq!(text, b"before\n{\"id\":null,\"outcome\":\"error\"}\n");
     }
 
     #[test]
-    fn ids_are_written_as_they_came_and_nothing_steers_a_terminal() {
-        let line = Line::error("\u{1b}[31m\u{7f}\u{9b}\u{202e}".into());
+    fn ids_are_unchanged_and_control_characters_are_escaped() {
+        let line = Line::from_error("\u{1b}[31m\u{7f}\u{9b}\u{202e}".into());
         let mut text = Vec::new();
         let id: Box<RawValue> = serde_json::from_str("[1.0, \"x\"]").unwrap();
-        line.write_with(Some(&id), &mut text);
+        line.write_with_id(Some(&id), &mut text);
         let text = String::from_utf8(text).unwrap();
         assert!(text.starts_with("{\"id\":[1.0, \"x\"],\"outcome\""), "{text}");
         assert!(text.trim_end().chars().all(|c| c.is_ascii() && !c.is_control()), "{text}");
@@ -159,22 +162,25 @@ mod tests {
     }
 
     #[test]
-    fn a_hull_is_told_beside_the_record() {
+    fn hull_excess_follows_the_record() {
         let excess =
             Excess { hull_volume: 0.1, part_volume: None, is_closed: false, depth: Some(2.0) };
         let hull = Some(Hulls { moving: None, fixed: Some(excess), dropped: 0.0 });
-        let text =
-            json(&Line { hull, notes: vec!["a".into()], ..Line::of(ErrorRecord::default()) });
+        let text = json_line(&Line {
+            hull,
+            notes: vec!["a".into()],
+            ..Line::from_record(ErrorRecord::default())
+        });
         let hull = r#""hull":{"fixed":{"hull_volume":0.1,"depth":2.0}},"notes":["a"]"#;
         assert_eq!(text, format!("{{\"outcome\":\"error\",{hull}}}\n"));
     }
 
     #[test]
-    fn the_schema_has_the_fields_of_each_record() {
+    fn schema_has_exactly_the_fields_of_each_record() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/answers.schema.json");
         let schema = std::fs::read_to_string(file).unwrap();
         let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
-        // Those of lines, and of the parts of an assembly.
+        // Fields of lines, and of the parts of an assembly.
         let others = ["id", "dents", "message", "hull", "notes", "parts"];
         for (name, fields) in [
             ("cast_answer", CastRecord::fields()),

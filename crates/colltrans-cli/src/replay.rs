@@ -1,4 +1,4 @@
-//! `colltrans replay`: a saved query once more.
+//! `colltrans replay`: answers a saved query again.
 
 use colltrans::motion::{MotionCase, MotionOutcome};
 use colltrans::record::{MotionRecord, Question};
@@ -14,32 +14,42 @@ use crate::report;
 pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let place = arguments.case.display();
     let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
-    let text = read_text(&arguments.case)?;
-    let told = match MotionCase::from_json(&text) {
+    let json = read_text(&arguments.case)?;
+    let text = match MotionCase::from_json(&json) {
         Err(CaseError::Format { .. }) => {
-            let case = Case::from_json(&text).map_err(|error| input(error.to_string()))?;
-            of_cast(&case, arguments.json)?
+            let case = Case::from_json(&json).map_err(|error| input(error.to_string()))?;
+            replay_cast(&case, arguments.json)?
         }
-        case => of_motion(&case.map_err(|error| input(error.to_string()))?, arguments.json)?,
+        case => replay_motion(&case.map_err(|error| input(error.to_string()))?, arguments.json)?,
     };
-    print(&told)
+    print(&text)
 }
 
-fn of_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
+/// Returns the answer of a saved cast as text or JSON.
+fn replay_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast()?;
     let answer = Question::Contact.ask(&cast)?;
-    let told = Line::from(answer.record(&cast));
-    Ok(if as_json { record::json(&told) } else { report::answer(&answer, &told, cast.direction()) })
+    let line = Line::from(answer.record(&cast));
+    Ok(if as_json {
+        record::json_line(&line)
+    } else {
+        report::cast_answer_text(&answer, &line, cast.direction())
+    })
 }
 
-fn of_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
+/// Returns the answer of a saved motion as text or JSON.
+///
+/// # Errors
+/// The query fails. If it is undecided, the answer is printed first.
+fn replay_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast();
-    let found = cast.first_contact()?;
-    let told = Line::of(MotionRecord::of(&found, &cast));
-    let told = if as_json { record::json(&told) } else { motion::words(&told, cast.motions()) };
-    if let MotionOutcome::Undecided(open) = &found {
-        print(&told)?;
-        return Err(motion::stalled(open.lower).into());
+    let outcome = cast.first_contact()?;
+    let line = Line::from_record(MotionRecord::of(&outcome, &cast));
+    let text =
+        if as_json { record::json_line(&line) } else { motion::answer_text(&line, cast.motions()) };
+    if let MotionOutcome::Undecided(open) = &outcome {
+        print(&text)?;
+        return Err(motion::step_limit_error(open.lower).into());
     }
-    Ok(told)
+    Ok(text)
 }

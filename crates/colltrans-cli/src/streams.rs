@@ -1,22 +1,22 @@
 //! Standard output, and whether it was closed when the program started.
 //!
-//! Rust's runtime opens `/dev/null` in the place of a closed standard stream before `main`, so that answers are written
-//! and lost without an error. The system calls the functions of one section of a program before that: [`look`] is one
-//! of them.
+//! Before `main`, the runtime of Rust replaces a closed standard stream by `/dev/null`, so that answers would be lost
+//! without an error. The system calls the functions in one section of the program before that;
+//! [`record_closed_output`] is one of them.
 
 use std::io::{self, Stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static IS_CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Notes whether there is a standard output.
+/// Records whether standard output is closed.
 #[cfg(any(
     target_os = "linux",
     target_os = "android",
     target_os = "freebsd",
     target_vendor = "apple"
 ))]
-extern "C" fn look() {
+extern "C" fn record_closed_output() {
     IS_CLOSED.store(rustix::io::fcntl_getfd(io::stdout()).is_err(), Ordering::Relaxed);
 }
 
@@ -26,12 +26,15 @@ extern "C" fn look() {
     target_os = "freebsd",
     target_vendor = "apple"
 ))]
-#[expect(unsafe_code, reason = "the section of a static is named; there is no unsafe block")]
+#[expect(
+    unsafe_code,
+    reason = "naming the section of a static is unsafe; there is no unsafe block"
+)]
 mod at_start {
     #[used]
     #[cfg_attr(target_vendor = "apple", unsafe(link_section = "__DATA,__mod_init_func"))]
     #[cfg_attr(not(target_vendor = "apple"), unsafe(link_section = ".init_array"))]
-    static LOOK: extern "C" fn() = super::look;
+    static RECORD_CLOSED_OUTPUT: extern "C" fn() = super::record_closed_output;
 }
 
 /// Returns standard output.

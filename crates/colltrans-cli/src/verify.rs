@@ -9,6 +9,10 @@ use crate::directions;
 use crate::failure::{Code, Failure, print, print_json};
 use crate::inputs::read_text;
 
+/// Checks a proof, and prints its statement.
+///
+/// # Errors
+/// The file cannot be read, or the proof does not hold.
 pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let place = arguments.proof.display();
     let text = read_text(&arguments.proof)?;
@@ -19,111 +23,114 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         Err(error) => {
             let error = error.to_string();
             if arguments.json {
-                let told = json!({ "holds": false, "message": error });
-                print_json(&format!("{told}\n"))?;
+                let answer = json!({ "holds": false, "message": error });
+                print_json(&format!("{answer}\n"))?;
             }
             Err(Failure::new(Code::Refused, format!("{place}: the proof does not hold: {error}")))
         }
     }
 }
 
-/// Prints the statement of a proof that holds, in words or in the fields of answers.
+/// Prints the statement of a proof that holds, as text or as JSON.
 fn print_statement(proof: &ProofFile, proven: &Proven<'_>, as_json: bool) -> Result<(), Failure> {
-    let words = proof.to_string();
+    let statement = proof.to_string();
     let free = match proven {
         Proven::Directions(free) => Some(FreeRecord::of(free, |_| [None, None])),
         _ => None,
     };
     if as_json {
-        return print_json(&format!("{}\n", told(proof, proven.time(), free.as_ref(), &words)));
+        return print_json(&format!(
+            "{}\n",
+            statement_json(proof, proven.time(), free.as_ref(), &statement)
+        ));
     }
     match &free {
-        Some(free) => print(&format!("holds: {words}: {}\n", directions::verified(free))),
-        None => print(&format!("holds: {words}\n")),
+        Some(free) => print(&format!("holds: {statement}: {}\n", directions::verified_text(free))),
+        None => print(&format!("holds: {statement}\n")),
     }
 }
 
-/// What is proven, in the fields of answers.
-fn told(
+/// Returns the proven statement with the fields of answers.
+fn statement_json(
     proof: &ProofFile,
     time: Option<[f64; 2]>,
     free: Option<&FreeRecord>,
-    words: &str,
+    statement: &str,
 ) -> Value {
     let mut fields = Map::new();
-    let mut say = |name: &str, value: Value| fields.insert(name.into(), value);
-    say("holds", json!(true));
+    let mut put = |name: &str, value: Value| fields.insert(name.into(), value);
+    put("holds", json!(true));
     if let Some(count) = proof.obstacles() {
-        say("obstacles", json!(count));
+        put("obstacles", json!(count));
     }
     match proof.statement() {
         Statement::Contacts(contacts) => {
             let [first, last] = contacts.bounds();
-            first.map(|bounds| say("translation_bounds", json!(bounds)));
-            last.map(|bounds| say("exit_bounds", json!(bounds)));
-            contacts.slide.map(|slide| say("overlap", json!(slide.overlap)));
+            first.map(|bounds| put("translation_bounds", json!(bounds)));
+            last.map(|bounds| put("exit_bounds", json!(bounds)));
+            contacts.slide.map(|slide| put("overlap", json!(slide.overlap)));
         }
         Statement::Separation(separation) => {
-            say("margin", json!(separation.margin));
+            put("margin", json!(separation.margin));
         }
-        Statement::Clearance(statement) => {
-            say("tolerance", json!(statement.certificate.tolerance));
-            if let Some(stop) = statement.stop {
-                say("translation_bounds", json!(stop.translation.bounds()));
-                say("facets", json!(stop.facets));
+        Statement::Clearance(clearance) => {
+            put("tolerance", json!(clearance.certificate.tolerance));
+            if let Some(stop) = clearance.stop {
+                put("translation_bounds", json!(stop.translation.bounds()));
+                put("facets", json!(stop.facets));
             }
-            statement.separation.map(|plane| say("margin", json!(plane.margin)));
+            clearance.separation.map(|plane| put("margin", json!(plane.margin)));
         }
         Statement::Distance(DistanceStatement { gap, near }) => {
-            gap.map(|gap| say("lower", json!(gap.gap)));
-            near.map(|near| say("upper", json!(near.distance)));
+            gap.map(|gap| put("lower", json!(gap.gap)));
+            near.map(|near| put("upper", json!(near.distance)));
         }
         Statement::Depth(depth) => {
-            say("lower", json!(depth.lower));
-            say("upper", json!(depth.upper));
+            put("lower", json!(depth.lower));
+            put("upper", json!(depth.upper));
         }
         Statement::SolidDistance(proof) => {
-            say("lower", json!(proof.lower));
-            say("upper", json!(proof.near.distance()));
+            put("lower", json!(proof.lower));
+            put("upper", json!(proof.near.distance()));
         }
         Statement::FreeDirections(of) => {
-            say("tolerance", json!(of.tolerance));
+            put("tolerance", json!(of.tolerance));
         }
         Statement::Nearest(of) => {
-            say("obstacle", json!(of.obstacle));
-            say("lower", json!(of.lower));
-            say("upper", json!(of.near.distance()));
+            put("obstacle", json!(of.obstacle));
+            put("lower", json!(of.lower));
+            put("upper", json!(of.near.distance()));
         }
         Statement::Within(of) => {
             let near =
                 |(id, near): &(_, AnyNear)| json!({ "obstacle": id, "upper": near.distance() });
-            say("length", json!(of.length));
-            say("closer", of.closer.iter().map(near).collect());
+            put("length", json!(of.length));
+            put("closer", of.closer.iter().map(near).collect());
             if !of.undecided.is_empty() {
                 let open = of.undecided.iter().map(|id| json!({ "obstacle": id }));
-                say("undecided", open.collect());
+                put("undecided", open.collect());
             }
         }
         Statement::SceneClearance(of) => {
-            of.stop.map(|stop| say("obstacle", json!(stop)));
-            of.lower.is_finite().then(|| say("distance", json!(of.lower)));
+            of.stop.map(|stop| put("obstacle", json!(stop)));
+            of.lower.is_finite().then(|| put("distance", json!(of.lower)));
         }
         Statement::Motions(_) => {}
         Statement::Path(of) => {
-            say("pairs", json!(of.pairs));
+            put("pairs", json!(of.pairs));
         }
     }
     let inverted = proof.inverted();
-    (inverted != [0; 2]).then(|| say("inverted", json!(inverted)));
+    (inverted != [0; 2]).then(|| put("inverted", json!(inverted)));
     if let Some([lower, upper]) = time {
         let upper = upper.is_finite().then_some(upper);
-        say("time", json!({ "lower": lower, "upper": upper }));
+        put("time", json!({ "lower": lower, "upper": upper }));
     }
     if let Some(free) = free {
-        say("outcome", json!(free.outcome));
-        say("free_share", json!(free.free_share));
-        say("undecided_share", json!(free.undecided_share));
+        put("outcome", json!(free.outcome));
+        put("free_share", json!(free.free_share));
+        put("undecided_share", json!(free.undecided_share));
     }
-    say("statement", json!(words));
+    put("statement", json!(statement));
     Value::Object(fields)
 }

@@ -1,5 +1,5 @@
-//! `--among`: one body among many. `distance` says which is nearest, `within` which are closer than a length,
-//! `clearance` which one the body meets first.
+//! Queries of one body and a scene (`--among`): `distance` finds the nearest obstacle, `within` those closer than a length,
+//! `clearance` the first obstacle in the way.
 
 mod scene;
 mod text;
@@ -19,30 +19,36 @@ use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
 use crate::failure::{Code, Failure};
 use crate::load;
 use crate::record::Line;
-use scene::{Scene, Ways};
+use scene::{ReadOptions, Scene};
 
-/// What both kinds of questions have in common.
-struct Request<'a> {
+/// A query with a scene.
+struct SceneRequest<'a> {
     moving: &'a PathBuf,
     scene: &'a [PathBuf],
     pose: Pose,
-    ways: Ways,
+    options: ReadOptions,
     json: bool,
     save_proof: Option<&'a PathBuf>,
 }
 
-/// `colltrans distance` and `within`.
-pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
+/// Answers `colltrans distance` and `within` for a scene.
+///
+/// # Errors
+/// The question is a depth, which two bodies have, or the query fails.
+pub(crate) fn answer_placed(
+    arguments: &PlacedArguments,
+    question: PairQuestion,
+) -> Result<(), Failure> {
     if question == PairQuestion::Depth {
-        let why = "--among: a depth is of two bodies; `colltrans distance` says which are met";
+        let why = "--among: a depth needs two bodies; `colltrans distance` reports an obstacle that is met";
         return Err(Failure::new(Code::Usage, why));
     }
-    let asked = Request {
-        moving: arguments.one()?,
+    let request = SceneRequest {
+        moving: arguments.moving_mesh()?,
         scene: &arguments.among,
         pose: arguments.places.poses()?[0],
-        ways: Ways {
-            taken: arguments.taken()?,
+        options: ReadOptions {
+            mode: arguments.body_mode()?,
             convex: arguments.body_options(),
             parts: arguments.part_options(),
             body: arguments.body,
@@ -50,41 +56,41 @@ pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Res
         json: arguments.json,
         save_proof: arguments.save_proof.as_ref(),
     };
-    let (scene, targets) = asked.load(&arguments.places)?;
-    let among = Among::new(scene.moving.body.at(asked.pose), &scene.obstacles)?;
+    let (scene, targets) = request.load(&arguments.places)?;
+    let among = Among::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
     if let PairQuestion::Within(length) = question {
         let mut record = SceneWithinRecord::of(&among.within(length)?, &among);
-        for one in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
-            one.fixed = scene.name(one.obstacle);
-            one.dent = scene.dent(one.obstacle);
+        for nearby in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
+            nearby.fixed = scene.name(nearby.obstacle);
+            nearby.dent = scene.dent(nearby.obstacle);
         }
         let prove = || ProofFile::of_within(&among, length).map(Some);
-        let told = scene.told(record, None);
-        return write_answer(targets, &told, |record| text::within(record, length), prove);
+        let line = scene.line_of(record, None);
+        return write_answer(targets, &line, |record| text::within_text(record, length), prove);
     }
-    // There is a file, and so an obstacle.
-    let found = among.nearest()?.ok_or(Failure::new(Code::Input, "no obstacles"))?;
-    let error = scene.error(asked.pose, found.obstacle);
+    // The scene has a file, and each file at least one obstacle.
+    let found = among.nearest()?.ok_or(Failure::new(Code::Input, "the scene has no obstacles"))?;
+    let error = scene.length_error(request.pose, found.obstacle);
     let mut record = NearestRecord::of(&found, &among);
     record.fixed = scene.name(found.obstacle);
     let prove = || ProofFile::of_nearest(&among);
-    let told = scene.told(record, Some(found.obstacle));
-    write_answer(targets, &told, |record| text::nearest(record, error), prove)
+    let line = scene.line_of(record, Some(found.obstacle));
+    write_answer(targets, &line, |record| text::nearest_text(record, error), prove)
 }
 
-/// `colltrans clearance`.
-pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
+/// Answers `colltrans clearance` for a scene.
+pub(crate) fn answer_clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let pair = &arguments.pair;
     let Some(direction) = pair.directions.direction else {
-        let why = "--among takes one --direction; --directions is for two bodies";
+        let why = "--among accepts one --direction; --directions needs two bodies";
         return Err(Failure::new(Code::Usage, why));
     };
-    let asked = Request {
-        moving: arguments.one()?,
+    let request = SceneRequest {
+        moving: arguments.moving_mesh()?,
         scene: &arguments.among,
         pose: pair.places.poses()?[0],
-        ways: Ways {
-            taken: arguments.taken()?,
+        options: ReadOptions {
+            mode: arguments.body_mode()?,
             convex: pair.body_options(),
             parts: arguments.part_options(),
             body: pair.body,
@@ -92,29 +98,30 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
         json: pair.json,
         save_proof: pair.save_proof.as_ref(),
     };
-    let (scene, targets) = asked.load(&pair.places)?;
+    let (scene, targets) = request.load(&pair.places)?;
     let tolerance = match arguments.tolerance {
-        None => scene.tolerance(asked.pose, direction)?,
+        None => scene.default_tolerance(request.pose, direction)?,
         given => given,
     };
-    let among = choose(&scene, &asked, arguments, tolerance)?;
+    let among = scene_query(&scene, &request, arguments, tolerance)?;
     let found = among.clearance(direction)?;
     let mut record = SceneClearanceRecord::of(&found, &among, direction);
     let obstacle = record.obstacle;
     (record.tolerance, record.fixed) = (tolerance, obstacle.and_then(|id| scene.name(id)));
-    let error = obstacle.map_or(0.0, |obstacle| scene.error(asked.pose, obstacle));
+    let error = obstacle.map_or(0.0, |obstacle| scene.length_error(request.pose, obstacle));
     let is_default = arguments.tolerance.is_none();
     let graze = arguments.pair.graze_tolerance;
-    let in_words =
-        |record: &_| text::clearance(record, direction, error, is_default) + &text::grazed(graze);
+    let answer_text = |record: &_| {
+        text::clearance_text(record, direction, error, is_default) + &text::graze_line(graze)
+    };
     let prove = || ProofFile::of_scene_clearance(&among, direction).map(Some);
-    write_answer(targets, &scene.told(record, obstacle), in_words, prove)
+    write_answer(targets, &scene.line_of(record, obstacle), answer_text, prove)
 }
 
-/// The body among the others, asked as the arguments say.
-fn choose<'a>(
+/// Returns the query of the moving body and the scene, with the options of the command line.
+fn scene_query<'a>(
     scene: &'a Scene,
-    asked: &Request<'_>,
+    request: &SceneRequest<'_>,
     arguments: &ClearanceArguments,
     tolerance: Option<f64>,
 ) -> Result<Among<'a>, Failure> {
@@ -129,44 +136,45 @@ fn choose<'a>(
         .with_tolerance(tolerance)
         .with_start_overlap(start)
         .with_keep(pair.keep);
-    let among = Among::new(scene.moving.body.at(asked.pose), &scene.obstacles)?;
+    let among = Among::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
     Ok(among.with_options(options)?.with_solid_options(of_solids))
 }
 
-impl<'a> Request<'a> {
-    /// Loads the bodies, and reports what was mended.
+impl<'a> SceneRequest<'a> {
+    /// Loads the bodies, and prints notes about repairs.
     fn load(&self, places: &PlaceArguments) -> Result<(Scene, OutputTargets<'a>), Failure> {
         let files = [slice::from_ref(self.moving), self.scene];
         let targets =
-            OutputTargets::new(self.json, self.save_proof, None, &load::input_files(files))?;
-        let scene = Scene::load(self.moving, self.scene, &self.ways)?;
-        load::report_notes(places, &scene.notes);
+            OutputTargets::new(self.json, self.save_proof, None, &load::input_paths(files))?;
+        let scene = Scene::load(self.moving, self.scene, &self.options)?;
+        load::print_notes(places, &scene.notes);
         Ok((scene, targets))
     }
 }
 
 impl Scene {
+    /// Returns the name of an obstacle; `None` for an unknown one.
     fn name(&self, obstacle: ObstacleId) -> Option<String> {
         self.names.get(obstacle.0 as usize).cloned()
     }
 
     /// Returns the line of a record, with the dents of the moving body and of an obstacle.
-    fn told<R>(&self, record: R, obstacle: Option<ObstacleId>) -> Line<R> {
+    fn line_of<R>(&self, record: R, obstacle: Option<ObstacleId>) -> Line<R> {
         let fixed = obstacle.and_then(|obstacle| self.dent(obstacle));
-        Line { dents: Dents::of([self.moving.dent, fixed]), ..Line::of(record) }
+        Line { dents: Dents::of([self.moving.dent, fixed]), ..Line::from_record(record) }
     }
 }
 
-/// Writes the answer, and the proof that `prove` makes.
+/// Writes the answer, and the proof that `prove` computes.
 fn write_answer<R: Serialize>(
     targets: OutputTargets<'_>,
-    told: &Line<R>,
-    in_words: impl FnOnce(&R) -> String,
+    line: &Line<R>,
+    answer_text: impl FnOnce(&R) -> String,
     prove: impl FnOnce() -> Result<Option<ProofFile>, ProofFileError>,
 ) -> Result<(), Failure> {
     targets.write_answer(AnswerOutputs {
-        record: told,
-        words: || in_words(&told.record),
+        record: line,
+        text: || answer_text(&line.record),
         proof: || {
             let proof = prove().map_err(|error| Failure::new(Code::Query, error.to_string()))?;
             Ok(proof.map(|proof| proof.to_json()))

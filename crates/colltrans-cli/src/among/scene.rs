@@ -1,4 +1,4 @@
-//! The bodies of a scene: mesh files, and files of obstacles with a place each.
+//! The bodies of a scene: mesh files, and files of obstacles with poses.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -12,51 +12,52 @@ use colltrans::{
 use colltrans_mesh::body::{BodyOptions, between};
 use serde::Deserialize;
 
-use crate::args::{BodyArguments, Taken};
-use crate::batch::{Batch, BodySource, Cache, PoseSource, Shape, syntax_message};
-use crate::body::{self, is_part, refusal};
+use crate::args::{BodyArguments, BodyMode};
+use crate::batch::{Batch, BodySource, Cache, PoseSource, Shape, syntax_error_message};
+use crate::body::{self, can_be_part, load_error_message};
 use crate::failure::{Code, Failure};
-use crate::inputs::{Watched, is_list, read_text};
+use crate::inputs::{ReplacedFile, is_obstacle_list, read_text};
 use crate::solid::Body;
 
-/// What rounding alone can do to a length, as a part of the scene's size.
-const ROUNDING: f64 = 1e-14;
+/// Rounding error of a length, relative to the size of the scene.
+const RELATIVE_ROUNDING: f64 = 1e-14;
 
-/// A body of either kind, of a file.
+/// A body of a file, and its precision.
 #[derive(Clone)]
-pub(super) struct Known {
+pub(super) struct LoadedBody {
     pub(super) body: AnyBody,
+    /// Rounding error of the coordinates in the file.
     precision: f64,
     /// As [`Part::dent`](crate::body::Part::dent).
     pub(super) dent: Option<f64>,
 }
 
-/// How files are taken.
+/// How files are read.
 #[derive(Clone, Copy)]
-pub(super) struct Ways {
-    pub(super) taken: Taken,
-    /// Of the moving body, and of those of the scene.
+pub(super) struct ReadOptions {
+    pub(super) mode: BodyMode,
+    /// For the moving body, and for the bodies of the scene.
     pub(super) convex: [BodyOptions; 2],
     pub(super) parts: [BodyOptions; 2],
     pub(super) body: BodyArguments,
 }
 
-/// A body, and all others.
+/// A moving body and all obstacles.
 pub(super) struct Scene {
-    pub(super) moving: Known,
+    pub(super) moving: LoadedBody,
     pub(super) obstacles: Obstacles,
-    /// By their numbers.
+    /// Names of the obstacles, by number.
     pub(super) names: Vec<String>,
     precisions: Vec<f64>,
     dents: Vec<Option<f64>>,
-    /// What was mended, and how far hulls exceed their parts.
+    /// Notes about repairs, and by how much hulls exceed their meshes.
     pub(super) notes: Vec<String>,
 }
 
 /// A line of a file of obstacles.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds an obstacle")]
-struct Line {
+#[serde(deny_unknown_fields, expecting = "an object with an obstacle")]
+struct ObstacleSource {
     body: BodySource,
     #[serde(default)]
     pose: PoseSource,
@@ -64,20 +65,27 @@ struct Line {
 }
 
 impl Scene {
-    /// Of a mesh file, and of mesh files and files of obstacles.
-    pub(super) fn load(moving: &Path, files: &[PathBuf], ways: &Ways) -> Result<Self, Failure> {
+    /// Reads the moving mesh, and the mesh files and files of obstacles of the scene.
+    ///
+    /// # Errors
+    /// A file cannot be read, or its mesh does not become a body of the required kind.
+    pub(super) fn load(
+        moving: &Path,
+        files: &[PathBuf],
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
         let mut notes = Vec::new();
-        let moving = ways.mesh(moving, 0, &mut notes)?;
+        let moving = options.read_mesh(moving, 0, &mut notes)?;
         let (mut placed, mut names) = (Vec::new(), Vec::new());
         let (mut precisions, mut dents) = (Vec::new(), Vec::new());
         for file in files {
-            let found = if is_list(file) {
-                ways.list(file, &mut notes)?
+            let found = if is_obstacle_list(file) {
+                options.read_list(file, &mut notes)?
             } else {
-                let known = ways.mesh(file, 1, &mut notes)?;
+                let known = options.read_mesh(file, 1, &mut notes)?;
                 vec![(known, Pose::IDENTITY, file.display().to_string())]
             };
-            for (Known { body, precision, dent }, pose, name) in found {
+            for (LoadedBody { body, precision, dent }, pose, name) in found {
                 placed.push((body, pose));
                 names.push(name);
                 precisions.push(precision);
@@ -94,65 +102,79 @@ impl Scene {
         self.dents.get(obstacle.0 as usize).copied().flatten()
     }
 
-    /// The tolerance that the files and poses of all solids ask for; none without solids.
-    pub(super) fn tolerance(&self, at: Pose, direction: DVec3) -> Result<Option<f64>, QueryError> {
-        let moving = self.moving.body.at(at);
-        let mut most: Option<f64> = None;
-        for (ObstacleId(id), body, pose) in self.obstacles.iter() {
+    /// Returns the default tolerance: the largest one that follows from the precision and the pose of a pair with a solid.
+    /// `None` if all bodies are convex.
+    pub(super) fn default_tolerance(
+        &self,
+        pose: Pose,
+        direction: DVec3,
+    ) -> Result<Option<f64>, QueryError> {
+        let moving = self.moving.body.at(pose);
+        let mut largest: Option<f64> = None;
+        for (ObstacleId(id), body, obstacle_pose) in self.obstacles.iter() {
             if let (ByKind::Convex(_), AnyBody::Convex(_)) = (moving, body) {
                 continue;
             }
-            let placed = [as_solid(moving)?, as_solid(body.at(pose))?];
+            let placed = [as_solid(moving)?, as_solid(body.at(obstacle_pose))?];
             let precisions = [self.moving.precision, self.precisions[id as usize]];
             let refuse = StartOverlap::Refuse;
             let cast = between(placed[0], placed[1], direction, precisions, None, refuse)?;
-            most = Some(most.unwrap_or_default().max(cast.tolerance()));
+            largest = Some(largest.unwrap_or_default().max(cast.tolerance()));
         }
-        Ok(most)
+        Ok(largest)
     }
 
-    /// How far lengths about an obstacle may be off by the precision of the files and by rounding.
-    pub(super) fn error(&self, at: Pose, obstacle: ObstacleId) -> f64 {
-        let Some((body, pose)) = self.obstacles.get(obstacle) else { return 0.0 };
+    /// Returns the error of lengths about an obstacle: the precision of the files, and rounding. 0 for convex bodies.
+    pub(super) fn length_error(&self, pose: Pose, obstacle: ObstacleId) -> f64 {
+        let Some((body, obstacle_pose)) = self.obstacles.get(obstacle) else { return 0.0 };
         if let (AnyBody::Convex(_), AnyBody::Convex(_)) = (&self.moving.body, body) {
             return 0.0;
         }
-        let size = size(&self.moving.body, at).max(size(body, pose));
-        self.moving.precision + self.precisions[obstacle.0 as usize] + ROUNDING * size
+        let size = max_coordinate(&self.moving.body, pose).max(max_coordinate(body, obstacle_pose));
+        self.moving.precision + self.precisions[obstacle.0 as usize] + RELATIVE_ROUNDING * size
     }
 }
 
-impl Ways {
-    /// A mesh file, as it is taken.
-    fn mesh(&self, file: &Path, side: usize, notes: &mut Vec<String>) -> Result<Known, Failure> {
+impl ReadOptions {
+    /// Reads a mesh file as a convex body or as a part.
+    fn read_mesh(
+        &self,
+        file: &Path,
+        side: usize,
+        notes: &mut Vec<String>,
+    ) -> Result<LoadedBody, Failure> {
         let input = |message: String| Failure::new(Code::Input, message);
-        if self.taken != Taken::Parts {
+        if self.mode != BodyMode::Parts {
             match body::load(file, &self.convex[side]) {
                 Ok(part) => {
                     notes.extend(part.notes);
                     let excess = part.excess.map(|excess| format!("{}: {excess}", file.display()));
                     notes.extend(excess);
-                    return Ok(Known {
+                    return Ok(LoadedBody {
                         body: part.body.into(),
                         precision: part.precision,
                         dent: part.dent,
                     });
                 }
-                Err(error) if self.taken == Taken::AsTheyAre && is_part(&error) => {}
-                Err(error) => return Err(input(refusal(&error))),
+                Err(error) if self.mode == BodyMode::Automatic && can_be_part(&error) => {}
+                Err(error) => return Err(input(load_error_message(&error))),
             }
         }
         let part = Body::load(&[file.to_owned()], &self.parts[side], || ()).map_err(input)?;
         notes.extend_from_slice(&part.notes);
-        Ok(Known { body: part.solid().clone().into(), precision: part.precision(), dent: None })
+        Ok(LoadedBody {
+            body: part.solid().clone().into(),
+            precision: part.precision(),
+            dent: None,
+        })
     }
 
-    /// Reads a file of obstacles. Bodies that occur again are kept once.
-    fn list(
+    /// Reads a file of obstacles. A body that several lines name is stored once.
+    fn read_list(
         &self,
         file: &Path,
         notes: &mut Vec<String>,
-    ) -> Result<Vec<(Known, Pose, String)>, Failure> {
+    ) -> Result<Vec<(LoadedBody, Pose, String)>, Failure> {
         let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", file.display()));
         let text = read_text(file)?;
         let bodies = Batch {
@@ -160,35 +182,36 @@ impl Ways {
             hull: self.convex[1].hull,
             body: self.body,
             cache: Cache::new(usize::MAX),
-            watched: Watched::new(None),
+            replaced_file: ReplacedFile::new(None),
         };
         let mut known = HashMap::new();
         let mut found = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let wrong = |what: String| input(format!("line {}: {what}", number + 1));
-            let Line { body, pose, name } = serde_json::from_str(line)
-                .map_err(|e| input(syntax_message(number as u64 + 1, &e)))?;
-            let shape = bodies.body(&body).map_err(wrong)?;
-            let place = pose.pose().map_err(|what| wrong(format!("pose: {what}")))?;
+            let line_error = |what: String| input(format!("line {}: {what}", number + 1));
+            let ObstacleSource { body, pose, name } = serde_json::from_str(line)
+                .map_err(|e| input(syntax_error_message(number as u64 + 1, &e)))?;
+            let shape = bodies.build_body(&body).map_err(line_error)?;
+            let place = pose.pose().map_err(|what| line_error(format!("pose: {what}")))?;
             notes.extend(pose.note(&format!("{}: line {}: pose", file.display(), number + 1)));
-            let named = || body.file().map(|path| path.display().to_string());
-            let one = known.entry(Arc::as_ptr(&shape)).or_insert_with(|| {
+            let file_name = || body.file().map(|path| path.display().to_string());
+            let loaded = known.entry(Arc::as_ptr(&shape)).or_insert_with(|| {
                 notes.extend_from_slice(shape.notes());
-                Known::of(&shape)
+                LoadedBody::from_shape(&shape)
             });
-            let name = name.or_else(named).unwrap_or_else(|| format!("line {}", number + 1));
-            found.push((one.clone(), place, name));
+            let name = name.or_else(file_name).unwrap_or_else(|| format!("line {}", number + 1));
+            found.push((loaded.clone(), place, name));
         }
         if found.is_empty() {
-            return Err(input("holds no obstacles".into()));
+            return Err(input("contains no obstacles".into()));
         }
         Ok(found)
     }
 }
 
-impl Known {
-    fn of(shape: &Shape) -> Self {
+impl LoadedBody {
+    /// Returns the body of a batch with its precision.
+    fn from_shape(shape: &Shape) -> Self {
         match shape {
             Shape::Convex(part) => {
                 Self { body: part.body.clone().into(), precision: part.precision, dent: part.dent }
@@ -200,6 +223,7 @@ impl Known {
     }
 }
 
+/// Returns a placed body as a solid. A convex body becomes its surface.
 fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {
     Ok(match placed {
         ByKind::Convex(Placed { body, pose }) => Placed { body: body.as_surface()?, pose },
@@ -207,8 +231,8 @@ fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {
     })
 }
 
-/// The largest coordinate.
-fn size(body: &AnyBody, pose: Pose) -> f64 {
+/// Returns an upper bound of the coordinates of a placed body.
+fn max_coordinate(body: &AnyBody, pose: Pose) -> f64 {
     let Aabb { low, high } = match body {
         AnyBody::Convex(body) => {
             body.vertices().iter().fold(Aabb::EMPTY, |all, &v| all.join(&Aabb { low: v, high: v }))

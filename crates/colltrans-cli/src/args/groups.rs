@@ -1,27 +1,28 @@
-//! The commands in groups, each with an example, as `colltrans --help` shows them.
+//! The overview of all subcommands in `colltrans --help`: groups in the order in which a user needs them, each with an
+//! example.
 
 use clap::Command;
 
-use super::help::fitted;
+use super::help::fit_to_terminal;
 
-/// Commands that answer one kind of question, and how one of them is asked.
+/// Subcommands that answer one kind of question, with an example of one of them.
 struct Group {
     question: &'static str,
     commands: &'static [&'static str],
     example: &'static str,
 }
 
-/// Every command is in one group.
-const GROUPS: [Group; 4] = [
-    Group {
-        question: "How far, or when",
-        commands: &["cast", "clearance", "motion", "path"],
-        example: "colltrans clearance drawer.stl --from cabinet.stl --direction -y",
-    },
+/// All groups. Each subcommand is in exactly one.
+const GROUPS: [Group; 5] = [
     Group {
         question: "Where bodies are",
-        commands: &["distance", "depth", "within"],
+        commands: &["info", "distance", "within", "depth"],
         example: "colltrans distance left.obj right.obj",
+    },
+    Group {
+        question: "How far a body can move, or when it touches",
+        commands: &["clearance", "cast", "motion", "path"],
+        example: "colltrans clearance drawer.stl --from cabinet.stl --direction -y",
     },
     Group {
         question: "All ways out",
@@ -29,24 +30,30 @@ const GROUPS: [Group; 4] = [
         example: "colltrans assembly parts/ -o plan",
     },
     Group {
-        question: "Many queries, files, and this program",
-        commands: &["batch", "info", "replay", "verify", "setup"],
+        question: "Many queries, saved queries and proofs",
+        commands: &["batch", "verify", "replay"],
         example: "colltrans batch queries.jsonl -o results.jsonl",
+    },
+    Group {
+        question: "This program",
+        commands: &["setup", "files", "json"],
+        example: "colltrans help files",
     },
 ];
 
-/// What clap shows of the program before its options; `all` has its commands.
+/// Returns the template of the program's help, with all groups. `all` has the subcommands.
 pub(super) fn template(all: &Command) -> String {
     let groups: Vec<_> = GROUPS.iter().map(|group| group.text(all)).collect();
     let groups = groups.join("\n\n");
     format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{groups}\n\n\
-        `colltrans COMMAND --help` says all about one.\n\nOptions:\n\
+        `colltrans COMMAND --help` describes a command.\n\nOptions:\n\
         {{options}}{{after-help}}"
     )
 }
 
 impl Group {
+    /// Returns the lines of the group. `all` has the subcommands.
     fn text(&self, all: &Command) -> String {
         let width = GROUPS.iter().flat_map(|g| g.commands).map(|c| c.len()).max().unwrap_or(0);
         let line = |name: &&str| {
@@ -60,7 +67,7 @@ impl Group {
         };
         let lines: Vec<_> = self.commands.iter().map(line).collect();
         let text = format!("{}:\n{}", self.question, lines.join("\n"));
-        format!("{}\n\n    {}", fitted(&[&text]), self.example)
+        format!("{}\n\n    {}", fit_to_terminal(&[&text]), self.example)
     }
 }
 
@@ -71,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_command_is_in_one_group() {
+    fn each_command_is_in_exactly_one_group() {
         let all = super::super::Arguments::command();
         let mut known: Vec<_> = all.get_subcommands().map(Command::get_name).collect();
         let mut shown: Vec<_> = GROUPS.iter().flat_map(|g| g.commands).copied().collect();
@@ -81,10 +88,11 @@ mod tests {
     }
 
     #[test]
-    fn examples_are_taken() {
+    fn group_examples_parse() {
         for Group { example, .. } in &GROUPS {
-            let asked = super::super::Arguments::command().try_get_matches_from(example.split(' '));
-            assert!(asked.is_ok(), "{example}");
+            let parsed =
+                super::super::Arguments::command().try_get_matches_from(example.split(' '));
+            assert!(parsed.is_ok(), "{example}");
         }
     }
 }

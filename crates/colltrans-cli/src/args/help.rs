@@ -1,32 +1,33 @@
-//! The long texts of `--help`, filled into lines that fit the terminal.
+//! The texts of `--help` below the table of options, and the topics `files` and `json`, wrapped to the terminal.
 
 use colltrans_mesh::Format;
 
-/// Lines are no longer than this, however wide the terminal is.
-pub(super) const WIDEST: usize = 100;
+/// Maximum length of a line in characters.
+pub(super) const MAX_WIDTH: usize = 100;
 
-/// Columns of the terminal, as clap finds them too.
-fn columns() -> usize {
+/// Returns the width of the terminal in columns, as clap determines it, at most [`MAX_WIDTH`].
+fn terminal_width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let columns = || std::env::var("COLUMNS").ok()?.parse().ok();
-    terminal.or_else(columns).filter(|c| *c > 0).unwrap_or(WIDEST).min(WIDEST)
+    terminal.or_else(columns).filter(|c| *c > 0).unwrap_or(MAX_WIDTH).min(MAX_WIDTH)
 }
 
-/// Texts one below the other, filled into the terminal's columns.
-pub(super) fn fitted(texts: &[&str]) -> String {
-    let width = columns();
-    texts.iter().map(|text| filled(text, width)).collect::<Vec<_>>().join("\n\n")
+/// Joins texts with blank lines, wrapped to the width of the terminal.
+pub(super) fn fit_to_terminal(texts: &[&str]) -> String {
+    let width = terminal_width();
+    texts.iter().map(|text| wrap_paragraphs(text, width)).collect::<Vec<_>>().join("\n\n")
 }
 
-/// A text whose paragraphs are filled anew where lines are longer than `width`.
-fn filled(text: &str, width: usize) -> String {
+/// Wraps the paragraphs of a text that have lines longer than `width`. Other paragraphs stay unchanged.
+fn wrap_paragraphs(text: &str, width: usize) -> String {
     let mut out: Vec<String> = Vec::new();
     let mut lines = text.lines().peekable();
     while let Some(first) = lines.next() {
-        let hang = hang(first);
+        let hanging_indent = hanging_indent(first);
         let mut words = vec![first.to_owned()];
         let mut last = first;
-        while let Some(next) = lines.next_if(|next| continues(last, next, hang)) {
+        while let Some(next) = lines.next_if(|next| continues_paragraph(last, next, hanging_indent))
+        {
             words.push(next.trim_start().to_owned());
             last = next;
         }
@@ -34,23 +35,25 @@ fn filled(text: &str, width: usize) -> String {
         if words.len() == 1 && fits(&words[0]) {
             out.push(first.to_owned());
         } else {
-            fill(&words.join(" "), hang, is_command(first), width, &mut out);
+            wrap_paragraph(&words.join(" "), hanging_indent, is_command(first), width, &mut out);
         }
     }
     out.join("\n")
 }
 
+/// Checks whether a line shows a command, which needs a backslash where it is broken.
 fn is_command(line: &str) -> bool {
     line.starts_with("    ") && line.contains("colltrans ")
 }
 
+/// Returns the number of leading blanks.
 fn indent(line: &str) -> usize {
     line.len() - line.trim_start().len()
 }
 
-/// Where the lines of a paragraph begin after the first: behind the word that is explained, if the
-/// line explains one.
-fn hang(line: &str) -> usize {
+/// Returns the indent of the second and later lines of a paragraph. If the first line explains a word, this is the
+/// column of the explanation.
+fn hanging_indent(line: &str) -> usize {
     let at = indent(line);
     let body = &line[at..];
     if is_command(line) {
@@ -67,23 +70,30 @@ fn hang(line: &str) -> usize {
     }
 }
 
-/// Whether a line goes on with the paragraph of the one before, which was full.
-fn continues(last: &str, next: &str, hang: usize) -> bool {
-    const FULL: usize = 84;
-    let is_full = last.chars().count() >= FULL;
-    is_full && !next.trim().is_empty() && indent(next) == hang && !is_command(last)
+/// Checks whether a line continues the paragraph of the previous line, which then has at least 84 characters.
+fn continues_paragraph(last: &str, next: &str, hanging_indent: usize) -> bool {
+    const MIN_FULL_LINE: usize = 84;
+    let is_full = last.chars().count() >= MIN_FULL_LINE;
+    is_full && !next.trim().is_empty() && indent(next) == hanging_indent && !is_command(last)
 }
 
-fn fill(text: &str, hang: usize, is_command: bool, width: usize, out: &mut Vec<String>) {
+/// Appends the lines of one paragraph.
+fn wrap_paragraph(
+    text: &str,
+    hanging_indent: usize,
+    is_command: bool,
+    width: usize,
+    out: &mut Vec<String>,
+) {
     let mark = if is_command { " \\" } else { "" };
     let mut line = " ".repeat(indent(text));
     let mut is_empty = true;
-    // Blanks between words stay: they make columns.
+    // Repeated blanks between words are kept because they align columns.
     for word in text.trim_start().split_inclusive(' ') {
         let more = word.trim_end().chars().count() + mark.len();
         if !is_empty && line.chars().count() + more > width {
             out.push(format!("{}{mark}", line.trim_end()));
-            line = " ".repeat(hang);
+            line = " ".repeat(hanging_indent);
         }
         line.push_str(word);
         is_empty = false;
@@ -91,375 +101,452 @@ fn fill(text: &str, hang: usize, is_command: bool, width: usize, out: &mut Vec<S
     out.push(line.trim_end().to_owned());
 }
 
-pub(super) const EXIT_CODES: &str = "\
-Exit codes:
-  0  answered (contact, separated, free, blocked, overlapping, closer, farther are all answers)
-  1  batch, --directions: some lines have no answer; the results say which and why
-  2  the command line is wrong
-  3  an input file cannot be read, a body is not what it should be, or an output would overwrite an
-     input
-  4  the query has no certified answer (please report the case); of a motion or a path that is
-     undecided the answer says up to which time it is proven free
-  5  the output cannot be written
-  6  verify: the proof does not hold
-  7  path --strict: the answer is about less than the input";
+/// The last line of every `-h`.
+pub(super) const SEE_ALL: &str = "\
+`--help` shows all options and examples, `colltrans help files` the formats, units and exit codes.";
 
-/// Which mesh files are read, and how their numbers are meant.
-pub(super) fn formats() -> String {
-    format!("Mesh files: {}, told by their extension. {UNITS}", Format::names("and"))
+/// Begins the topic of file formats; the names of the mesh formats follow from the code.
+fn mesh_files() -> String {
+    format!("Mesh files: {}, recognised by the extension. {VERTICES}", Format::names("and"))
 }
 
-const UNITS: &str = "\
-Lengths are in the unit of the files; both meshes must have the same one (--moving-scale,
---fixed-scale). Vertex indices in answers count from 0 in the order of the file; the corners of STL
-triangles are merged where they are equal, in the order of their first appearance.";
+/// Returns the topic `colltrans help files`.
+pub(crate) fn files_topic() -> String {
+    fit_to_terminal(&[&mesh_files(), UNITS_AND_POSES, BODIES, LISTS, MANIFEST, EXIT_CODES])
+}
 
-pub(super) const CAST_EXAMPLES: &str = "\
+/// Returns the topic `colltrans help json`.
+pub(crate) fn json_topic() -> String {
+    fit_to_terminal(&[JSON_FIELDS, JSON_ASSEMBLY])
+}
+
+const VERTICES: &str = "\
+Vertex indices in answers count from 0
+in the order of the file. Equal corners of STL triangles are merged, in the order of their first
+appearance. Features are named by them: a face is the whole polygon, an edge joins two corners.";
+
+const UNITS_AND_POSES: &str = "\
+Units: lengths are in the unit of the files, which must be the same for both meshes (--moving-scale
+and --fixed-scale convert it). Translations and distances along a direction are multiples of the
+direction. They are lengths if it has length 1, as the axes x, -x, y, -y, z, -z have.
+
+Poses: x,y,z or x,y,z,qx,qy,qz,qw. The mesh is rotated by the unit quaternion, then translated. A
+quaternion with few digits is normalised, with a note. A quarter turn about z, then one unit up:
+0,0,1,0,0,0.7071067811865476,0.7071067811865476. --moving-rpy takes angles in degrees instead: about
+the world's x axis, then y, then z (as in URDF), through the origin of the mesh, before the
+translation. Multiples of 90 are exact.";
+
+const BODIES: &str = "\
+Bodies:
+  convex   a mesh without dents deeper than --convex-tolerance. The body is its hull. Rounded
+           coordinates (STL: single precision, about 6e-8 of the largest one) cause such dents
+  hull     --hull replaces a mesh by the hull of the vertices in use. `separated` then holds for the
+           part too; a contact of hulls is a lower bound: the part meets no earlier
+  part     a closed surface that need not be convex, with its holes and cavities. Several files on one
+           side are one body. Each body is offset inwards by half of --tolerance. A curved fit needs
+           the sum of both chord errors. The default is twice the rounding of both files (2.4e-7 of
+           the largest coordinate for binary STL and float PLY, else 3.6e-15), and at least the
+           rounding of rotated poses
+  open     --open accepts surfaces that are not closed, for example sheets and scans
+  merging  --merge-tolerance merges near vertices on open edges, by default within the rounding of
+           the file: 2.4e-7 or 3.6e-15 of the largest coordinate. 0 merges equal vertices only";
+
+const LISTS: &str = "\
+Directions: a file with one per line, three numbers or an axis. Blank lines and text after # are
+ignored. A direction without an answer does not end the command (exit code 1).
+
+Scenes: meshes in place, and files of obstacles (.jsonl) with one object per line: {\"body\": BODY,
+\"pose\": POSE, \"name\": \"...\"}, see `colltrans batch --help`. A repeated body is stored once.";
+
+const MANIFEST: &str = r#"Manifest of an assembly, in TOML (JSON has the same fields):
+  unit = "mm"                                # optional; a unit is never guessed
+  ignore = [["pin", "block"]]                # pairs whose overlap at the start is ignored
+  ignore_always = [["rubber", "lid"]]        # pairs that never block each other
+  pair = [{ parts = ["bush", "body"], role = "press", tolerance = 0.08 }]
+                                             # or thread, soft, snap, glued
+  before = [["pin", "lid"]]                  # the second does not leave while the first is present
+  after = [["block", "pin"]]                 # the first does not leave while the second is present
+  together = [["rotor", "magnet_*"]]         # leave together and stay together
+  subassembly = [{ name = "pump", parts = ["rotor", "ring"] }]
+                                             # leave together, then are taken apart
+  never = [{ parts = ["tank"], along = [0, 0, -1], within_degrees = 45 }]
+  [[part]]
+  file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
+  name = "pin"                               # default: the name of the file
+  translation = [0, 0, 5]
+  rotation = { rpy_degrees = [0, 90, 0] }    # or quaternion = [x, y, z, w], or matrix = rows
+  scale = 0.9
+  fixed = true                               # never moves
+  split = "bodies"                           # or "names", "never": as --split"#;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  answered (contact, separated, free, blocked, overlapping, closer, farther are all answers)
+  1  batch, --directions: some lines have no answer; the results state which and why
+  2  the command line is wrong
+  3  an input file cannot be read, a body is not acceptable, or an output would overwrite an input
+  4  no certified answer (please report the case); an undecided motion or path states how long it is
+     proven free
+  5  the output cannot be written
+  6  verify: the proof does not hold
+  7  path --strict: the answer covers less than the input";
+
+pub(super) const INFO_NOTES: &str = "\
+Examples:
+    colltrans info bracket.stl plate.obj
+
+`colltrans help files`: mesh formats, units, tolerances, exit codes.";
+
+pub(super) const CAST_NOTES: &str = "\
+Answers:
+  contact    the bodies first touch at `translation`, and last at `exit`
+  grazing    the bodies slide along each other: they overlap sideways by no more than
+             --graze-tolerance
+  separated  the bodies never touch along this line
+
 Examples:
   How far can a peg go down from 50 above a plate?
     colltrans cast peg.stl plate.stl --direction -z --moving-pose 0,0,50
   The peg is in inches and lies on its side; the plate has holes, so take its hull:
     colltrans cast peg.stl plate.stl --direction -z --moving-pose 0,0,50 --moving-rpy 90,0,0 \\
       --moving-scale 25.4 --hull-fixed --picture peg.svg
-  Many directions, one JSON object a line:
-    printf 'x\\n-x\\n1,1,0\\n' | colltrans cast a.obj b.obj --directions - --json";
+  Many directions, one JSON object per line:
+    printf 'x\\n-x\\n1,1,0\\n' | colltrans cast a.obj b.obj --directions - --json
 
-pub(super) const SETUP_EXAMPLES: &str = "\
+`colltrans help files`: mesh formats, units, poses, tolerances, exit codes; `colltrans help json`: fields.";
+
+pub(super) const SETUP_NOTES: &str = "\
 Examples:
-  For oneself, and for all users of a machine:
+  For one user, and for all users of a machine:
     colltrans setup
     sudo colltrans setup --prefix /usr/local
-  For a shell that looks elsewhere:
-    colltrans setup --print powershell >> $PROFILE";
+  For a shell that searches elsewhere:
+    colltrans setup --print powershell >> $PROFILE
 
-pub(super) const CLEARANCE_ANSWERS: &str = "\
+`colltrans help files`: exit codes.";
+
+pub(super) const REPLAY_NOTES: &str = "\
+Examples:
+    colltrans replay colltrans-case-1.json --json
+
+`colltrans help files`: exit codes; `colltrans help json`: fields of the answer.";
+
+pub(super) const VERIFY_NOTES: &str = "\
+Examples:
+    colltrans clearance bolt.stl plate.stl --direction z --save-proof bolt.json
+    colltrans verify bolt.json
+
+`colltrans help files`: exit codes; `colltrans help json`: fields of the answer.";
+
+pub(super) const CLEARANCE_NOTES: &str = "\
 Answers for convex bodies:
-  blocked      the body can go so far, and then touches the other; 0 if it touches now and would
-               enter it
-  slides       it can go on for ever: the bodies touch along the way, or overlap sideways by no
-               more than --graze-tolerance
-  behind       it can go on for ever: the bodies only meet behind
-  separated    it can go on for ever, and back too: the bodies never meet along this line
-  overlapping  the bodies overlap now; the answer says how far to go back, or on, to be free
-
+  blocked      the body can move by `distance`, then it touches; 0 if it touches now and would enter
+  slides       free: the bodies touch along the way, or overlap by no more than --graze-tolerance
+  behind       free: the bodies only meet behind
+  separated    free, also backwards: the bodies never meet along this line
+  overlapping  the bodies overlap now; `back` and `on` are the travels after which they are free
 Answers for parts:
-  free         it can go on for ever
-  blocked      it can go so far, perhaps 0: `distance` is safe to move by. The faces that stop it meet
-               in their true place within `translation_bounds`; the bodies shrunk by half the tolerance
-               go as far as `shrunk_distance`
-  overlapping  the bodies overlap now, by more than the tolerance; `least_tolerance` is the one
-               with which they would not
-`exit` is where they meet last: beyond the upper one of `exit_bounds` they never do. Distances are in
-multiples of the direction; tolerances and point are in the unit of the meshes. Vertices are
-numbered from 0 as in their files; a face is the whole polygon, an edge runs from corner to corner.
-
-With --json one object, in the fields of `batch --help`; of parts, `moving` and `fixed` are the files
-that touch, or overlap deepest, and start_overlaps has one entry for each two files that overlap.
+  free         nothing blocks the body
+  blocked      `distance` is safe to move by, perhaps 0. The faces that stop the nominal bodies meet
+               within `translation_bounds`, the offset bodies at `shrunk_distance`
+  overlapping  the bodies overlap now by more than the tolerance; `least_tolerance` would suffice
+`exit` is where the bodies meet last. Beyond the upper one of `exit_bounds` they never meet.
 
 Examples:
   How far does a drawer come out, by the hull of both?
     colltrans clearance drawer.stl cabinet.stl --direction -y --hull-moving
   How far does a bolt go down into a plate with a hole, from 7 above it?
     colltrans clearance bolt.stl --from plate.stl --direction -z --moving-pose 0,0,7
-  Does the bearing come out of its housing, when curved fits are tessellated to 0.05?
-    colltrans clearance ring.stl balls.stl --from housing.stl shaft.stl --direction x --tolerance 0.1
+  Does the bearing come out, when curved fits are tessellated to 0.05?
+    colltrans clearance ring.stl --from housing.stl shaft.stl --direction x --tolerance 0.1
   Parts that are pressed into each other at the start, with a picture:
-    colltrans clearance pin.stl --from block.stl --direction z --ignore-start-overlaps \\
-      --picture pin.svg
-  Which of many bodies does it meet first?
-    colltrans clearance hand.stl --among table.stl scene.jsonl --direction -z";
+    colltrans clearance pin.stl block.stl --direction z --ignore-start-overlaps --picture pin.svg
+  Which body of a scene does it meet first?
+    colltrans clearance hand.stl --among table.stl scene.jsonl --direction -z
 
-pub(super) const DIRECTIONS_ANSWERS: &str = "\
+`colltrans help files`: mesh formats, units, poses, tolerances, exit codes; `colltrans help json`: fields.";
+
+pub(super) const DIRECTIONS_NOTES: &str = "\
 Answers:
-  free         some directions are free: nothing stops the moving body along them, ever
-  blocked      none is, which is proven: pairs of faces block cells that cover the sphere
-  undecided    none is known to be free, and not all are known: --depth and --looks do more
-  overlapping  the bodies overlap now, by more than the tolerance
+  free         some directions are free: nothing ever stops the moving body along them
+  blocked      none is free, proven: pairs of faces block cells that cover the sphere
+  undecided    no direction is known to be free; larger --depth and --looks decide more
+  overlapping  the bodies overlap now by more than the tolerance
 
 With --json one object:
   outcome          one of these
-  free_share       [at least, at most]: the share of all directions that is free, from 0 to 1
-  undecided_share  at most that share is not known
-  regions          [{\"share\", \"center\": [x,y,z], \"margin\", \"corners\": [[x,y,z],...], \"pieces\"}]:
-                   connected regions, the largest first; margin is the angle from the center to the border, in
-                   radians; pieces are convex polygons that together are it; as arcs and points, absent
-                   where there are none
-  arcs points      directions with no region beside them: [[from, to],...], [[x,y,z],...]
-  also_free        free directions among what is undecided, found by casts: [[x,y,z],...]
-  blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: what was found to block, at least
-  tolerance        the one that was used, a length
-  cells            how many cells of the sphere the proof has, and undecided_cells of them
-  start_overlaps   of bodies that overlap: as of `clearance`
-
-A direction is free where `clearance` along it, with the same tolerance, says so.
+  free_share       [lower, upper] bounds of the share of all directions that is free, from 0 to 1
+  undecided_share  an upper bound of the share that is undecided
+  regions          connected regions, the largest first: [{\"share\", \"center\": [x,y,z], \"margin\",
+                   \"corners\": [[x,y,z],...], \"pieces\"}]. margin is the angle from the center to the
+                   border, in radians; pieces are convex polygons that together form the region
+  arcs points      free directions without a region around them: [[from, to],...], [[x,y,z],...]
+  also_free        free directions in undecided cells, found by casts: [[x,y,z],...]
+  blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: lower bounds of what they block
+  tolerance        the tolerance used, a length
+  cells undecided_cells   number of cells of the sphere in the proof, and of undecided ones
+  start_overlaps   of bodies that overlap: as for `clearance`
 
 Examples:
   Along which directions does a bolt leave its plate?
     colltrans directions bolt.stl plate.stl --tolerance 0.1
-  A ring among several parts, with a proof for somebody else:
+  A ring among several parts, with a proof:
     colltrans directions ring.stl --from housing.stl shaft.stl --save-proof ring.json
-    colltrans verify ring.json";
+    colltrans verify ring.json
 
-pub(super) const MOTION_ANSWERS: &str = "\
+`colltrans help files`: mesh formats, units, poses, tolerances, exit codes.";
+
+pub(super) const MOTION_NOTES: &str = "\
 Answers:
-  contact      the bodies first meet at a time between two bounds; point, normal and what touches
-  grazing      they come nearer than rounding can tell; not before the time, and nothing is said after it
-  free         they never meet throughout the motion; with --keep they never come as near, with --tolerance they
-               never overlap by more, or never meet as it leaves them
-  overlapping  they overlap when it begins
-  blocked      with --clearance, in the place of both contacts: up to the first time it can go
+  contact      the bodies first touch at a time between two bounds
+  grazing      they come nearer than rounding resolves; nothing is stated about later times
+  free         they never touch; with --keep never come as near, with --tolerance never overlap by more
+  overlapping  they overlap when the motion begins
+  blocked      with --clearance, instead of contact and grazing: free until the first time
+Of several meshes it is the first contact of any pair.
 
-Of several meshes it is the first contact of any two, and says of which.
-
-With --json one object:
-  outcome   one of these
-  time      {\"lower\", \"upper\"}: not before the first, and at the second they do; 0 is the start of the
-            motion, 1 its end
-  point normal features   as of `cast`, at that time
-  moving fixed   of several meshes: which
-  keep tolerance   as they were asked for; with --clearance the tolerance that was used
-  shrunk_time start_overlaps   with --clearance: when they meet as the tolerance leaves them; what overlaps
-  looks planes   how often the bodies were looked at, and planes in the proof, which only convex meshes have unasked
+With --json one object, with the fields of `colltrans help json` and these:
+  time            {\"lower\", \"upper\"}: no contact before the first, a contact at the second
+  shrunk_time     with --clearance: the same for the bodies offset by the tolerance
+  looks planes    number of distance samples, and of planes in the proof
 
 Examples:
   Does a door that swings by 90 degrees about the z axis hit a post?
     colltrans motion door.stl post.stl --turn 0,0,0 z 90
-  Which of three machines does a crane hit first, while a cart comes the other way?
-    colltrans motion hook.stl --from lathe.stl press.stl saw.stl --turn 0,0,0 z 180
+  A crane turns while a cart comes the other way:
     colltrans motion hook.stl cart.stl --turn 0,0,0 z 180 --fixed-slide -2,0,0
-  How far can a box that stands on a table be tipped, or turned there?
+  How far can a box on a table be tipped, or turned there?
     colltrans motion box.stl table.stl --turn 0,0,0 y 30 --clearance
   A bolt is unscrewed by two turns, 3 up:
     colltrans motion bolt.stl plate.stl --screw 0,0,0 z 720 3 --save-proof bolt.json
-    colltrans verify bolt.json";
 
-pub(super) const PATH_ANSWERS: &str = "\
+`colltrans help files`: mesh formats, units, poses, tolerances, exit codes.";
+
+pub(super) const PATH_NOTES: &str = "\
 Rows of a path:
-  CSV       a row a line; a first line of names says which joint each column is of, one may be `time`;
-            without names there is a value for each joint that moves by itself, in the order of the
-            robot's file. What follows a # counts for nothing
-  JSON      a list of rows, or what ROS has: {\"joint_names\": [...], \"points\": [{\"positions\": [...],
-            \"time_from_start\": ...}]}, or that as \"joint_trajectory\" of an object. Velocities and
-            accelerations are not used, and the answer says so
-  Joints that follow others (mimic) have no values of their own. One row is a place, not a path.
+  CSV   one row per line. A first line of names selects the joint of each column; one may be `time`.
+        Without names there is a value for each independent joint, in the order of the robot's file.
+        Text after # is ignored
+  JSON  a list of rows, or a ROS trajectory: {\"joint_names\": [...], \"points\": [{\"positions\": [...],
+        \"time_from_start\": ...}]}, or that as \"joint_trajectory\" of an object. Velocities and
+        accelerations are not used, and the answer states so
+  Joints that follow others (mimic) have no values. Between rows each joint moves uniformly. One row
+  is not a path.
 
 Answers:
-  contact      two bodies first meet at a time between two bounds, and no others before: who, where on
-               the path, the point and the normal
-  grazing      two come nearer than rounding can tell; none meet before, and nothing is said after it
-  free         none meet on the whole path
-  overlapping  some overlap where it begins: all of them are named, as --ignore and SRDF take them
-  undecided    the search between two took its maximum number of steps; none meet before (exit code 4)
+  contact      two bodies first touch at a time between two bounds, and no others before
+  grazing      two come nearer than rounding resolves; no contact before, no statement after
+  free         no contact on the whole path
+  overlapping  some overlap where the path begins: all pairs, in the form of --ignore and SRDF
+  undecided    the search between two took its maximum number of steps (exit code 4)
 
 With --json one object:
   outcome   one of these
-  time      {\"lower\", \"upper\"}: none meet before the first, and at the second two do; in the times of
+  time      {\"lower\", \"upper\"}: no contact before the first, a contact at the second; in the times of
             the path, or in rows from 0 if it has none
-  place     {\"row\", \"share\"}: which share of the way from that row to the next one is done at lower
-  pair      the names of the two: links, or meshes of the scene
+  place     {\"row\", \"share\"}: the share of the way from that row to the next one, at lower
+  pair      the names of the two bodies: links, or meshes of the scene
   point normal   where the first is nearest to the second then, and the direction to it, in the world
-  overlaps  where it begins: the names of all pairs that overlap there, or are as near as keep
-  hulls     links whose meshes their convex hulls stand for: a contact of one is that of its hull
-  dents     {NAME: DEPTH} of meshes that are convex only to within the tolerance: how deep the surface
-            lies below its hull, which stands for it
-  notes     in what the answer is about less than the input
-  pairs looks planes   how many pairs of bodies were asked about, how often two were looked at, and planes
-            in the proof
+  overlaps  the names of all pairs that overlap at the start, or are within the minimum gap
+  hulls     links that are replaced by their hulls: a contact is that of the hull
+  dents     {NAME: DEPTH} of meshes that are convex only to within the tolerance
+  notes     how the answer covers less than the input
+  pairs looks planes   number of pairs of bodies, of distance samples, and of planes in the proof
 
 Examples:
-  Is this path free, of the links and of two meshes that stand around?
+  Is this path free for the links and two meshes of the scene?
     colltrans path arm.urdf path.csv table.stl wall.stl --srdf arm.srdf
-  With a gap of 5 mm kept, fingers that rest, and a proof for somebody else:
+  With a minimum gap of 5 mm, fixed fingers and a proof:
     colltrans path arm.urdf path.csv --joint finger=0.02 --keep 0.005 --save-proof path.json
-    colltrans verify path.json";
+    colltrans verify path.json
 
-pub(super) const DISTANCE_ANSWERS: &str = "\
-Answers of distance:
-  apart        so far, between two bounds that are proven, with the points that are nearest, the
-               normal from the moving to the fixed body and what of each body faces the other
-  meeting      they touch or overlap, with a point of both: proven where the upper bound is 0, else
-               they are at most that far apart, which is rounding
+`colltrans help files`: mesh formats and exit codes.";
 
-Answers of depth:
-  overlapping  of convex bodies, the shortest translation of the moving body that parts them, between
-               two bounds that are proven; of parts the least tolerance with which they would not
-               overlap
-  touching     they touch, or may overlap by less than rounding can tell
-  apart        0: they have no point in common
-
-Answers of within:
-  closer       a point of each is at most the length apart
-  farther      no two points are as near as the length
-  undecided    the length lies between the bounds of the distance, a few roundings apart
-
-All lengths are in the unit of the meshes. With --json one object, in the fields of `batch --help`; of
-parts, `moving` and `fixed` are the files that are nearest, or overlap deepest.
+pub(super) const DISTANCE_NOTES: &str = "\
+Answers:
+  apart    the distance, with the nearest points, the normal from the moving to the fixed body, and
+           the features that face each other
+  meeting  the bodies touch or overlap, with a common point: proven if the upper bound is 0,
+           otherwise they are at most that far apart, which is rounding
 
 Examples:
   How near is a gripper to a table, and where?
     colltrans distance gripper.stl table.stl --moving-pose 0,0,50
-  Parts with holes, several files a body, with a picture and a proof:
+  Parts with holes, several files per body, with a picture and a proof:
     colltrans distance bolt.stl nut.stl --from plate.stl frame.stl --picture near.svg \\
       --save-proof near.json
+  Which body of a scene is nearest?
+    colltrans distance hand.stl --among table.stl scene.jsonl
+
+`colltrans help files`: mesh formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
+
+pub(super) const DEPTH_NOTES: &str = "\
+Answers:
+  overlapping  of convex bodies the shortest translation of the moving body that separates them; of
+               parts the least tolerance with which they would not overlap
+  touching     the bodies touch, or overlap by less than rounding resolves
+  apart        0: the bodies have no common point
+
+Examples:
   Which way out, by the hull of both?
     colltrans depth peg.stl plate.stl --hull
-  Does a part keep 0.5 from its housing?
+
+`colltrans help files`: mesh formats, units, poses, exit codes; `colltrans help json`: fields.";
+
+pub(super) const WITHIN_NOTES: &str = "\
+Answers:
+  closer     a point of each body is at most the length apart
+  farther    no two points are as near as the length
+  undecided  the length lies between the bounds of the distance, a few roundings apart
+
+Examples:
+  Does a part keep a gap of 0.5 to its housing?
     colltrans within shaft.stl --from housing.stl --length 0.5
-  Which of many bodies is nearest, and which are closer than 0.1?
-    colltrans distance hand.stl --among table.stl scene.jsonl
-    colltrans within hand.stl --among scene.jsonl --length 0.1";
+  Which bodies of a scene are closer than 0.1?
+    colltrans within hand.stl --among scene.jsonl --length 0.1
+
+`colltrans help files`: mesh formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|
-   "within"|"motion", "length": L (of "within"),
-   "moving_motion": MOTION, "fixed_motion": MOTION (of "motion"),
+   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within"|"motion"|
+   "motion_clearance", "length": L (of "within"),
+   "moving_motion": MOTION, "fixed_motion": MOTION (of "motion" and "motion_clearance"),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
    "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
    "tolerance": L (of solids and motions), "ignore_start_overlaps": true|false (of solids),
-   "keep": GAP}
+   "keep": GAP (the minimum gap)}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
-       or {"mesh": "path", "hull": true|false, "scale": FACTOR}
-       or {"solid": "path", "scale": FACTOR, "open": BOOL} (need not be convex; open: nor closed)
-  (hull and scale may be missing: as --hull says, and 1)
-  query is "contact", as of `colltrans cast`, or "clearance", as of `colltrans clearance`. Solids are
-  not asked for "contact"; "clearance" is the default there. "distance", "depth" and "within" are those
-  of the commands, of bodies of any kind where they are.
-  "motion" is `colltrans motion`, of bodies of any kind, of which one or both move.
-  POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing. A quaternion of few
-         digits is normalised, as of --moving-pose; the notes of the result name it
+       or {"mesh": "path", "hull": true|false, "scale": FACTOR} (convex)
+       or {"solid": "path", "scale": FACTOR, "open": true|false} (need not be convex; open: nor closed)
+  (defaults of hull and scale: as --hull, and 1)
+  POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, each optional. A quaternion with few
+         digits is normalised, with a note in the result
   MOTION = {"slide": {"by": [x,y,z]}}
-       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE}}
+       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE}} (or "degrees")
        or {"screw": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE, "rise": L}}
        or {"thrown": {"center": [x,y,z], "velocity": [x,y,z], "angular_velocity": [x,y,z]}}
        or {"between": {"from": POSE, "to": POSE}} or {"through": {"poses": [POSE,...]}}
-       or {"still": {}}, from the pose of the body on, unless it has its own
-moving and fixed are required, the direction of "contact" and "clearance", and a MOTION of "motion". Paths are relative to the folder of the query file, or to
-the current folder for standard input. Blank lines are skipped, unknown fields are errors.
+       or {"still": {}}, from the pose of the body, unless the motion has poses
+moving and fixed are required; so are the direction of "contact" and "clearance", and one MOTION of
+"motion". The default query is "contact", or "clearance" if a body is a solid; solids have no "contact". Paths are relative to the folder of
+the query file, or to the current folder for standard input. Blank lines are skipped, unknown fields
+are errors. A line has at most 64 MiB.
 
-Each result is one JSON object with those of these fields that apply:
-  id           as in the query (null if it cannot be read)
-  outcome      "contact", "grazing", "separated" or "error"; of a clearance: "blocked", "slides",
-               "behind", "separated" or "overlapping"; of solids: "free", "blocked" or "overlapping";
-               of a distance: "apart" or "meeting"; of a depth: "overlapping", "touching"
-               or "apart"; within: "closer", "farther" or "undecided"; of a motion: "contact",
-               "grazing", "free" or "overlapping"
-  time         of a motion: {"lower", "upper"}, from 0 at its start to 1 at its end; proven
-  direction    with --directions: the direction as it was read; of a depth: the unit vector along
-               which the moving body leaves by the shortest way
-  lower upper  of a distance or a depth: at least and at most that, proven; of "closer" the upper one
-               alone, of "farther" the lower one
-  points       [moving, fixed]: points of both, in the world, that are so near
-  distance     of a clearance, blocked: how far it is safe to move, the lower one of
-               translation_bounds, and never negative
-  back on      of a clearance, overlapping: how far to go back, or on, to be free for certain
-  translation  first contact, in multiples of the direction; negative: behind, or overlapping; of
-               solids: where the faces that stop them meet in their true place
-  exit         last contact; behind: where that is (and normal, point, features are those there)
-  shrunk_distance  of solids, blocked: how far they go, shrunk by half the tolerance each
+Each result is one JSON object, see `colltrans help json`. Bodies that occur again are built once
+while they fit in memory. A file of results that exists is replaced when all lines are answered, and never if
+a query reads it.
+
+Examples:
+    colltrans batch queries.jsonl -o results.jsonl
+    printf '{"moving":{"mesh":"a.stl"},"fixed":{"mesh":"b.stl"},"direction":[1,0,0]}' | colltrans batch -
+
+`colltrans help files`: mesh formats, units, tolerances, exit codes."#;
+
+const JSON_FIELDS: &str = r#"Answers of cast, clearance, distance, depth, within, motion and batch: one JSON object with those of
+these fields that apply. Numbers have all digits. Translations, the distance of a clearance, their
+bounds and rounding are multiples of the direction; other lengths are in the unit of the meshes.
+  id           of a batch: as in the query (null if it cannot be read)
+  outcome      of a cast: "contact", "grazing", "separated"; of a clearance: "blocked", "slides",
+               "behind", "separated", "overlapping"; of parts: "free", "blocked", "overlapping"; of a
+               distance: "apart", "meeting"; of a depth: "overlapping", "touching", "apart"; within:
+               "closer", "farther", "undecided"; of a motion: "contact", "grazing", "free",
+               "overlapping", "blocked", "undecided"; "error"
+  time         of a motion: {"lower", "upper"}, from 0 at its start to 1 at its end
+  direction    with --directions: the direction; of a depth: the unit vector of the shortest way out
+  lower upper  proven bounds of a distance or a depth; "closer" has only upper, "farther" only lower
+  points       [moving, fixed]: the nearest points, in the world
+  distance     of a clearance, blocked: safe travel, the lower bound of translation, never negative
+  back on      of a clearance, overlapping: travel backwards or forwards after which they are free
+  translation  first contact; negative: behind, or overlapping; of parts: of the nominal surfaces
+  exit         last contact; behind: normal, point and features are those there
+  shrunk_distance  of parts, blocked: travel of the bodies offset by half the tolerance each
   translation_bounds exit_bounds shrunk_distance_bounds
-               [at least, at most] of the number before them, proven: [lower, upper]; null where
-               nothing is known, as of bodies that slide so lightly that they may not touch. Of
-               solids the upper bound of translation holds of the parts as they are, or else, where
-               the two faces pass each other as they are, of the shrunk ones
-  rounding     of convex bodies: what rounding alone can make of the bounds' difference
-  tolerance    of solids: the one that was used, both are shrunk by half of it
-  keep         the gap that is kept: the bodies count as meeting where they are as near
-  start_overlaps  of solids that overlap now: [{"least_tolerance"}], the one with which they
-               would not; missing of surfaces
-  surfaces     of solids: which bodies are open, at least in part: ["moving", "fixed"]
+               proven [lower, upper]; null if unknown, for example of bodies that slide and may not
+               touch. Of parts whose two faces pass each other, the upper bound of translation holds
+               for the offset bodies
+  rounding     of convex bodies: the part of the bounds' difference that is rounding
+  tolerance    of parts: the tolerance used, each body is offset inwards by half of it
+  keep         the minimum gap: the bodies count as meeting at this distance
+  start_overlaps  of parts that overlap now: [{"moving", "fixed", "least_tolerance"}], the least
+               tolerance with which they would not; absent if there is none
+  surfaces     of parts: open bodies, ["moving", "fixed"]
   normal       unit normal from moving to fixed: of the contact plane, of the separating plane, or
                along the shortest way
   point        the contact point on the fixed body, in the world
-  features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...} by the
-               indices of the points or mesh vertices in the input
-  margin       separated: gap between the shadows (the projections along the direction), measured
-               along normal, a lower bound of their distance
-  overlap      grazing, slides: by how much the shadows overlap; negative where they may not
-  sideways     grazing, slides: the unit vector across the direction along which they do
-  hull         {"moving": EXCESS, "fixed": EXCESS} where the hull of a mesh was taken that is not
-               convex. EXCESS = {"hull_volume", "part_volume" (of a closed mesh), "depth"}: the
-               largest depth of the mesh's surface below the hull's. Then "separated" holds for the
-               parts too, and a translation is a lower bound: they meet no earlier, if at all.
-  dents        {"moving": DEPTH, "fixed": DEPTH} where a mesh is convex only to within the tolerance: how
-               deep its surface lies below its hull, which stands for it
-  solver steps of convex bodies: what narrowed the search for a contact, how much work it was
-  message      what is wrong; grazing: along which direction the shadows overlap
-  notes        what was merged or mended when the meshes were read; quaternions that were normalised
+  features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...}
+  moving fixed of parts: the files that touch or are nearest, or overlap deepest
+  margin       separated: lower bound of the distance of the projections along the direction
+  overlap      grazing, slides: overlap of the projections; negative if they may not overlap
+  sideways     grazing, slides: the unit vector across the direction along which they overlap
+  hull         {"moving": EXCESS, "fixed": EXCESS} of hulls that differ from their meshes. EXCESS =
+               {"hull_volume", "part_volume" (of a closed mesh), "depth" (of the deepest dent)}
+  dents        {"moving": DEPTH, "fixed": DEPTH} of meshes that are convex only to the tolerance
+  solver steps of convex bodies: the algorithm, and the work of the search
+  message      the error; grazing: the direction in which the projections overlap
+  notes        merged vertices, repaired meshes, normalised quaternions"#;
 
-Translations, the distance of a clearance, their bounds and rounding are in multiples of the
-direction, other lengths in the unit of the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
-that exists is replaced when all lines are answered, and never if a query reads it. A line may have
-up to 64 MiB."#;
-
-pub(super) const ASSEMBLY_FORMAT: &str = r#"SOURCE is a folder of meshes, each a part in its place; a manifest (.toml, .json);
-a URDF file (metres); .glb, .gltf (metres) or .3mf (the unit it says).
-
-A manifest, in TOML (JSON has the same fields):
-  unit = "mm"                                # said, never guessed; may be missing
-  ignore = [["pin", "block"]]                # pairs whose overlap at the start lets them pass
-  ignore_always = [["rubber", "lid"]]        # pairs that never block each other
-  pair = [{ parts = ["bush", "body"], role = "press", tolerance = 0.08 }]
-                                             # or thread, soft, snap, glued
-  before = [["pin", "lid"]]                  # the second does not leave while the first stays
-  after = [["block", "pin"]]                 # the other way round
-  together = [["rotor", "magnet_*"]]         # leave as one, and are not taken apart
-  subassembly = [{ name = "pump", parts = ["rotor", "ring"] }]
-                                             # leave as one, then apart
-  never = [{ parts = ["tank"], along = [0, 0, -1], within_degrees = 45 }]
-  [[part]]
-  file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
-  name = "pin"                               # the file's name, if missing
-  translation = [0, 0, 5]
-  rotation = { rpy_degrees = [0, 90, 0] }    # or quaternion = [x, y, z, w], or matrix = rows
-  scale = 0.9
-  fixed = true                               # never moved
-  split = "bodies"                           # or "names", "never": as --split
-
-With --json:
+const JSON_ASSEMBLY: &str = r#"Answer of assembly:
   {"parts": [{"name", "facets", "volume", "volume_bounds"}], "unit", "tolerance" (or "keep_apart"),
    "overlaps": [{"parts": [a, b], "least_tolerance", "remains"}], "suggested_tolerance",
    "suggestions": [{"parts", "role", "tolerance", "why"}], "pairs": [{"parts", "role", "words"}],
    "liaisons": [{"parts": [a, b], "area", "area_bounds", "center"}],
-   "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
-     "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
+   "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal", "translation",
+     "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", ...)}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
-     "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch",
-       "phase", "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within", "ignored", "passed",
-     "surfaces", "subassembly"}], "wanted" (of --remove): {"parts", "others", "least", "out"},
-   "rounds": [[step, ...]], "assembly": [{"step", "after"}], "seconds": [...],
-   "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or
-     {"asked": directions}, "moves": {"legs", "directions", "places", "complete"} or
-     {"proven": cells} or {"not_asked": why}, "holds"}],
-   "maps": [...], "free": [...] (of --free: as of `directions --help`, with "parts")}
-  Directions have length 1, so distances are lengths; distance is safe to move by, proven: what stops
-  the part has not met in its true place (translation), and the parts, shrunk by half the tolerance
-  each or grown by half the length to keep, do not overlap, which they do from grown_ or
-  shrunk_distance on. The two of _bounds enclose the number, proven. outcome is "free", "blocked" or
-  "overlapping". A step with "within" takes apart the group that step (from 0) took out. "path" is
-  its moves, in order: with the last one its parts leave. What made room before goes "back".
+     "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch", "phase",
+       "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",
+     "ignored", "passed", "surfaces", "subassembly"}],
+   "wanted" (of --remove): {"parts", "others", "least", "out"}, "rounds": [[step, ...]],
+   "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
+   "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},
+     "moves": {"legs", "directions", "places", "complete"} or {"proven": cells} or
+     {"not_asked": why}, "holds"}], "maps": [...], "free": [...] (as `directions`, with "parts")}
+  Directions have length 1. `distance` is safe to move by, proven. A step with "within" takes apart
+  the group of that step, counted from 0. "path" lists its moves; the last one removes its parts.
+  Parts that made room before go "back"."#;
 
-With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), precedence.csv
-(the steps, and which wait for which), precedence.json (of each part its ways out: all parts of one
-have to go), and for each map a .svg, .png and .json, for each part of --free the proof."#;
+pub(super) const ASSEMBLY_NOTES: &str = "\
+With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (blocking pairs), precedence.csv
+(steps and their order), precedence.json (ways out of each part), for each --map a .svg, .png and
+.json, for each --free its proof.
+
+Examples:
+    colltrans assembly parts/ -o plan
+    colltrans assembly gearbox.step --remove bearing --free bearing --json
+
+`colltrans help files`: manifest, formats, units, exit codes; `colltrans help json`: fields.";
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_text_fits_every_terminal() {
+    fn wrapped_texts_fit_the_width_and_keep_their_words() {
         let texts = [
+            SEE_ALL,
+            &mesh_files(),
+            UNITS_AND_POSES,
+            BODIES,
+            LISTS,
+            MANIFEST,
             EXIT_CODES,
-            &formats(),
-            CAST_EXAMPLES,
-            CLEARANCE_ANSWERS,
-            DIRECTIONS_ANSWERS,
-            DISTANCE_ANSWERS,
-            MOTION_ANSWERS,
-            PATH_ANSWERS,
+            INFO_NOTES,
+            CAST_NOTES,
+            CLEARANCE_NOTES,
+            DIRECTIONS_NOTES,
+            DISTANCE_NOTES,
+            DEPTH_NOTES,
+            WITHIN_NOTES,
+            MOTION_NOTES,
+            PATH_NOTES,
             BATCH_FORMAT,
-            ASSEMBLY_FORMAT,
+            JSON_FIELDS,
+            JSON_ASSEMBLY,
+            ASSEMBLY_NOTES,
+            VERIFY_NOTES,
+            REPLAY_NOTES,
+            SETUP_NOTES,
         ];
         let words = |text: &str| {
             let all = text.split_whitespace().filter(|word| *word != "\\");
@@ -467,15 +554,15 @@ mod tests {
         };
         for text in texts {
             for width in [60, 80, 100] {
-                let filled = filled(text, width);
-                let longest = filled.lines().max_by_key(|line| line.chars().count()).unwrap();
+                let wrapped = wrap_paragraphs(text, width);
+                let longest = wrapped.lines().max_by_key(|line| line.chars().count()).unwrap();
                 assert!(longest.chars().count() <= width, "{longest}");
-                assert_eq!(words(&filled), words(text));
+                assert_eq!(words(&wrapped), words(text));
             }
         }
-        let explained = "  back on   how far to go back, or on,\n            to be free";
-        assert_eq!(filled(explained, 80), explained);
-        let command = filled("    colltrans cast peg.stl plate.stl --direction -z", 40);
+        let explained = "  back on   travel backwards,\n            or forwards";
+        assert_eq!(wrap_paragraphs(explained, 80), explained);
+        let command = wrap_paragraphs("    colltrans cast peg.stl plate.stl --direction -z", 40);
         assert_eq!(command, "    colltrans cast peg.stl plate.stl \\\n      --direction -z");
     }
 }

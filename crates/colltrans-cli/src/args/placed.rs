@@ -1,4 +1,4 @@
-//! `colltrans distance`, `depth` and `within`: two bodies where they are.
+//! The command line of `colltrans distance`, `depth` and `within`.
 
 use std::path::PathBuf;
 
@@ -6,40 +6,35 @@ use clap::Args;
 use colltrans::record::PairQuestion;
 use colltrans_mesh::body::BodyOptions;
 
-use super::{BodyArguments, HullArguments, PlaceArguments, Sides, Taken, UNCLEAN, one};
-use super::{length, picture, proof};
+use super::{BODY_HEADING, BodyArguments, BodyMode, HullArguments, InputPair, PlaceArguments};
+use super::{length, picture, proof, single_mesh};
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct PlacedArguments {
-    /// Both meshes; with --from all of the first body. They are called the moving and the fixed one
+    /// Both meshes, called moving and fixed; with --from all of the first body
     #[arg(required = true, value_name = "MESH")]
     meshes: Vec<PathBuf>,
-    /// The meshes of the other body, in place: parts, that need not be convex
+    /// The meshes of the other body, in place: parts that need not be convex
     #[arg(long, num_args = 1.., value_name = "FIXED")]
     from: Vec<PathBuf>,
-    /// Of distance and within: the other bodies, of which the nearest is looked for, or all that are closer than
-    /// a length: meshes, each in place, and files of obstacles (.jsonl)
-    ///
-    /// A line of such a file is {"body": BODY, "pose": POSE, "name": "..."}, with a BODY and a POSE as in
-    /// `batch --help`; a body that occurs many times is kept once.
+    /// The scene, for distance and within: meshes and files of obstacles (.jsonl)
     #[arg(long, num_args = 1.., value_name = "SCENE", conflicts_with_all = ["from", "picture", "fixed_pose", "fixed_rpy", "fixed_scale"])]
     pub(crate) among: Vec<PathBuf>,
-    /// Print the answer as one JSON object, as `batch` does (see `batch --help` for its fields)
+    /// Print the answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
     /// Draw both bodies, and the shortest way between them or out of each other, as an SVG picture
     #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
-    /// Write the proof of the answer, with the bodies and where they are, as one file that `colltrans
-    /// verify` checks
+    /// Write the proof and the bodies as a file for `colltrans verify`
     #[arg(long, value_name = "OUT.json", value_parser = proof)]
     pub(crate) save_proof: Option<PathBuf>,
-    /// Take surfaces that are not closed, as sheets and scans are: without an inside
-    #[arg(long, help_heading = UNCLEAN)]
-    open: bool,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
+    /// Accept surfaces that are not closed, without an interior
+    #[arg(long, help_heading = BODY_HEADING, hide_short_help = true)]
+    open: bool,
     #[command(flatten)]
     hulls: HullArguments,
     #[command(flatten)]
@@ -48,7 +43,7 @@ pub(crate) struct PlacedArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct WithinArguments {
-    /// The length that the distance is compared with, in the unit of the meshes
+    /// The length to compare the distance with, in the unit of the meshes
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) length: f64,
     #[command(flatten)]
@@ -56,30 +51,31 @@ pub(crate) struct WithinArguments {
 }
 
 impl PlacedArguments {
-    /// Who is called moving, who fixed, and as what they are taken, for a question.
-    pub(crate) fn sides(&self, question: PairQuestion) -> Result<Sides<'_>, Failure> {
-        Sides::of(&self.meshes, &self.from, self.taken()?, question != PairQuestion::Depth)
+    /// Returns the files of both bodies. The question decides whether error messages suggest a scene.
+    pub(crate) fn input_pair(&self, question: PairQuestion) -> Result<InputPair<'_>, Failure> {
+        let has_scene = question != PairQuestion::Depth;
+        InputPair::from_arguments(&self.meshes, &self.from, self.body_mode()?, has_scene)
     }
 
-    /// The one mesh before --among.
-    pub(crate) fn one(&self) -> Result<&PathBuf, Failure> {
-        one(&self.meshes)
+    /// Returns the moving mesh of a query with a scene.
+    pub(crate) fn moving_mesh(&self) -> Result<&PathBuf, Failure> {
+        single_mesh(&self.meshes)
     }
 
-    /// As what meshes are taken.
-    pub(crate) fn taken(&self) -> Result<Taken, Failure> {
-        let asks_parts = self.open || !self.from.is_empty();
-        let clash =
-            "--convex-tolerance and --hull are for two convex meshes; --from and --open for parts";
-        Taken::of([self.hulls.asks_convex(self.body), asks_parts], clash)
+    /// Returns the kind of bodies that the options require.
+    pub(crate) fn body_mode(&self) -> Result<BodyMode, Failure> {
+        let requires_parts = self.open || !self.from.is_empty();
+        let clash = "--convex-tolerance and --hull require two convex meshes; --from and --open require parts; drop \
+             one of the two groups";
+        BodyMode::from_requirements([self.hulls.requires_convex(self.body), requires_parts], clash)
     }
 
-    /// How both files become convex bodies.
+    /// Returns how the moving and the fixed file are read as convex bodies.
     pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
         self.hulls.body_options(self.body, &self.places)
     }
 
-    /// How the files of both bodies are read as parts.
+    /// Returns how the moving and the fixed files are read as parts.
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
         self.body.part_options(&self.places, self.open)
     }

@@ -1,4 +1,4 @@
-//! Parses the values of options: what people write behind one, read into what it means.
+//! Parses the values of options: directions, poses, angles, lengths, factors, names of files, sizes.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -7,24 +7,25 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{Pose, Solver, cta};
 
-/// Moves that one step may have.
-const MOST_LEGS: usize = 1_000;
+/// Maximum number of moves of one step.
+const MAX_LEGS: usize = 1_000;
 
-/// A direction: three numbers, or an axis by its name.
+/// Parses a direction: three numbers, or the name of an axis.
 pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
-    if let Some(axis) = axis(text.trim()) {
+    if let Some(axis) = axis_by_name(text.trim()) {
         return Ok(axis);
     }
     if !text.contains(|c: char| c == ',' || c.is_ascii_digit()) {
-        return Err("neither three numbers (x,y,z) nor an axis (x, -x, y, -y, z, -z)".into());
+        return Err("expected three numbers (x,y,z) or an axis (x, -x, y, -y, z, -z)".into());
     }
-    match numbers(text)?.as_slice() {
+    match parse_numbers(text)?.as_slice() {
         &[x, y, z] => Ok(DVec3::new(x, y, z)),
-        other => Err(format!("{} numbers, not 3 (x,y,z)", other.len())),
+        other => Err(format!("{} numbers given, expected 3 (x,y,z)", other.len())),
     }
 }
 
-fn axis(name: &str) -> Option<DVec3> {
+/// Returns the unit vector of an axis; `None` for other names.
+fn axis_by_name(name: &str) -> Option<DVec3> {
     let (sign, letter) = match name.strip_prefix('-') {
         Some(letter) => (-1.0, letter),
         None => (1.0, name.strip_prefix('+').unwrap_or(name)),
@@ -35,70 +36,82 @@ fn axis(name: &str) -> Option<DVec3> {
         "z" | "Z" => DVec3::Z,
         _ => return None,
     };
-    // Not -0 for 0.
+    // The sum turns -0 into 0.
     Some(axis * sign + DVec3::ZERO)
 }
 
-/// A solver by its name.
-/// Three numbers.
+/// Parses three numbers.
 pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
-    match numbers(text)?.as_slice() {
+    match parse_numbers(text)?.as_slice() {
         &[x, y, z] => Ok(DVec3::new(x, y, z)),
-        other => Err(format!("{} numbers, not 3 (x,y,z)", other.len())),
+        other => Err(format!("{} numbers given, expected 3 (x,y,z)", other.len())),
     }
 }
 
+/// Parses the name of a solver.
 pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
     let named = |solver: Solver, what| PossibleValue::new(solver.name()).help(what);
     PossibleValuesParser::new([
-        named(Solver::Auto, "Whichever was measured to be fastest for bodies of these sizes"),
+        named(
+            Solver::Auto,
+            "The algorithm that was measured to be fastest for bodies of these sizes",
+        ),
         named(Solver::Cta, "The collision translation algorithm, over planar sections (the paper)"),
         named(Solver::Portal, "Portal refinement"),
     ])
     .try_map(|name| name.parse::<Solver>())
 }
 
-/// Where a minimisation starts, by its name.
+/// Parses the name of a start of the minimisation.
 pub(crate) fn start() -> impl TypedValueParser<Value = cta::Start> {
     let named = |start: cta::Start, what| PossibleValue::new(start.name()).help(what);
     PossibleValuesParser::new([
-        named(cta::Start::Center, "At the centre of all sections, as the paper"),
-        named(cta::Start::Ellipsoids, "Where ellipsoids would meet: often no section is needed"),
+        named(cta::Start::Center, "At the centre of all sections, as in the paper"),
+        named(
+            cta::Start::Ellipsoids,
+            "Where ellipsoids of inertia would meet: often no section is needed",
+        ),
     ])
     .try_map(|name| name.parse::<cta::Start>())
 }
 
-/// A translation, and perhaps a rotation before it.
+/// A pose of the command line: an optional rotation, then a translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
     pose: Pose,
     has_rotation: bool,
-    /// The length of the quaternion as it was written, where it was not 1.
-    rounded: Option<f64>,
+    /// The length of the given quaternion, if it was normalised.
+    original_length: Option<f64>,
 }
 
+/// Parses a pose: a translation, or a translation and a quaternion.
 pub(crate) fn place(text: &str) -> Result<Place, String> {
-    let (translation, written) = match numbers(text)?.as_slice() {
+    let (translation, quaternion) = match parse_numbers(text)?.as_slice() {
         &[x, y, z] => (DVec3::new(x, y, z), None),
         &[x, y, z, qx, qy, qz, qw] => (DVec3::new(x, y, z), Some(DQuat::from_xyzw(qx, qy, qz, qw))),
         other => {
             let count = other.len();
-            return Err(format!("{count} numbers, not 3 (x,y,z) or 7 (x,y,z,qx,qy,qz,qw)"));
+            return Err(format!(
+                "{count} numbers given, expected 3 (x,y,z) or 7 (x,y,z,qx,qy,qz,qw)"
+            ));
         }
     };
-    let (pose, defect) =
-        Pose::from_rounded(written.unwrap_or_default(), translation).map_err(|e| e.to_string())?;
-    let rounded = defect.and(written).map(DQuat::length);
-    Ok(Place { pose, has_rotation: written.is_some(), rounded })
+    let (pose, defect) = Pose::from_rounded(quaternion.unwrap_or_default(), translation)
+        .map_err(|e| e.to_string())?;
+    let original_length = defect.and(quaternion).map(DQuat::length);
+    Ok(Place { pose, has_rotation: quaternion.is_some(), original_length })
 }
 
 impl Place {
-    /// The pose, with a rotation given by angles instead, if it is.
+    /// Returns the pose. `angles` take the place of its rotation if they are given.
+    ///
+    /// # Errors
+    /// There are both a quaternion and angles. `option` names the two options in the message.
     pub(crate) fn pose(&self, angles: Option<Angles>, option: &str) -> Result<Pose, String> {
         match angles {
             None => Ok(self.pose),
             Some(_) if self.has_rotation => Err(format!(
-                "{option}-pose has a rotation and so has {option}-rpy; give one of them"
+                "both {option}-pose and {option}-rpy have a rotation; give one of them"
             )),
             Some(angles) => Pose::from_matrix(angles.matrix(), self.pose.translation())
                 .map_err(|e| e.to_string()),
@@ -107,22 +120,22 @@ impl Place {
 
     /// Returns a note about the quaternion if it was normalised.
     pub(crate) fn note(&self, option: &str) -> Option<String> {
-        self.rounded.map(|length| normalised(option, length))
+        self.original_length.map(|length| normalised_pose_note(option, length))
     }
 
-    /// Returns the length of the quaternion as it was written, if it was normalised.
-    pub(crate) fn rounded(&self) -> Option<f64> {
-        self.rounded
+    /// Returns the length of the given quaternion; `None` if it was not normalised.
+    pub(crate) fn original_length(&self) -> Option<f64> {
+        self.original_length
     }
 }
 
-/// Returns a note if quaternions of some poses were normalised: about the pose whose length is farthest from 1.
-/// `lengths` has the lengths of those that were.
-pub(crate) fn normalised_poses(place: &str, lengths: &[Option<f64>]) -> Option<String> {
+/// Returns a note about the normalised pose whose quaternion has the length farthest from 1; `None` if no pose was
+/// normalised. `lengths` has the original length of each normalised quaternion.
+pub(crate) fn normalised_poses_note(place: &str, lengths: &[Option<f64>]) -> Option<String> {
     let rounded = lengths.iter().enumerate().filter_map(|(k, length)| Some((k, (*length)?)));
     let off = |length: f64| (length - 1.0).abs();
     let (k, length) = rounded.clone().max_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
-    let note = normalised(&format!("{place}: pose {k}"), length);
+    let note = normalised_pose_note(&format!("{place}: pose {k}"), length);
     Some(match rounded.count() {
         1 => note,
         count => format!("{note}; {count} poses were normalised"),
@@ -130,7 +143,7 @@ pub(crate) fn normalised_poses(place: &str, lengths: &[Option<f64>]) -> Option<S
 }
 
 /// Returns the note that a quaternion of this length was normalised.
-pub(crate) fn normalised(place: &str, length: f64) -> String {
+pub(crate) fn normalised_pose_note(place: &str, length: f64) -> String {
     let off = (length - 1.0).abs();
     format!(
         "{place}: the quaternion has length {length:.6}, not 1; it was normalised, and a direction may be \
@@ -142,16 +155,17 @@ pub(crate) fn normalised(place: &str, length: f64) -> String {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Angles([f64; 3]);
 
+/// Parses roll, pitch and yaw in degrees.
 pub(crate) fn angles(text: &str) -> Result<Angles, String> {
-    match numbers(text)?.as_slice() {
+    match parse_numbers(text)?.as_slice() {
         &[r, p, y] if [r, p, y].iter().all(|a| a.is_finite()) => Ok(Angles([r, p, y])),
-        &[_, _, _] => Err("an angle is not finite".into()),
-        other => Err(format!("{} numbers, not 3 (roll,pitch,yaw)", other.len())),
+        &[_, _, _] => Err("angles must be finite".into()),
+        other => Err(format!("{} numbers given, expected 3 (roll,pitch,yaw)", other.len())),
     }
 }
 
 impl Angles {
-    /// About x, then about y, then about z, all of them axes of the world.
+    /// Returns the rotation about the world's x axis, then y, then z.
     fn matrix(self) -> DMat3 {
         let [[sr, cr], [sp, cp], [sy, cy]] = self.0.map(sin_cos_degrees);
         DMat3::from_cols(
@@ -162,7 +176,8 @@ impl Angles {
     }
 }
 
-/// Exact at multiples of 90 degrees, and the same bits on every platform, as those of `std` are not.
+/// Returns the sine and the cosine of an angle in degrees, exact at multiples of 90. The bits are the same on all
+/// platforms, in contrast to those of `std`.
 fn sin_cos_degrees(degrees: f64) -> [f64; 2] {
     let turn = degrees.rem_euclid(360.0);
     let quarter = (turn / 90.0).round();
@@ -175,7 +190,7 @@ fn sin_cos_degrees(degrees: f64) -> [f64; 2] {
     }
 }
 
-/// A length: finite and not negative.
+/// Parses a length: finite and not negative.
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
@@ -184,7 +199,7 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A factor: finite and positive.
+/// Parses a factor: finite and positive.
 pub(crate) fn factor(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(factor),
@@ -193,7 +208,7 @@ pub(crate) fn factor(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The name of a picture, which is SVG.
+/// Parses the name of a picture, whose extension must be `svg`.
 pub(crate) fn picture(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
@@ -201,18 +216,18 @@ pub(crate) fn picture(text: &str) -> Result<PathBuf, String> {
         return Ok(path);
     }
     let svg = path.with_extension("svg");
-    Err(format!("pictures are written as SVG; call it {}", svg.display()))
+    Err(format!("pictures are SVG files; name it {}", svg.display()))
 }
 
-/// The name of a proof, which is a file: standard output has the answer.
+/// Parses the name of a proof file. Rejects `-`, because standard output has the answer.
 pub(crate) fn proof(text: &str) -> Result<PathBuf, String> {
     match text {
-        "-" => Err("standard output has the answer; a proof needs a file".into()),
+        "-" => Err("standard output has the answer; give the name of a file for the proof".into()),
         name => Ok(name.into()),
     }
 }
 
-/// A number of bytes, with a unit or without.
+/// Parses a number of bytes with an optional unit.
 pub(crate) fn bytes(text: &str) -> Result<usize, String> {
     let text = text.trim();
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
@@ -229,45 +244,49 @@ pub(crate) fn bytes(text: &str) -> Result<usize, String> {
         "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
         _ => {
             return Err(format!(
-                "`{}` is not a unit of bytes (kB, MB, GB, KiB, MiB, GiB)",
+                "unknown unit of bytes `{}`; accepted: kB, MB, GB, KiB, MiB, GiB",
                 unit.trim()
             ));
         }
     };
-    let number: f64 = number.parse().map_err(|_| "is not a number of bytes, like 500MB or 2GiB")?;
+    let number: f64 =
+        number.parse().map_err(|_| "expected a number of bytes, for example 500MB or 2GiB")?;
     // The cast saturates.
     Ok((number * factor).round() as usize)
 }
 
-/// Most threads that make sense to ask for.
-const MOST_THREADS: usize = 1024;
+/// Maximum number of threads.
+const MAX_THREADS: usize = 1024;
 
-/// Samples of the sphere, each asked of every part.
-const MOST_SAMPLES: usize = 655_362;
+/// Maximum number of sample directions, each of which is a query for every part.
+const MAX_SAMPLES: usize = 655_362;
 
-/// How many moves there may be.
+/// Parses the maximum number of moves of a step.
 pub(crate) fn legs(text: &str) -> Result<usize, String> {
     match text.parse() {
-        Ok(count) if (1..=MOST_LEGS).contains(&count) => Ok(count),
-        _ => Err(format!("a number from 1 to {MOST_LEGS} is needed")),
+        Ok(count) if (1..=MAX_LEGS).contains(&count) => Ok(count),
+        _ => Err(format!("expected a number from 1 to {MAX_LEGS}")),
     }
 }
 
+/// Parses a number of sample directions.
 pub(crate) fn samples(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
-        Ok(count) if count <= MOST_SAMPLES => Ok(count),
-        _ => Err(format!("a number from 0 to {MOST_SAMPLES} is needed")),
+        Ok(count) if count <= MAX_SAMPLES => Ok(count),
+        _ => Err(format!("expected a number from 0 to {MAX_SAMPLES}")),
     }
 }
 
+/// Parses a number of threads.
 pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     match text.parse::<NonZeroUsize>() {
-        Ok(count) if count.get() <= MOST_THREADS => Ok(count),
-        _ => Err(format!("a number from 1 to {MOST_THREADS} is needed")),
+        Ok(count) if count.get() <= MAX_THREADS => Ok(count),
+        _ => Err(format!("expected a number from 1 to {MAX_THREADS}")),
     }
 }
 
-fn numbers(text: &str) -> Result<Vec<f64>, String> {
+/// Parses numbers that are separated by commas.
+fn parse_numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|word| word.trim().parse().map_err(|_| format!("`{}` is not a number", word.trim())))
         .collect()
@@ -278,7 +297,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn poses() {
+    fn poses_have_three_or_seven_finite_numbers() {
         let pose = |text: &str| place(text)?.pose(None, "--moving");
         assert_eq!(pose("1, -2,3e0").unwrap().translation(), DVec3::new(1.0, -2.0, 3.0));
         assert_eq!(pose("0,0,0,0,0,1,0").unwrap().matrix().x_axis, -DVec3::X);
@@ -300,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_have_names() {
+    fn directions_accept_axis_names() {
         for (name, axis) in
             [("x", DVec3::X), ("+y", DVec3::Y), ("-z", DVec3::NEG_Z), ("Z", DVec3::Z)]
         {
@@ -314,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_turn_about_x_then_y_then_z() {
+    fn roll_pitch_yaw_rotate_about_world_axes_in_order() {
         let matrix = |text: &str| angles(text).unwrap().matrix();
         assert_eq!(matrix("90,0,0"), DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y));
         assert_eq!(matrix("0,90,0").z_axis, DVec3::X);
@@ -334,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_have_the_same_bits_everywhere() {
+    fn sines_and_cosines_of_degrees_match_golden_bits() {
         for (degrees, bits) in [
             (30.0, [0x3fdf_ffff_ffff_ffff, 0x3feb_b67a_e858_4cab]),
             (-77.25, [0xbfef_3601_191f_a459, 0x3fcc_3fd0_44dd_3d45]),
@@ -346,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_have_units() {
+    fn bytes_accept_decimal_and_binary_units() {
         for (text, expected) in
             [("0", 0), ("1500", 1500), ("2kB", 2000), ("1.5 MiB", 3 << 19), ("2GB", 2_000_000_000)]
         {
@@ -358,15 +377,15 @@ mod tests {
     }
 
     #[test]
-    fn proofs_are_files() {
+    fn proof_on_standard_output_is_rejected() {
         assert!(proof("a/b.json").is_ok());
-        assert!(proof("-").unwrap_err().contains("needs a file"));
+        assert!(proof("-").unwrap_err().contains("give the name of a file"));
     }
 
     #[test]
-    fn pictures_are_svg() {
+    fn picture_path_requires_svg_extension() {
         assert!(picture("a/b.SVG").is_ok());
-        assert!(picture("a/b.png").unwrap_err().ends_with("call it a/b.svg"));
+        assert!(picture("a/b.png").unwrap_err().ends_with("name it a/b.svg"));
         for bad in ["a", "part.stl", "svg"] {
             assert!(picture(bad).is_err(), "{bad}");
         }

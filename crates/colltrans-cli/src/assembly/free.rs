@@ -1,4 +1,4 @@
-//! `assembly --free`: all directions along which parts leave the others.
+//! `assembly --free`: all directions along which groups of parts can leave the others.
 
 use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;
@@ -12,51 +12,60 @@ use serde_json::{Value, json};
 
 use crate::directions;
 use crate::failure::{Code, Failure};
-use crate::terminal::shown;
+use crate::terminal::escape_line;
 
-/// What is said of a group.
-pub(super) struct Leaving {
-    /// As it was asked for.
+/// The removal directions of a group.
+pub(super) struct GroupRemoval {
+    /// The group as the option names it.
     pub(super) name: String,
     parts: Vec<String>,
     record: FreeRecord,
-    /// About the parts as they are asked: shrunk, the group and the others as a body each.
+    /// A proof about the offset parts, in which the group and the others are one body each.
     pub(super) proof: Option<ProofFile>,
 }
 
-/// What is said of all groups; with proofs if they are written.
-pub(super) fn all(
+/// Computes the removal directions of all groups, and their proofs if `with_proofs` is set.
+///
+/// # Errors
+/// The query of a group fails.
+pub(super) fn group_removals(
     bodies: &Bodies,
     groups: Vec<(String, Vec<usize>)>,
     options: FreeOptions,
     with_proofs: bool,
-) -> Result<Vec<Leaving>, Failure> {
-    let of = |(name, group): (String, Vec<usize>)| {
+) -> Result<Vec<GroupRemoval>, Failure> {
+    let compute = |(name, group): (String, Vec<usize>)| {
         let removal = Removal::new(bodies, &group)?;
         let free = removal.directions(options, &AtomicBool::new(false))?;
         let proof = with_proofs.then(|| {
             let [moving, fixed] = removal.solids();
             ProofFile::of_free_directions(&free, [&[moving], &[fixed]])
         });
-        let refused =
+        let proof_failure =
             |error: colltrans::ProofFileError| Failure::new(Code::Query, error.to_string());
         let parts = bodies.assembly().names(&group).into_iter().map(str::to_owned).collect();
         let record = removal.record(bodies, &free);
-        Ok(Leaving { name, parts, record, proof: proof.transpose().map_err(refused)? })
+        Ok(GroupRemoval { name, parts, record, proof: proof.transpose().map_err(proof_failure)? })
     };
-    groups.into_iter().map(of).collect()
+    groups.into_iter().map(compute).collect()
 }
 
-impl Leaving {
+impl GroupRemoval {
+    /// Returns the JSON object of the group.
     pub(super) fn json(&self) -> Value {
-        let mut told = json!(self.record);
-        told["parts"] = json!(self.parts);
-        told
+        let mut object = json!(self.record);
+        object["parts"] = json!(self.parts);
+        object
     }
 
-    /// A few lines for people.
-    pub(super) fn tell(&self, text: &mut String) {
-        let _ = writeln!(text, "free directions of {}: {}", shown(&self.name), self.record.outcome);
-        directions::told(text, &self.record);
+    /// Appends the answer as text.
+    pub(super) fn push_text(&self, text: &mut String) {
+        let _ = writeln!(
+            text,
+            "free directions of {}: {}",
+            escape_line(&self.name),
+            self.record.outcome
+        );
+        directions::push_directions(text, &self.record);
     }
 }

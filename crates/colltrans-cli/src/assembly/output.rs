@@ -1,4 +1,4 @@
-//! Prints the result of `assembly`, and writes the files of `-o`.
+//! Prints the answer of `assembly`, and writes the files of `-o`.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -11,43 +11,48 @@ use colltrans_assembly::report::{facts, glb, html};
 use colltrans_assembly::{Assembly, Findings, Fit};
 use colltrans_assembly::{map, record, suggest};
 
-use super::free::Leaving;
+use super::free::GroupRemoval;
 use crate::args::AssemblyArguments;
 use crate::directions;
 use crate::failure::{Failure, note, print, print_json};
-use crate::inputs::refuse_overwriting;
+use crate::inputs::check_output_path;
 use crate::numbers::counted;
 use crate::outputs::{FileNames, Outputs};
-use crate::terminal::{plain_json, shown};
+use crate::terminal::{escape_json, escape_line};
 
+/// Writes the files if there is a folder, then prints the answer as JSON or text.
+///
+/// # Errors
+/// An output cannot be written.
 pub(super) fn write(
-    f: &Findings,
-    free: &[Leaving],
+    findings: &Findings,
+    removals: &[GroupRemoval],
     arguments: &AssemblyArguments,
 ) -> Result<(), Failure> {
-    for text in f.bodies.assembly().notes() {
+    for text in findings.bodies.assembly().notes() {
         note(text);
     }
-    let mut json = facts::json(f);
-    if !free.is_empty() {
-        json["free"] = free.iter().map(Leaving::json).collect();
+    let mut json = facts::json(findings);
+    if !removals.is_empty() {
+        json["free"] = removals.iter().map(GroupRemoval::json).collect();
     }
     if let Some(folder) = &arguments.output {
-        files(f, free, arguments, folder, &json)?;
+        write_files(findings, removals, arguments, folder, &json)?;
     }
     if arguments.json {
         return print_json(&format!("{json}\n"));
     }
-    let mut text = summary(f);
-    for leaving in free {
-        leaving.tell(&mut text);
+    let mut text = summary_text(findings);
+    for removal in removals {
+        removal.push_text(&mut text);
     }
     print(&text)
 }
 
-fn files(
-    f: &Findings,
-    free: &[Leaving],
+/// Writes all files of the folder. None of them appears before all are complete.
+fn write_files(
+    findings: &Findings,
+    removals: &[GroupRemoval],
     arguments: &AssemblyArguments,
     folder: &Path,
     json: &serde_json::Value,
@@ -57,32 +62,35 @@ fn files(
     let mut put = |name: &str, bytes: &[u8]| outputs.write(folder.join(name), bytes);
     let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());
     let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
-    put("report.html", html::page(f, &title).as_bytes())?;
-    put("disassembly.glb", &glb::animation(f.bodies.assembly(), &f.plan))?;
-    put("assembly.json", plain_json(&json.to_string()).as_bytes())?;
-    put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
-    let assembly = f.bodies.assembly();
-    put("precedence.csv", f.plan.to_csv(assembly, &f.times).as_bytes())?;
-    let ways = and_or(assembly, &f.matrix).to_string();
-    put("precedence.json", plain_json(&ways).as_bytes())?;
-    let names = map_names(f.maps.iter().map(|(name, _)| name));
-    for ((name, map), [svg, png, json]) in f.maps.iter().zip(names) {
-        let title = format!("Room of {name} in all directions");
+    put("report.html", html::page(findings, &title).as_bytes())?;
+    put("disassembly.glb", &glb::animation(findings.bodies.assembly(), &findings.plan))?;
+    put("assembly.json", escape_json(&json.to_string()).as_bytes())?;
+    put("matrix.csv", findings.matrix.to_csv(findings.bodies).as_bytes())?;
+    let assembly = findings.bodies.assembly();
+    put("precedence.csv", findings.plan.to_csv(assembly, &findings.times).as_bytes())?;
+    let and_or_graph = and_or(assembly, &findings.matrix).to_string();
+    put("precedence.json", escape_json(&and_or_graph).as_bytes())?;
+    let names = map_names(findings.maps.iter().map(|(name, _)| name));
+    for ((name, map), [svg, png, json]) in findings.maps.iter().zip(names) {
+        let title = format!("Free travel of {name} in all directions");
         put(&svg, map::svg(map, &title).as_bytes())?;
         put(&png, &map::png(map, 1_200))?;
-        put(&json, plain_json(&record::map(f.bodies, map).to_string()).as_bytes())?;
+        put(&json, escape_json(&record::map(findings.bodies, map).to_string()).as_bytes())?;
     }
-    let names = free_names(free.iter().map(|leaving| &leaving.name));
-    for (leaving, name) in free.iter().zip(names) {
-        if let Some(proof) = &leaving.proof {
+    let names = proof_names(removals.iter().map(|removal| &removal.name));
+    for (removal, name) in removals.iter().zip(names) {
+        if let Some(proof) = &removal.proof {
             put(&name, format!("{}\n", proof.to_json()).as_bytes())?;
         }
     }
     outputs.finish()
 }
 
-/// None of the files that will be written must take the place of one that is read.
-pub(super) fn refuse_inputs(
+/// Checks that no output overwrites an input.
+///
+/// # Errors
+/// An output would.
+pub(super) fn check_output_paths(
     arguments: &AssemblyArguments,
     assembly: &Assembly,
 ) -> Result<(), Failure> {
@@ -98,96 +106,97 @@ pub(super) fn refuse_inputs(
         "precedence.json",
     ];
     let maps = map_names(&arguments.map).into_iter().flatten();
-    let all = maps.chain(free_names(&arguments.free));
+    let all = maps.chain(proof_names(&arguments.free));
     for name in fixed.into_iter().map(str::to_owned).chain(all) {
-        refuse_overwriting(&folder.join(name), &inputs, "give another folder")?;
+        check_output_path(&folder.join(name), &inputs, "give another folder")?;
     }
     Ok(())
 }
 
-/// The files of each map.
+/// Returns the names of the three files of each map.
 fn map_names<'a>(maps: impl IntoIterator<Item = &'a String>) -> Vec<[String; 3]> {
     let mut names = FileNames::default();
     let files = |name: &String| {
-        let name = names.of(name);
+        let name = names.unique_name(name);
         ["svg", "png", "json"].map(|extension| format!("map-{name}.{extension}"))
     };
     maps.into_iter().map(files).collect()
 }
 
-/// The files of the proofs of free directions.
-fn free_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
+/// Returns the names of the proofs of removal directions.
+fn proof_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
     let mut names = FileNames::default();
-    parts.into_iter().map(|name| format!("free-{}.json", names.of(name))).collect()
+    parts.into_iter().map(|name| format!("free-{}.json", names.unique_name(name))).collect()
 }
 
-/// A few lines for people.
-fn summary(f: &Findings) -> String {
-    let assembly = f.bodies.assembly();
-    let names = |parts: &[usize]| shown(listed(&assembly.names(parts)));
-    let fit = match f.bodies.fit() {
+/// Returns the answer as text.
+fn summary_text(findings: &Findings) -> String {
+    let assembly = findings.bodies.assembly();
+    let names = |parts: &[usize]| escape_line(name_list(&assembly.names(parts)));
+    let fit = match findings.bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {length}"),
         Fit::Chords { largest, .. } => {
             format!("tolerance of each pair by its chord errors, {largest} at most")
         }
-        Fit::Apart(length) => format!("{length} to keep apart"),
+        Fit::Apart(length) => format!("minimum gap {length}"),
     };
     let mut text = format!("{}, {fit}\n", counted(assembly.parts().len(), "part", "parts"));
     for (k, p) in assembly.parts().iter().enumerate() {
-        for defect in p.defects().iter().chain(&f.bodies.remark(k)) {
-            let _ = writeln!(text, "  {}: {}", shown(p.name()), shown(defect));
+        for defect in p.defects().iter().chain(&findings.bodies.remark(k)) {
+            let _ = writeln!(text, "  {}: {}", escape_line(p.name()), escape_line(defect));
         }
     }
-    for hint in hints(f.bodies, &f.start) {
-        let _ = writeln!(text, "  {}", shown(hint.words));
+    for hint in hints(findings.bodies, &findings.start) {
+        let _ = writeln!(text, "  {}", escape_line(hint.words));
     }
-    overlaps(&mut text, f);
-    if !f.plan.steps.is_empty() {
+    push_overlaps(&mut text, findings);
+    if !findings.plan.steps.is_empty() {
         text.push_str("plan\n");
     }
-    for stage in f.plan.stages() {
-        tell(&mut text, f, &stage);
+    for stage in findings.plan.stages() {
+        push_stage(&mut text, findings, &stage);
     }
-    let (seconds, rounds) = (f.times.of(&f.plan).iter().sum::<f64>(), f.plan.rounds().len());
-    if f.plan.steps.len() > 1 {
+    let (seconds, rounds) =
+        (findings.times.of(&findings.plan).iter().sum::<f64>(), findings.plan.rounds().len());
+    if findings.plan.steps.len() > 1 {
         let rounds = counted(rounds, "round", "rounds");
         let _ =
             writeln!(text, "  about {seconds:.0} s by the table of handling times, in {rounds}");
     }
-    if let Some(wanted) = &f.plan.wanted {
-        let _ = writeln!(text, "to take out\n  {}", shown(wanted.words(assembly)));
+    if let Some(wanted) = &findings.plan.wanted {
+        let _ = writeln!(text, "to remove\n  {}", escape_line(wanted.words(assembly)));
     }
-    if !f.plan.last.is_empty() {
-        let _ = writeln!(text, "what remains\n  {}", names(&f.plan.last));
+    if !findings.plan.last.is_empty() {
+        let _ = writeln!(text, "remaining\n  {}", names(&findings.plan.last));
     }
-    if !f.plan.left.is_empty() {
-        let fixed = f.plan.left.iter().all(|&part| assembly.parts()[part].fixed());
-        let why = match (fixed, f.plan.left.len()) {
+    if !findings.plan.left.is_empty() {
+        let fixed = findings.plan.left.iter().all(|&part| assembly.parts()[part].fixed());
+        let why = match (fixed, findings.plan.left.len()) {
             (false, _) => "",
-            (true, 1) => ", as it is fixed",
-            (true, _) => ", as they are fixed",
+            (true, 1) => ", because it is fixed",
+            (true, _) => ", because they are fixed",
         };
-        let _ = writeln!(text, "left{why}\n  {}", names(&f.plan.left));
+        let _ = writeln!(text, "left{why}\n  {}", names(&findings.plan.left));
     }
-    for stuck in &f.plan.stuck {
-        let (reason, details) = (stuck.reason(f.bodies), stuck.details(f.bodies));
-        let (reason, details) = (shown(reason), shown(details));
-        let head = stuck.heading(f.bodies);
+    for stuck in &findings.plan.stuck {
+        let (reason, details) = (stuck.reason(findings.bodies), stuck.details(findings.bodies));
+        let (reason, details) = (escape_line(reason), escape_line(details));
+        let head = stuck.heading(findings.bodies);
         let _ = writeln!(text, "{head}\n  {}: {reason}\n    {details}", names(&stuck.parts));
     }
-    for (name, map) in &f.maps {
+    for (name, map) in &findings.maps {
         match &map.cover {
             Ok(cover) => {
-                let _ = writeln!(text, "map of {}: {}", shown(name), cover.record.outcome);
-                directions::told(&mut text, &cover.record);
+                let _ = writeln!(text, "map of {}: {}", escape_line(name), cover.record.outcome);
+                directions::push_directions(&mut text, &cover.record);
             }
             Err(why) => {
                 let _ = writeln!(
                     text,
-                    "map of {}, sampled, as {}\n  {:.3} % of all directions are free, in {} regions; \
+                    "map of {}, sampled, because {}\n  {:.3} % of all directions are free, in {} regions; \
                      {} isolated free directions",
-                    shown(name),
-                    shown(why),
+                    escape_line(name),
+                    escape_line(why),
                     100.0 * map.free_share(),
                     map.regions.len(),
                     map.isolated.len()
@@ -198,52 +207,52 @@ fn summary(f: &Findings) -> String {
     text
 }
 
-/// What a stage takes away.
-fn takes(f: &Findings, stage: &Range<usize>) -> String {
-    let (assembly, parts) = (f.bodies.assembly(), &f.plan.steps[stage.start].parts);
+/// Returns the names of the parts that a stage removes.
+fn removed_names(findings: &Findings, stage: &Range<usize>) -> String {
+    let (assembly, parts) = (findings.bodies.assembly(), &findings.plan.steps[stage.start].parts);
     if stage.len() == 1 && assembly.constraints().name(parts).is_none() {
-        return listed(&assembly.names(parts));
+        return name_list(&assembly.names(parts));
     }
-    f.plan.takes(assembly, stage)
+    findings.plan.takes(assembly, stage)
 }
 
-/// Names are listed up to so many.
-const MOST_NAMES: usize = 12;
+/// Maximum number of names that are listed.
+const MAX_NAMES: usize = 12;
 
-/// Names, of very many the first ones: all are in JSON.
-fn listed(names: &[&str]) -> String {
-    match names.len().saturating_sub(MOST_NAMES) {
+/// Joins names, at most about [`MAX_NAMES`] of them.
+fn name_list(names: &[&str]) -> String {
+    match names.len().saturating_sub(MAX_NAMES) {
         0 | 1 => names.join(", "),
-        more => format!("{} and {more} more", names[..MOST_NAMES].join(", ")),
+        more => format!("{} and {more} more", names[..MAX_NAMES].join(", ")),
     }
 }
 
-/// Steps that are one for whoever does them.
-fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
-    let assembly = f.bodies.assembly();
-    let names = |parts: &[usize]| shown(listed(&assembly.names(parts)));
-    let steps = &f.plan.steps[stage.clone()];
+/// Appends a stage of the plan: steps that are one action.
+fn push_stage(text: &mut String, findings: &Findings, stage: &Range<usize>) {
+    let assembly = findings.bodies.assembly();
+    let names = |parts: &[usize]| escape_line(name_list(&assembly.names(parts)));
+    let steps = &findings.plan.steps[stage.clone()];
     let step = &steps[0];
     let within = step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
-    let way = |travel: f64, d: DVec3| match travel {
+    let travel_text = |travel: f64, d: DVec3| match travel {
         0.0 => format!("away along {},{},{}", d.x, d.y, d.z),
         _ => format!("{travel} along {},{},{}", d.x, d.y, d.z),
     };
-    let (numbers, takes) = (Plan::numbers(stage), shown(takes(f, stage)));
-    let head = format!("  {numbers}. {takes}{within}: ");
+    let (numbers, removed) = (Plan::numbers(stage), escape_line(removed_names(findings, stage)));
+    let head = format!("  {numbers}. {removed}{within}: ");
     if let (Some(turn), [screwed, rest]) = (step.turn(), &step.path[..]) {
         let turns = match screwed.travel {
             0.0 => format!("turn by {:.2} degrees", 360.0 * turn.turns),
-            way => format!("unscrew, {:.2} turns, {way}", turn.turns.abs()),
+            travel => format!("unscrew, {:.2} turns, {travel}", turn.turns.abs()),
         };
-        let _ = writeln!(text, "{head}{turns}, then {}", way(rest.travel, rest.direction));
+        let _ = writeln!(text, "{head}{turns}, then {}", travel_text(rest.travel, rest.direction));
     } else if let [_] = &step.path[..] {
-        let told = match (f.plan.direction(stage), f.plan.travel(stage)) {
-            (Some(d), travel) => way(travel, d),
-            (None, 0.0) => "away, each along its own way".into(),
-            (None, travel) => format!("{travel} each along its own way"),
+        let travel = match (findings.plan.direction(stage), findings.plan.travel(stage)) {
+            (Some(d), travel) => travel_text(travel, d),
+            (None, 0.0) => "away, each in its own direction".into(),
+            (None, travel) => format!("{travel} each in its own direction"),
         };
-        let _ = writeln!(text, "{head}{told}");
+        let _ = writeln!(text, "{head}{travel}");
     } else {
         let _ = writeln!(text, "{head}in {} moves", step.path.len());
         for (back, leg) in
@@ -253,22 +262,22 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
                 text,
                 "     {back}{}: {}",
                 names(&leg.parts),
-                way(leg.travel, leg.direction)
+                travel_text(leg.travel, leg.direction)
             );
         }
     }
     for ignored in steps.iter().filter_map(|step| step.ignores(assembly)) {
-        let _ = writeln!(text, "     {}", shown(ignored));
+        let _ = writeln!(text, "     {}", escape_line(ignored));
     }
-    for said in steps.iter().flat_map(|step| step.unsettled(assembly)) {
-        let _ = writeln!(text, "     {}", shown(said));
+    for open in steps.iter().flat_map(|step| step.unsettled(assembly)) {
+        let _ = writeln!(text, "     {}", escape_line(open));
     }
-    for passed in f.plan.passed_words(assembly, stage) {
-        let _ = writeln!(text, "     {}", shown(passed));
+    for passed in findings.plan.passed_words(assembly, stage) {
+        let _ = writeln!(text, "     {}", escape_line(passed));
     }
     for step in steps {
         if let Some(turn) = step.turn() {
-            let _ = writeln!(text, "     {}: {}", names(&step.parts), shown(turn.words()));
+            let _ = writeln!(text, "     {}: {}", names(&step.parts), escape_line(turn.words()));
         }
     }
     let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
@@ -279,17 +288,18 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
     }
 }
 
-fn overlaps(text: &mut String, f: &Findings) {
-    let remaining: Vec<_> = f.start.remaining().collect();
+/// Appends overlaps at the start, and suggestions.
+fn push_overlaps(text: &mut String, findings: &Findings) {
+    let remaining: Vec<_> = findings.start.remaining().collect();
     if !remaining.is_empty() {
-        text.push_str(match f.bodies.fit() {
-            Fit::Apart(_) => "nearer than that where they stand\n",
+        text.push_str(match findings.bodies.fit() {
+            Fit::Apart(_) => "nearer than that at the start\n",
             _ => "overlapping with this tolerance\n",
         });
     }
     for o in &remaining {
-        let [a, b] = o.parts.map(|k| shown(f.bodies.assembly().parts()[k].name()));
-        let depth = match (o.depth, f.bodies.fit()) {
+        let [a, b] = o.parts.map(|k| escape_line(findings.bodies.assembly().parts()[k].name()));
+        let depth = match (o.depth, findings.bodies.fit()) {
             (None, _) => " by more than their size".into(),
             (Some(0.0), Fit::Apart(_)) => String::new(),
             (Some(depth), Fit::Apart(_)) => format!(", which overlap by {depth}"),
@@ -297,15 +307,15 @@ fn overlaps(text: &mut String, f: &Findings) {
         };
         let _ = writeln!(text, "  {a}, {b}{depth}");
     }
-    if remaining.is_empty() && !f.suggestions.is_empty() {
-        text.push_str("what may hold\n");
+    if remaining.is_empty() && !findings.suggestions.is_empty() {
+        text.push_str("possible reasons\n");
     }
-    for said in suggest::told(f.bodies.assembly(), &f.suggestions) {
+    for suggestion in suggest::told(findings.bodies.assembly(), &findings.suggestions) {
         let _ =
-            writeln!(text, "  perhaps on purpose, which --auto takes for granted: {}", shown(said));
+            writeln!(text, "  perhaps intended, which --auto assumes: {}", escape_line(suggestion));
     }
-    let apart = matches!(f.bodies.fit(), Fit::Apart(_));
-    if let Some(tolerance) = f.start.suggested.filter(|_| !remaining.is_empty() && !apart) {
+    let apart = matches!(findings.bodies.fit(), Fit::Apart(_));
+    if let Some(tolerance) = findings.start.suggested.filter(|_| !remaining.is_empty() && !apart) {
         let _ = writeln!(
             text,
             "  try --tolerance {tolerance} or, for curved fits, the chord errors of both parts together"

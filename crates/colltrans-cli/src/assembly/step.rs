@@ -1,7 +1,8 @@
-//! STEP files, by way of a converter: `colltrans.step` of the Python package, or what `COLLTRANS_STEP` names.
+//! Converts STEP files with an external program: `colltrans.step` of the Python package, or the one that
+//! `COLLTRANS_STEP` names.
 //!
-//! The converter is called with the file, `-o -` and `--chord L`. It writes GLB to standard output, in which each part
-//! has its chord error, and what it does to standard error, a line each.
+//! The arguments are the file, `-o -` and `--chord L`. The program writes GLB to standard output, with the chord error of
+//! each part, and its progress to standard error, one line per step.
 
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
@@ -10,48 +11,53 @@ use std::time::Duration;
 
 use crate::failure::{Code, Failure};
 use crate::progress;
-use crate::terminal::shown;
+use crate::terminal::escape_line;
 
-/// The variable that names another converter, with its first arguments.
+/// Environment variable with another converter and its first arguments.
 const VARIABLE: &str = "COLLTRANS_STEP";
-const INSTALL: &str = "STEP files need a converter: pip install 'colltrans[step]' for the Python that `python3` is, or \
+/// Error message without a converter.
+const INSTALL_HINT: &str = "STEP files need a converter: run pip install 'colltrans[step]' for the Python of `python3`, or \
                        name another one in COLLTRANS_STEP; or tessellate each part to a mesh file in its place, and give \
                        the folder";
 
-/// Whether a source is a STEP file, by its name.
+/// Checks whether a source is a STEP file, by its extension.
 pub(super) fn is_step(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
     ["step", "stp"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
-/// The GLB file that a STEP file is converted to; facets are `chord` from its surfaces, about.
-pub(super) fn converted(path: &Path, chord: f64) -> Result<Vec<u8>, Failure> {
+/// Converts a STEP file to GLB. `chord` is the requested distance of facets from the surfaces, in millimetres.
+///
+/// # Errors
+/// The file cannot be read, there is no converter, or it fails.
+pub(super) fn convert_to_glb(path: &Path, chord: f64) -> Result<Vec<u8>, Failure> {
     let failed = |text: String| Failure::new(Code::Input, format!("{}: {text}", path.display()));
     let unreadable = |e: io::Error| failed(format!("cannot be read: {e}"));
     if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err(failed("is no file".into()));
+        return Err(failed("is not a file".into()));
     }
-    let (mut command, name) = command();
+    let (mut command, name) = converter();
     command.arg(path).args(["-o", "-", "--chord", &chord.to_string()]);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().map_err(|e| match e.kind() {
-        ErrorKind::NotFound => failed(INSTALL.into()),
+        ErrorKind::NotFound => failed(INSTALL_HINT.into()),
         _ => failed(format!("{name} cannot be run: {e}")),
     })?;
-    let (glb, said, status) = output(child).map_err(|e| failed(format!("{name}: {e}")))?;
+    let (glb, messages, status) =
+        run_converter(child).map_err(|e| failed(format!("{name}: {e}")))?;
     if status.success() {
         return Ok(glb);
     }
-    let last = said.last().map_or("it says nothing", String::as_str);
+    let last = messages.last().map_or("no message", String::as_str);
     Err(if last.contains("No module named") || last.contains("colltrans[step]") {
-        failed(INSTALL.into())
+        failed(INSTALL_HINT.into())
     } else {
-        failed(format!("{name} failed ({status}): {}", shown(last)))
+        failed(format!("{name} failed ({status}): {}", escape_line(last)))
     })
 }
 
-/// The converter, and its name.
-fn command() -> (Command, String) {
+/// Returns the converter and its name.
+fn converter() -> (Command, String) {
     let named = std::env::var(VARIABLE).unwrap_or_default();
     let mut words = named.split_whitespace();
     let Some(program) = words.next() else {
@@ -64,25 +70,25 @@ fn command() -> (Command, String) {
     (command, program.into())
 }
 
-/// What it writes, the lines that it says, which are shown while it works, and how it ends.
-fn output(mut child: Child) -> io::Result<(Vec<u8>, Vec<String>, ExitStatus)> {
-    let bar = progress::bar(None, "{spinner} {msg} {elapsed}");
+/// Runs the converter, and shows its messages as progress. Returns its output, its messages and its status.
+fn run_converter(mut child: Child) -> io::Result<(Vec<u8>, Vec<String>, ExitStatus)> {
+    let bar = progress::bar_with_template(None, "{spinner} {msg} {elapsed}");
     bar.enable_steady_tick(Duration::from_millis(120));
-    let said = child.stderr.take();
-    let (mut bytes, mut lines) = (Vec::new(), Vec::new());
+    let stderr = child.stderr.take();
+    let (mut bytes, mut messages) = (Vec::new(), Vec::new());
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            for line in said.into_iter().flat_map(|said| BufReader::new(said).split(b'\n')) {
+            for line in stderr.into_iter().flat_map(|stderr| BufReader::new(stderr).split(b'\n')) {
                 let Ok(line) = line else { break };
                 let line = String::from_utf8_lossy(&line).trim_end().to_owned();
                 if !line.is_empty() {
-                    bar.set_message(shown(&line));
-                    lines.push(line);
+                    bar.set_message(escape_line(&line));
+                    messages.push(line);
                 }
             }
         });
-        child.stdout.take().map_or(Ok(0), |mut made| made.read_to_end(&mut bytes))
+        child.stdout.take().map_or(Ok(0), |mut stdout| stdout.read_to_end(&mut bytes))
     })?;
     bar.finish_and_clear();
-    Ok((bytes, lines, child.wait()?))
+    Ok((bytes, messages, child.wait()?))
 }

@@ -1,8 +1,8 @@
-//! Bodies that occur again are built once.
+//! A cache of bodies that several queries use. It evicts the least recently used ones.
 //!
-//! Invariant: the bytes of all entries, as weighed when they were last used, sum to no more than the
-//! capacity when one is added, or there are only as many as one query needs. Entries leave in the order of their last use. Building happens outside the lock; whoever
-//! wants a body that another thread is building waits for that body only.
+//! Invariant: after each insertion, the bytes of all entries, as computed at their last use, do not exceed the capacity,
+//! or there are only the two entries that one query needs. Bodies are built outside the lock. A thread that needs a body
+//! which another thread is building waits only for this body.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem::size_of;
@@ -12,18 +12,18 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use crate::body::Part;
 use crate::solid;
 
-/// What a body is made from.
+/// The source of a body.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Key {
-    /// A mesh file, whether its hull is taken, and the bits of its scale.
+    /// A mesh file that becomes a convex body, whether its hull is taken, and the bits of its scale.
     Mesh { path: PathBuf, hull: bool, scale: u64 },
-    /// A mesh file that need not be convex, and the bits of its scale.
+    /// A mesh file that need not be convex, the bits of its scale, and whether it may be open.
     Solid { path: PathBuf, scale: u64, open: bool },
     /// Points, by the exact bits of their coordinates.
     Points(Vec<[u64; 3]>),
 }
 
-/// What is built.
+/// A body of either kind.
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "each is behind a pointer of its own")]
 pub(crate) enum Shape {
@@ -32,6 +32,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
+    /// Returns the memory of the body.
     fn memory_bytes(&self) -> usize {
         match self {
             Self::Convex(part) => part.body.memory_bytes(),
@@ -39,7 +40,7 @@ impl Shape {
         }
     }
 
-    /// Returns the notes on how the body was made of its file.
+    /// Returns notes about repairs of the mesh.
     pub(crate) fn notes(&self) -> &[String] {
         match self {
             Self::Convex(part) => &part.notes,
@@ -48,16 +49,16 @@ impl Shape {
     }
 }
 
-/// A body, or why there is none.
-pub(crate) type Built = Result<Arc<Shape>, String>;
+/// A body, or the message of an error.
+pub(crate) type BuildResult = Result<Arc<Shape>, String>;
 
-/// Bytes that an entry takes beyond its body and its points.
-const OVERHEAD: usize = 512;
+/// Memory of an entry beyond its body and its points, in bytes.
+const ENTRY_BYTES: usize = 512;
 
-/// Bodies of one query, which are kept whatever they weigh.
-const KEPT: usize = 2;
+/// Number of bodies of one query. These are stored even if they exceed the capacity.
+const MIN_ENTRIES: usize = 2;
 
-/// Keeps the bodies that were used last.
+/// The most recently used bodies.
 pub(crate) struct Cache {
     capacity: usize,
     state: Mutex<State>,
@@ -72,57 +73,63 @@ struct State {
 }
 
 struct Entry {
-    body: Arc<OnceLock<Built>>,
+    body: Arc<OnceLock<BuildResult>>,
     last_use: u64,
     weight: usize,
 }
 
 impl Cache {
-    /// A cache of bodies of `capacity` bytes together.
+    /// Returns an empty cache with a capacity in bytes.
     pub(crate) fn new(capacity: usize) -> Self {
         Self { capacity, state: Mutex::default() }
     }
 
-    /// The body of `key`, from `build` if it is not here.
-    pub(crate) fn get(&self, key: Key, build: impl FnOnce(&Key) -> Built) -> Built {
+    /// Returns the body of `key`. Calls `build` if it is not in the cache. Errors are stored, too.
+    pub(crate) fn get_or_build(
+        &self,
+        key: Key,
+        build: impl FnOnce(&Key) -> BuildResult,
+    ) -> BuildResult {
         let key = Arc::new(key);
-        let cell = self.lock().enter(&key);
+        let cell = self.lock().use_entry(&key);
         let mut is_new = false;
         let body = cell.get_or_init(|| {
             is_new = true;
             build(&key)
         });
         if is_new {
-            self.lock().weigh(&key, weight(&key, body), self.capacity);
+            self.lock().set_weight(&key, entry_bytes(&key, body), self.capacity);
         }
         body.clone()
     }
 
+    /// Locks the state. A poisoned lock is usable, because no thread panics while it changes the state.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-fn weight(key: &Key, body: &Built) -> usize {
+/// Returns the memory of an entry in bytes.
+fn entry_bytes(key: &Key, body: &BuildResult) -> usize {
     let key = match key {
         Key::Points(points) => points.len() * size_of::<[u64; 3]>(),
         Key::Mesh { path, .. } | Key::Solid { path, .. } => path.as_os_str().len(),
     };
-    key + body.as_ref().map_or(0, |shape| shape.memory_bytes()) + OVERHEAD
+    key + body.as_ref().map_or(0, |shape| shape.memory_bytes()) + ENTRY_BYTES
 }
 
 impl State {
-    /// The place of a body, new or known, as the one used last.
-    fn enter(&mut self, key: &Arc<Key>) -> Arc<OnceLock<Built>> {
+    /// Returns the cell of a body, new or known, and marks it as most recently used.
+    fn use_entry(&mut self, key: &Arc<Key>) -> Arc<OnceLock<BuildResult>> {
         self.clock += 1;
         if let Some(entry) = self.entries.get_mut(key) {
-            if let Some(kept) = self.by_last_use.remove(&entry.last_use) {
-                self.by_last_use.insert(self.clock, kept);
+            if let Some(key) = self.by_last_use.remove(&entry.last_use) {
+                self.by_last_use.insert(self.clock, key);
             }
             entry.last_use = self.clock;
             if let Some(body) = entry.body.get() {
-                // It may have made its sections, or been shrunk, since.
-                let weight = weight(key, body);
+                // The body may have grown since, by lazily computed sections or offsets.
+                let weight = entry_bytes(key, body);
                 self.total = self.total - entry.weight + weight;
                 entry.weight = weight;
             }
@@ -135,14 +142,14 @@ impl State {
         body
     }
 
-    /// Notes what a body weighs now that it is built, and drops others that are too much.
-    fn weigh(&mut self, key: &Arc<Key>, weight: usize, capacity: usize) {
-        // It may have left while it was built.
+    /// Sets the memory of a body that was built, and evicts entries beyond the capacity.
+    fn set_weight(&mut self, key: &Arc<Key>, weight: usize, capacity: usize) {
+        // The entry may have been evicted while its body was built.
         if let Some(entry) = self.entries.get_mut(key) {
             self.total = self.total - entry.weight + weight;
             entry.weight = weight;
         }
-        while self.total > capacity && self.entries.len() > KEPT {
+        while self.total > capacity && self.entries.len() > MIN_ENTRIES {
             let Some((_, oldest)) = self.by_last_use.pop_first() else { break };
             if let Some(entry) = self.entries.remove(&oldest) {
                 self.total -= entry.weight;
@@ -161,77 +168,77 @@ mod tests {
         Key::Points(vec![[x.to_bits(), 0, 0]])
     }
 
-    /// How often bodies of one vertex were built after each of these uses.
-    fn builds(capacity: usize, uses: &[f64]) -> Vec<u32> {
+    /// Returns the number of bodies that were built after each of these uses.
+    fn build_counts(capacity: usize, uses: &[f64]) -> Vec<u32> {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        let one: Built = Ok(Arc::new(Shape::Convex(Part::of(body))));
+        let body: BuildResult = Ok(Arc::new(Shape::Convex(Part::of(body))));
         let cache = Cache::new(capacity);
         let mut builds = 0;
         let count = |&x: &f64| {
-            let _ = cache.get(key(x), |_| {
+            let _ = cache.get_or_build(key(x), |_| {
                 builds += 1;
-                one.clone()
+                body.clone()
             });
             builds
         };
         let counts = uses.iter().map(count).collect();
         let state = cache.lock();
         assert_eq!(state.by_last_use.len(), state.entries.len());
-        assert_eq!(state.total, state.entries.len() * weight(&key(0.0), &one));
+        assert_eq!(state.total, state.entries.len() * entry_bytes(&key(0.0), &body));
         counts
     }
 
-    /// Sections, for one, are made by a query and not when a body is built.
+    /// Sections are computed by a query, not when a body is built.
     #[test]
-    fn a_body_that_has_grown_weighs_more_when_it_is_used_next() {
+    fn memory_of_a_grown_body_is_updated_at_its_next_use() {
         let body = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
         let shape = Arc::new(Shape::Convex(Part::of(body)));
         let cache = Cache::new(1 << 20);
         let total = || {
-            let _ = cache.get(key(1.0), |_| Ok(Arc::clone(&shape)));
+            let _ = cache.get_or_build(key(1.0), |_| Ok(Arc::clone(&shape)));
             cache.lock().total
         };
         let built = total();
         let Shape::Convex(part) = &*shape else { unreachable!("it is convex") };
         part.body.prepare_sections();
-        assert_eq!(total(), weight(&key(1.0), &Ok(Arc::clone(&shape))));
+        assert_eq!(total(), entry_bytes(&key(1.0), &Ok(Arc::clone(&shape))));
         assert!(total() > built);
     }
 
     #[test]
-    fn bodies_are_built_once_while_they_fit() {
+    fn cache_within_budget_builds_each_body_once() {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        let bytes = body.memory_bytes() + size_of::<[u64; 3]>() + OVERHEAD;
+        let bytes = body.memory_bytes() + size_of::<[u64; 3]>() + ENTRY_BYTES;
         let uses = [1.0, 2.0, 3.0, 1.0, 2.0, 3.0, 4.0, 2.0, 1.0];
-        // The fourth takes the place of the first, which takes that of the third.
-        assert_eq!(builds(3 * bytes, &uses), [1, 2, 3, 3, 3, 3, 4, 4, 5]);
-        assert_eq!(builds(4 * bytes, &uses), [1, 2, 3, 3, 3, 3, 4, 4, 4]);
-        assert_eq!(builds(3 * bytes - 1, &uses[..4]), [1, 2, 3, 4]);
+        // The fourth body evicts the first, which then evicts the third.
+        assert_eq!(build_counts(3 * bytes, &uses), [1, 2, 3, 3, 3, 3, 4, 4, 5]);
+        assert_eq!(build_counts(4 * bytes, &uses), [1, 2, 3, 3, 3, 3, 4, 4, 4]);
+        assert_eq!(build_counts(3 * bytes - 1, &uses[..4]), [1, 2, 3, 4]);
     }
 
     #[test]
-    fn bodies_that_never_come_again_take_no_more_than_the_capacity() {
+    fn distinct_bodies_do_not_exceed_the_capacity() {
         let (capacity, mut most) = (64 << 10, 0);
         let cache = Cache::new(capacity);
         for k in 0..2_000 {
             let point = DVec3::splat(f64::from(k));
-            let built = cache.get(key(point.x), |_| {
+            let built = cache.get_or_build(key(point.x), |_| {
                 let body = ConvexPolyhedron::from_points(&[point]).unwrap();
                 Ok(Arc::new(Shape::Convex(Part::of(body))))
             });
             drop(built.unwrap());
             let state = cache.lock();
-            let kept: usize =
-                state.entries.iter().map(|(key, e)| weight(key, e.body.get().unwrap())).sum();
-            assert_eq!(kept, state.total);
-            most = most.max(kept);
+            let bytes_in_use: usize =
+                state.entries.iter().map(|(key, e)| entry_bytes(key, e.body.get().unwrap())).sum();
+            assert_eq!(bytes_in_use, state.total);
+            most = most.max(bytes_in_use);
         }
         assert!(most <= capacity && most > capacity / 2, "{most} of {capacity} bytes");
     }
 
     #[test]
-    fn the_two_bodies_of_a_query_are_kept_however_large() {
-        assert_eq!(builds(0, &[1.0, 2.0, 1.0, 2.0, 1.0]), [1, 2, 2, 2, 2]);
-        assert_eq!(builds(0, &[1.0, 2.0, 3.0, 2.0, 1.0]), [1, 2, 3, 3, 4]);
+    fn two_bodies_of_a_query_stay_beyond_the_capacity() {
+        assert_eq!(build_counts(0, &[1.0, 2.0, 1.0, 2.0, 1.0]), [1, 2, 2, 2, 2]);
+        assert_eq!(build_counts(0, &[1.0, 2.0, 3.0, 2.0, 1.0]), [1, 2, 3, 3, 4]);
     }
 }

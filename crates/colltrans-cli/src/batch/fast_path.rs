@@ -1,77 +1,78 @@
-//! Lines as programs write them, read without `serde_json`.
+//! Parses query lines of the usual form without `serde_json`: known names, plain numbers, no escapes.
 //!
-//! Reading is what a line costs beside its answer, and nearly all lines have one form: known names,
-//! plain numbers, no escapes. What has it is read here in one go; of everything else nothing is said,
-//! and `serde_json` reads it and tells what is wrong with it. Invariant: what is read here, `serde_json`
-//! reads in the same way, to the last bit. What is said of a body is handed on as it is written.
+//! Parsing is the main cost of a line besides its answer. Other lines are left to `serde_json`, which also reports their
+//! errors. The text of a body is returned without being parsed.
+//!
+//! Invariant: `serde_json` parses every line that is parsed here to the same values, bit by bit.
 
 use colltrans::Solver;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use serde_json::value::RawValue;
 
-use super::source::{Asked, PoseSource, Query};
+use super::source::{PoseSource, Query, QueryName};
 
-/// The query of a line, if it has the usual form.
-pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
-    let mut reader = Reader { text, at: 0 };
-    let mut found = Found::default();
-    reader.fields(|reader, name| found.take(reader, name))?;
-    reader.space();
-    if reader.at < text.len() {
+/// Returns the query of a line; `None` if the line does not have the usual form.
+pub(super) fn parse_usual_line(text: &str) -> Option<Query<'_, &str>> {
+    let mut reader = Reader { text, position: 0 };
+    let mut fields = Fields::default();
+    reader.object(|reader, name| fields.read_field(reader, name))?;
+    reader.skip_space();
+    if reader.position < text.len() {
         return None;
     }
     Some(Query {
-        id: found.id,
-        moving: found.moving?,
-        fixed: found.fixed?,
-        moving_pose: found.moving_pose,
-        fixed_pose: found.fixed_pose,
-        direction: found.direction,
-        question: found.question,
+        id: fields.id,
+        moving: fields.moving?,
+        fixed: fields.fixed?,
+        moving_pose: fields.moving_pose,
+        fixed_pose: fields.fixed_pose,
+        direction: fields.direction,
+        question: fields.question,
         moving_motion: None,
         fixed_motion: None,
-        length: found.length,
-        graze_tolerance: found.graze_tolerance,
-        solver: found.solver,
+        length: fields.length,
+        graze_tolerance: fields.graze_tolerance,
+        solver: fields.solver,
         start: None,
         until: None,
         tolerance: None,
         ignore_start_overlaps: None,
-        keep: found.keep,
+        keep: fields.keep,
     })
 }
 
-/// The fields of a line that were met.
+/// The fields of a line that have been read.
 #[derive(Default)]
-struct Found<'a> {
+struct Fields<'a> {
     id: Option<&'a RawValue>,
     moving: Option<&'a str>,
     fixed: Option<&'a str>,
     moving_pose: Option<PoseSource>,
     fixed_pose: Option<PoseSource>,
     direction: Option<[f64; 3]>,
-    question: Option<Asked>,
+    question: Option<QueryName>,
     length: Option<f64>,
     graze_tolerance: Option<f64>,
     keep: Option<f64>,
     solver: Option<Solver>,
 }
 
-impl<'a> Found<'a> {
-    fn take(&mut self, reader: &mut Reader<'a>, name: &str) -> Option<()> {
+impl<'a> Fields<'a> {
+    /// Reads the value of a field. Returns `None` if the name is unknown or repeated, or the value has another form.
+    fn read_field(&mut self, reader: &mut Reader<'a>, name: &str) -> Option<()> {
         match name {
-            "id" => once(&mut self.id, reader.scalar()?),
-            "moving" => once(&mut self.moving, reader.flat_object()?),
-            "fixed" => once(&mut self.fixed, reader.flat_object()?),
-            "moving_pose" => once(&mut self.moving_pose, reader.pose()?),
-            "fixed_pose" => once(&mut self.fixed_pose, reader.pose()?),
-            "direction" => once(&mut self.direction, reader.numbers()?),
-            "graze_tolerance" => once(&mut self.graze_tolerance, reader.number()?),
-            "keep" => once(&mut self.keep, reader.number()?),
-            "query" => once(&mut self.question, reader.word()?),
-            "length" => once(&mut self.length, reader.number()?),
-            "solver" => once(&mut self.solver, reader.word()?),
+            "id" => set_once(&mut self.id, reader.scalar()?),
+            "moving" => set_once(&mut self.moving, reader.flat_object()?),
+            "fixed" => set_once(&mut self.fixed, reader.flat_object()?),
+            "moving_pose" => set_once(&mut self.moving_pose, reader.pose()?),
+            "fixed_pose" => set_once(&mut self.fixed_pose, reader.pose()?),
+            "direction" => set_once(&mut self.direction, reader.numbers()?),
+            "graze_tolerance" => set_once(&mut self.graze_tolerance, reader.number()?),
+            "keep" => set_once(&mut self.keep, reader.number()?),
+            "query" => set_once(&mut self.question, reader.name()?),
+            "length" => set_once(&mut self.length, reader.number()?),
+            "solver" => set_once(&mut self.solver, reader.name()?),
             _ => None,
         }
     }
@@ -82,67 +83,70 @@ fn once<T>(place: &mut Option<T>, value: T) -> Option<()> {
     place.replace(value).is_none().then_some(())
 }
 
+/// A position in a line. Methods return `None` if the text has another form.
 struct Reader<'a> {
     text: &'a str,
-    at: usize,
+    position: usize,
 }
 
 impl<'a> Reader<'a> {
+    /// Returns the next byte.
     fn peek(&self) -> Option<u8> {
-        self.text.as_bytes().get(self.at).copied()
+        self.text.as_bytes().get(self.position).copied()
     }
 
-    fn space(&mut self) {
+    /// Skips white space.
+    fn skip_space(&mut self) {
         while matches!(self.peek(), Some(b' ' | b'\t' | b'\r' | b'\n')) {
-            self.at += 1;
+            self.position += 1;
         }
     }
 
-    /// Goes over this character, and the white space before it.
-    fn pass(&mut self, expected: u8) -> Option<()> {
-        self.space();
-        (self.peek()? == expected).then(|| self.at += 1)
+    /// Reads white space and this character.
+    fn expect(&mut self, expected: u8) -> Option<()> {
+        self.skip_space();
+        (self.peek()? == expected).then(|| self.position += 1)
     }
 
-    /// Whether there is another element; goes over the comma, or over the end.
-    fn another(&mut self, end: u8) -> Option<bool> {
-        self.space();
+    /// Reads a comma or the end of a list. Checks whether another element follows.
+    fn has_next(&mut self, end: u8) -> Option<bool> {
+        self.skip_space();
         let next = self.peek()?;
-        self.at += 1;
+        self.position += 1;
         (next == b',' || next == end).then_some(next == b',')
     }
 
-    /// An object of at least one field; `take` reads the value of a field by its name.
-    fn fields(&mut self, mut take: impl FnMut(&mut Self, &str) -> Option<()>) -> Option<()> {
-        self.pass(b'{')?;
+    /// Reads an object of at least one field. `read_value` reads the value of the field with a name.
+    fn object(&mut self, mut read_value: impl FnMut(&mut Self, &str) -> Option<()>) -> Option<()> {
+        self.expect(b'{')?;
         loop {
             let name = self.string()?;
-            self.pass(b':')?;
-            take(self, name)?;
-            if !self.another(b'}')? {
+            self.expect(b':')?;
+            read_value(self, name)?;
+            if !self.has_next(b'}')? {
                 return Some(());
             }
         }
     }
 
-    /// A string without escapes.
+    /// Reads a string without escapes.
     fn string(&mut self) -> Option<&'a str> {
-        self.pass(b'"')?;
-        let start = self.at;
+        self.expect(b'"')?;
+        let start = self.position;
         self.skip_string()?;
-        self.text.get(start..self.at - 1)
+        self.text.get(start..self.position - 1)
     }
 
-    /// A string that is the name of something.
-    fn word<T: Deserialize<'a>>(&mut self) -> Option<T> {
+    /// Reads a string that is the name of a variant.
+    fn name<T: Deserialize<'a>>(&mut self) -> Option<T> {
         T::deserialize(StrDeserializer::<Error>::new(self.string()?)).ok()
     }
 
-    /// From within a string to behind it.
+    /// Skips the rest of a string and its closing quote.
     fn skip_string(&mut self) -> Option<()> {
         loop {
             let byte = self.peek()?;
-            self.at += 1;
+            self.position += 1;
             match byte {
                 b'"' => return Some(()),
                 b'\\' | 0..0x20 => return None,
@@ -151,94 +155,94 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// An object that holds no other, as it is written.
+    /// Reads an object without nested objects. Returns its text.
     fn flat_object(&mut self) -> Option<&'a str> {
-        self.pass(b'{')?;
-        let start = self.at - 1;
+        self.expect(b'{')?;
+        let start = self.position - 1;
         loop {
             let byte = self.peek()?;
-            self.at += 1;
+            self.position += 1;
             match byte {
                 b'"' => self.skip_string()?,
                 b'{' => return None,
-                b'}' => return self.text.get(start..self.at),
+                b'}' => return self.text.get(start..self.position),
                 _ => {}
             }
         }
     }
 
-    /// A string or a word, as it is written.
+    /// Reads a string, a number or a literal. Returns its text.
     fn scalar(&mut self) -> Option<&'a RawValue> {
-        self.space();
-        let start = self.at;
+        self.skip_space();
+        let start = self.position;
         if self.peek()? == b'"' {
             self.string()?;
         } else {
             while !matches!(self.peek()?, b',' | b'}' | b'{' | b'[') {
-                self.at += 1;
+                self.position += 1;
             }
         }
-        serde_json::from_str(self.text.get(start..self.at)?).ok()
+        serde_json::from_str(self.text.get(start..self.position)?).ok()
     }
 
+    /// Reads a pose. An absent translation or rotation is the identity.
     fn pose(&mut self) -> Option<PoseSource> {
         let (mut translation, mut rotation) = (None, None);
-        self.fields(|reader, name| match name {
-            "translation" => once(&mut translation, reader.numbers()?),
-            "rotation" => once(&mut rotation, reader.numbers()?),
+        self.object(|reader, name| match name {
+            "translation" => set_once(&mut translation, reader.numbers()?),
+            "rotation" => set_once(&mut rotation, reader.numbers()?),
             _ => None,
         })?;
-        let still = PoseSource::default();
-        let translation = translation.unwrap_or(still.translation);
-        Some(PoseSource { translation, rotation: rotation.unwrap_or(still.rotation) })
+        let identity = PoseSource::default();
+        let translation = translation.unwrap_or(identity.translation);
+        Some(PoseSource { translation, rotation: rotation.unwrap_or(identity.rotation) })
     }
 
-    /// An array of exactly so many numbers.
+    /// Reads an array of exactly `N` numbers.
     fn numbers<const N: usize>(&mut self) -> Option<[f64; N]> {
-        self.pass(b'[')?;
+        self.expect(b'[')?;
         let mut numbers = [0.0; N];
         for (i, number) in numbers.iter_mut().enumerate() {
             *number = self.number()?;
-            if self.another(b']')? != (i + 1 < N) {
+            if self.has_next(b']')? != (i + 1 < N) {
                 return None;
             }
         }
         Some(numbers)
     }
 
-    /// A finite number, as JSON writes it: without a plus, with digits before and after the point, and no zero
-    /// before others.
+    /// Reads a finite number in the syntax of JSON: no plus sign, digits before and after the point, no leading zeros.
     fn number(&mut self) -> Option<f64> {
-        self.space();
-        let start = self.at;
+        self.skip_space();
+        let start = self.position;
         self.skip(|byte| byte == b'-');
         match self.peek()? {
-            b'0' => self.at += 1,
-            _ => self.digits()?,
+            b'0' => self.position += 1,
+            _ => self.skip_digits()?,
         }
         if self.skip(|byte| byte == b'.') {
-            self.digits()?;
+            self.skip_digits()?;
         }
         if self.skip(|byte| matches!(byte, b'e' | b'E')) {
             self.skip(|byte| matches!(byte, b'-' | b'+'));
-            self.digits()?;
+            self.skip_digits()?;
         }
-        let number: f64 = self.text.get(start..self.at)?.parse().ok()?;
+        let number: f64 = self.text.get(start..self.position)?.parse().ok()?;
         Some(number).filter(|number| number.is_finite())
     }
 
-    /// Goes over a character, if it is such a one.
-    fn skip(&mut self, is_one: impl FnOnce(u8) -> bool) -> bool {
-        let found = self.peek().is_some_and(is_one);
-        self.at += usize::from(found);
+    /// Skips the next byte if `accepts` returns true for it. Returns whether it did.
+    fn skip(&mut self, accepts: impl FnOnce(u8) -> bool) -> bool {
+        let found = self.peek().is_some_and(accepts);
+        self.position += usize::from(found);
         found
     }
 
-    /// One digit or more.
-    fn digits(&mut self) -> Option<()> {
-        let rest = self.text.as_bytes().get(self.at..)?;
+    /// Skips one digit or more.
+    fn skip_digits(&mut self) -> Option<()> {
+        let rest = self.text.as_bytes().get(self.position..)?;
         let count = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
-        self.at += count;
+        self.position += count;
         (count > 0).then_some(())
     }
 }
@@ -271,9 +275,9 @@ mod tests {
         format!("{id:?} {bits:?} {:?} {:?}", query.question, query.solver)
     }
 
-    /// Whether the line has the usual form; if so, that `serde_json` reads the same.
-    fn agrees(line: &str) -> bool {
-        let Some(query) = read(line) else { return false };
+    /// Checks whether the line has the usual form, and then asserts that `serde_json` parses the same values.
+    fn agrees_with_serde(line: &str) -> bool {
+        let Some(query) = parse_usual_line(line) else { return false };
         let bodies = [query.moving, query.fixed].map(serde_json::from_str::<BodySource>);
         let known = serde_json::from_str::<Query<'_, BodySource>>(line);
         let [Ok(moving), Ok(fixed)] = bodies else {
@@ -291,13 +295,13 @@ mod tests {
     }
 
     #[test]
-    fn usual_lines_are_read_as_serde_reads_them() {
-        assert_eq!(LINES.map(agrees), [true, false, true, true, true]);
-        assert!(agrees(&LINES[1].replace("\\u00fc", "ü")));
+    fn usual_lines_match_serde() {
+        assert_eq!(LINES.map(agrees_with_serde), [true, false, true, true, true]);
+        assert!(agrees_with_serde(&LINES[1].replace("\\u00fc", "ü")));
     }
 
     #[test]
-    fn a_line_that_was_changed_is_refused_or_read_as_serde_reads_it() {
+    fn mutated_line_is_rejected_or_matches_serde() {
         let parts = ["", " ", "\"", ",", "{", "}", "[", "]", ":", "0", "1", "-", "+", ".", "e9"];
         let more = ["\\", "1e999", "null", "true", "\t", "\u{1}", "é", "01", "NaN", "\"id\":1,"];
         let mut usual = 0;
@@ -305,12 +309,16 @@ mod tests {
             for at in (0..=line.len()).filter(|&at| line.is_char_boundary(at)) {
                 for part in parts.into_iter().chain(more) {
                     let (before, after) = line.split_at(at);
-                    usual += usize::from(agrees(&format!("{before}{part}{after}")));
+                    usual += usize::from(agrees_with_serde(&format!("{before}{part}{after}")));
                     let mut rest = after.chars();
                     rest.next();
-                    usual += usize::from(agrees(&format!("{before}{part}{}", rest.as_str())));
+                    usual +=
+                        usize::from(agrees_with_serde(&format!("{before}{part}{}", rest.as_str())));
                 }
-                assert!(!agrees(&line[..at]) || line[at..].trim().is_empty(), "{line} {at}");
+                assert!(
+                    !agrees_with_serde(&line[..at]) || line[at..].trim().is_empty(),
+                    "{line} {at}"
+                );
             }
         }
         assert!(usual > 3000, "{usual}");

@@ -1,10 +1,11 @@
-//! `colltrans batch`: a query per line in, a result per line out, in the same order.
+//! `colltrans batch`: one query per line in, one result per line out, in the same order.
 //!
-//! Data flow: [`pipeline`] hands chunks of lines to threads and puts their results back in
-//! order, holding only a bounded number of chunks; [`query`] reads and answers one line, with
-//! [`fast_path`] for lines of the usual form and [`motion`] for bodies that turn;
-//! [`cache`] builds bodies that occur again once, [`recent`] finds them by their words; [`results`]
-//! keeps what is read from being overwritten.
+//! Data flow:
+//! - [`pipeline`] passes chunks of lines to threads and writes their results in order, in bounded memory.
+//! - [`query`] parses and answers one line. [`source`] has the format, [`fast_path`] parses lines of the usual
+//!   form, [`motion`] answers queries of motions.
+//! - [`cache`] builds bodies that several lines use once, [`recent`] finds them by their text.
+//! - [`results`] prevents results from overwriting an input.
 
 mod cache;
 mod fast_path;
@@ -24,18 +25,18 @@ use indicatif::ProgressBar;
 
 use crate::args::BatchArguments;
 use crate::failure::{Code, Failure};
-use crate::inputs::overwritten;
+use crate::inputs::overwritten_input;
 use crate::progress;
 pub(crate) use cache::{Cache, Shape};
 use pipeline::{Line, Pipeline};
-pub(crate) use query::{Batch, syntax_message};
+pub(crate) use query::{Batch, syntax_error_message};
 use recent::Recent;
 pub(crate) use source::{BodySource, PoseSource};
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
-    refuse_own_input(&arguments.queries, arguments.output.as_deref())?;
+    check_results_path(&arguments.queries, arguments.output.as_deref())?;
     let (queries, size, folder) = open_queries(&arguments.queries)?;
-    let (writer, results) = results::open(arguments.output.as_deref())?;
+    let (writer, results) = results::open_results(arguments.output.as_deref())?;
     let threads = arguments
         .threads
         .or_else(|| std::thread::available_parallelism().ok())
@@ -45,7 +46,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         hull: arguments.hull,
         body: arguments.body,
         cache: Cache::new(arguments.cache_bytes),
-        watched: results.watched(),
+        replaced_file: results.replaced_file(),
     };
     let bar = progress_bar(size);
     let pipeline = Pipeline::new(queries, writer, threads);
@@ -54,7 +55,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         let answer = |number, line: Line<'_>, results: &mut Vec<u8>| {
             batch.answer(number, line, &mut recent, results)
         };
-        pipeline.work(answer, &bar);
+        pipeline.answer_chunks(answer, &bar);
     };
     std::thread::scope(|scope| {
         for _ in 1..threads {
@@ -65,13 +66,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let end = pipeline.finish();
     if let Some(error) = end.write_error {
-        return Err(Failure::output(&results.name, &error));
+        return Err(Failure::write_error(&results.name, &error));
     }
     if let Some(error) = end.read_error {
         let name = arguments.queries.display();
-        return Err(results.leave(&format!("not whole: {name} cannot be read: {error}")));
+        return Err(results.fail_and_keep(&format!("incomplete: {name} cannot be read: {error}")));
     }
-    results.finish(&batch.watched)?;
+    results.finish(&batch.replaced_file)?;
     if end.failed > 0 {
         let message = format!("{} of {} queries have no answer", end.failed, end.answered);
         return Err(Failure::new(Code::Lines, message));
@@ -79,20 +80,24 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writing the results over the queries would lose both.
-fn refuse_own_input(queries: &Path, output: Option<&Path>) -> Result<(), Failure> {
-    // Standard input may be a file too.
+/// Checks that the results do not overwrite the queries.
+///
+/// # Errors
+/// They would.
+fn check_results_path(queries: &Path, output: Option<&Path>) -> Result<(), Failure> {
+    // Standard input may be a file.
     let file = if queries == Path::new("-") { Path::new("/dev/stdin") } else { queries };
-    let Some(output) = output.filter(|output| overwritten(output, &[file]).is_some()) else {
+    let Some(output) = output.filter(|output| overwritten_input(output, &[file]).is_some()) else {
         return Ok(());
     };
-    let message = format!("{}: holds the queries; give the results another file", output.display());
+    let message =
+        format!("{}: contains the queries; give the results another file", output.display());
     Err(Failure::new(Code::Input, message))
 }
 
 type Queries = BufReader<Box<dyn Read + Send>>;
 
-/// The query lines, their size if it is known, and the folder that paths in them are relative to.
+/// Opens the queries. Returns them, their size if it is known, and the folder to which paths in them are relative.
 fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure> {
     if path == Path::new("-") {
         return Ok((BufReader::new(Box::new(io::stdin())), None, PathBuf::new()));
@@ -100,7 +105,7 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     let unreadable = |e: io::Error| {
         Failure::new(Code::Input, format!("{}: cannot be read: {e}", path.display()))
     };
-    // Pipes are read like standard input; a device may never end.
+    // Pipes are read like standard input. A device may have no end.
     if is_device(&path.metadata().map_err(unreadable)?) && path != Path::new("/dev/stdin") {
         return Err(Failure::new(Code::Input, format!("{}: is a device", path.display())));
     }
@@ -114,6 +119,7 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     Ok((BufReader::with_capacity(1 << 16, Box::new(file)), size, folder))
 }
 
+/// Checks whether a file is a device.
 #[cfg(unix)]
 fn is_device(metadata: &std::fs::Metadata) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -126,11 +132,11 @@ fn is_device(_: &std::fs::Metadata) -> bool {
     false
 }
 
-/// Bytes of the query file that were read.
+/// Returns a progress bar over the bytes of the query file.
 fn progress_bar(size: Option<u64>) -> ProgressBar {
     let template = match size {
         Some(_) => "{wide_bar} {bytes}/{total_bytes} {eta} left, {msg} queries",
         None => "{spinner} {bytes} {elapsed}, {msg} queries",
     };
-    progress::bar(size, template)
+    progress::bar_with_template(size, template)
 }

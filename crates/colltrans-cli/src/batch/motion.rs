@@ -1,4 +1,4 @@
-//! What a body does, as a line of a batch says it, and when two such bodies first meet.
+//! Motions of a batch line, and their queries for convex bodies.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -10,15 +10,15 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::source::{PoseSource, Query};
-use crate::args::normalised_poses;
+use crate::args::normalised_poses_note;
 use crate::body::Part;
 use crate::case;
 
-/// A motion, as it is written.
+/// A motion of a line.
 #[derive(Debug)]
 pub(super) struct MotionSource {
     kind: Kind,
-    /// What else stands there, where one kind should.
+    /// Name of a second kind, which is an error.
     other: Option<String>,
 }
 
@@ -37,18 +37,18 @@ enum Kind {
 
 impl<'de> Deserialize<'de> for MotionSource {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        source.deserialize_map(Kinds)
+        source.deserialize_map(KindVisitor)
     }
 }
 
-/// Reads an object to its end.
-struct Kinds;
+/// Visits an object with one kind of motion to its end.
+struct KindVisitor;
 
-impl<'de> Visitor<'de> for Kinds {
+impl<'de> Visitor<'de> for KindVisitor {
     type Value = MotionSource;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("an object that holds a motion")
+        f.write_str("an object with a motion")
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<MotionSource, A::Error> {
@@ -61,22 +61,25 @@ impl<'de> Visitor<'de> for Kinds {
 
 impl MotionSource {
     /// Returns a note if quaternions of the motion's own poses were normalised.
-    pub(super) fn note(&self, place: &str) -> Option<String> {
-        let lengths: Vec<_> = self.kind.poses().iter().map(PoseSource::rounded_length).collect();
-        normalised_poses(place, &lengths)
+    pub(super) fn pose_note(&self, place: &str) -> Option<String> {
+        let lengths: Vec<_> = self.kind.poses().iter().map(PoseSource::original_length).collect();
+        normalised_poses_note(place, &lengths)
     }
 
-    /// The motion, from a pose on unless it has its own.
+    /// Returns the motion from a pose, or from its own poses.
+    ///
+    /// # Errors
+    /// There is a second kind, or a value is invalid.
     fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
         match &self.other {
-            Some(name) => Err(format!("a motion is of one kind; there is `{name}` besides")),
+            Some(name) => Err(format!("a motion has one kind; remove `{name}`")),
             None => self.kind.motion(pose),
         }
     }
 }
 
 impl Kind {
-    /// Returns the poses that the motion itself has.
+    /// Returns the poses of the motion itself.
     fn poses(&self) -> Cow<'_, [PoseSource]> {
         match self {
             Self::Between { from, to } => vec![*from, *to].into(),
@@ -85,11 +88,14 @@ impl Kind {
         }
     }
 
+    /// Returns the motion from a pose, or from its own poses.
     fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
         let v = DVec3::from_array;
         let has_own = matches!(self, Self::Between { .. } | Self::Through { .. });
         if has_own && pose.is_some() {
-            return Err("`between` and `through` have their own poses".into());
+            return Err(
+                "`between` and `through` have their own poses; remove the pose of the body".into(),
+            );
         }
         let start = pose.copied().unwrap_or_default().pose()?;
         let motion = match self {
@@ -118,43 +124,51 @@ impl Kind {
     }
 }
 
-/// Returns an angle in radians from the one of two fields that is there.
+/// Returns an angle in radians from one of two fields.
+///
+/// # Errors
+/// Both fields are given, or none.
 fn angle_in_radians(radians: Option<f64>, degrees: Option<f64>) -> Result<f64, String> {
     match (radians, degrees) {
         (Some(radians), None) => Ok(radians),
         (None, Some(degrees)) => Ok(degrees.to_radians()),
-        _ => Err("an angle has one of the fields `radians` and `degrees`".into()),
+        _ => Err("an angle needs exactly one of the fields `radians` and `degrees`".into()),
     }
 }
 
-/// What both bodies of a line do; one of which nothing is said rests where it is.
-pub(super) fn motions<B>(query: &Query<'_, B>) -> Result<[Motion; 2], String> {
+/// Returns the motions of both bodies. A body without a motion rests at its pose.
+///
+/// # Errors
+/// Neither body has a motion, or a value is invalid.
+pub(super) fn motions_of<B>(query: &Query<'_, B>) -> Result<[Motion; 2], String> {
     if query.moving_motion.is_none() && query.fixed_motion.is_none() {
         return Err(r#""motion" needs a `moving_motion` or a `fixed_motion`"#.into());
     }
-    let of = |motion: Option<&MotionSource>, pose, name: &str| {
+    let motion_of = |motion: Option<&MotionSource>, pose, name: &str| {
         let motion = motion.map_or_else(|| Kind::Still {}.motion(pose), |m| m.motion(pose));
         motion.map_err(|what| format!("{name}: {what}"))
     };
     Ok([
-        of(query.moving_motion.as_ref(), query.moving_pose.as_ref(), "moving_motion")?,
-        of(query.fixed_motion.as_ref(), query.fixed_pose.as_ref(), "fixed_motion")?,
+        motion_of(query.moving_motion.as_ref(), query.moving_pose.as_ref(), "moving_motion")?,
+        motion_of(query.fixed_motion.as_ref(), query.fixed_pose.as_ref(), "fixed_motion")?,
     ])
 }
 
-/// When convex bodies first meet, or how far they can go.
-pub(super) fn of_convex<B>(
+/// Answers when convex bodies first meet, or, if `clears` is set, how far they can move.
+pub(super) fn convex_record<B>(
     query: &Query<'_, B>,
     [moving, fixed]: [&Part; 2],
     motions: &[Motion; 2],
     clears: bool,
 ) -> Result<MotionRecord, String> {
     if query.ignore_start_overlaps.is_some() {
-        return Err("`ignore_start_overlaps` is for solids".into());
+        return Err("`ignore_start_overlaps` requires solids".into());
     }
     let cast = MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]));
     let cast = match (query.keep, query.tolerance) {
-        (Some(_), Some(_)) => return Err("a motion has either `keep` or `tolerance`".into()),
+        (Some(_), Some(_)) => {
+            return Err("a motion accepts either `keep` or `tolerance`; remove one of them".into());
+        }
         (None, Some(depth)) => cast.and_then(|cast| cast.tolerating(depth)),
         (keep, None) => cast.and_then(|cast| cast.keeping(keep.unwrap_or_default())),
     };

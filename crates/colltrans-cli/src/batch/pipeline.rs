@@ -1,9 +1,10 @@
-//! Lines to threads and results back in order, in bounded memory.
+//! Distributes chunks of lines to threads, and writes their results in order, in bounded memory.
 //!
-//! Invariant: chunks are numbered as they are read; at most `window` chunks are read but not yet
-//! written, and no more is read while those hold [`MOST_BYTES`], so a slow chunk stops the reading, not
-//! the memory. A thread that reads holds
-//! the input's lock while it waits for room; whoever makes room needs only the output's lock.
+//! Invariants:
+//! - Chunks are numbered in the order of reading. At most `window` chunks have been read but not written.
+//! - No chunk is read while more than [`MAX_BYTES`] are held, except for the one to be written next. Therefore a slow
+//!   chunk stops the reading.
+//! - A thread that reads holds the lock of the input while it waits. Writing needs only the lock of the output.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read, Write};
@@ -15,35 +16,36 @@ use indicatif::ProgressBar;
 use super::Queries;
 use super::results::Writer;
 
-/// A line may have this many bytes.
+/// Maximum length of a line in bytes.
 const LINE_LIMIT: u64 = 64 << 20;
-/// A chunk ends after this many lines or bytes.
+/// Maximum number of lines of a chunk.
 const CHUNK_LINES: usize = 256;
+/// Number of bytes after which a chunk ends.
 const CHUNK_BYTES: usize = 1 << 20;
-/// Chunks under way per thread.
+/// Maximum number of unwritten chunks per thread.
 const CHUNKS_PER_THREAD: u64 = 4;
-/// Bytes of lines that are being answered and of results that wait for those before them. One more line
-/// may be read, and its result written.
-const MOST_BYTES: usize = 64 << 20;
+/// Maximum number of bytes of lines that are being answered and of results that wait for earlier ones. One more line may
+/// exceed it.
+const MAX_BYTES: usize = 64 << 20;
 
 /// A line of the input.
 #[derive(Clone, Copy)]
 pub(crate) enum Line<'a> {
-    /// Without its end.
+    /// The line without its line feed.
     Text(&'a [u8]),
-    /// It was longer than the limit and was skipped.
+    /// A line beyond the limit, which was skipped.
     TooLong,
 }
 
-/// How the work ended.
-pub(crate) struct End {
+/// The numbers of answers and the errors at the end.
+pub(crate) struct Summary {
     pub(crate) answered: u64,
     pub(crate) failed: u64,
     pub(crate) read_error: Option<io::Error>,
     pub(crate) write_error: Option<io::Error>,
 }
 
-/// What all threads share.
+/// The state that all threads share.
 pub(crate) struct Pipeline {
     input: Mutex<Input>,
     output: Mutex<Output>,
@@ -62,10 +64,10 @@ struct Input {
 
 struct Output {
     results: Writer,
-    /// Number of the chunk that is to be written next.
+    /// Number of the chunk to be written next.
     next: u64,
     waiting: BTreeMap<u64, Answers>,
-    /// Bytes of chunks and results under way.
+    /// Bytes of chunks and results that are not written yet.
     held: usize,
     answered: u64,
     failed: u64,
@@ -77,24 +79,25 @@ struct Answers {
     text: Vec<u8>,
     answered: u64,
     failed: u64,
-    /// Nothing more to read right now: whoever waits for the results should have them.
+    /// Whether to flush after these results, because no further line is available at the moment.
     flush: bool,
 }
 
 struct Chunk {
     number: u64,
-    /// The lines, one behind the other.
+    /// The lines, concatenated.
     text: Vec<u8>,
-    /// The number of each, and where it is; `None` if it was too long.
+    /// The number of each line and its range in the text; `None` if it was too long.
     lines: Vec<(u64, Option<Range<usize>>)>,
     flush: bool,
     bytes_read: u64,
 }
 
-/// Bytes that are set aside for a result; most take fewer.
+/// Bytes reserved for a result. Most results are shorter.
 const RESULT_BYTES: usize = 768;
 
 impl Pipeline {
+    /// Returns the pipeline from queries to results for a number of threads.
     pub(crate) fn new(queries: Queries, results: Writer, threads: usize) -> Self {
         Self {
             input: Mutex::new(Input {
@@ -119,38 +122,39 @@ impl Pipeline {
         }
     }
 
-    /// Answers chunk after chunk until the input ends. `answer` gets a line with its number, appends
-    /// the result and returns whether it is an answer.
-    pub(crate) fn work(
+    /// Answers chunks until the input ends. `answer` gets a line with its number, appends the result and returns whether it
+    /// is an answer.
+    pub(crate) fn answer_chunks(
         &self,
         mut answer: impl FnMut(u64, Line<'_>, &mut Vec<u8>) -> bool,
         bar: &ProgressBar,
     ) {
-        let mut spent = Vec::new();
-        while let Some(chunk) = self.next_chunk(spent) {
+        let mut buffer = Vec::new();
+        while let Some(chunk) = self.next_chunk(buffer) {
             let text = Vec::with_capacity(chunk.lines.len() * RESULT_BYTES);
             let mut answers = Answers { text, flush: chunk.flush, ..Answers::default() };
             for (number, range) in chunk.lines {
                 let line = range.map_or(Line::TooLong, |range| Line::Text(&chunk.text[range]));
-                let good = answer(number, line, &mut answers.text);
+                let is_answer = answer(number, line, &mut answers.text);
                 answers.answered += 1;
-                answers.failed += u64::from(!good);
+                answers.failed += u64::from(!is_answer);
             }
             let answered = self.deliver(chunk.number, chunk.text.len(), answers);
-            spent = chunk.text;
-            // Not for ever as much as the longest line took.
-            spent.clear();
-            spent.shrink_to(2 * CHUNK_BYTES);
+            buffer = chunk.text;
+            // Releases the memory of very long lines.
+            buffer.clear();
+            buffer.shrink_to(2 * CHUNK_BYTES);
             bar.set_position(chunk.bytes_read);
             bar.set_message(answered.to_string());
         }
     }
 
-    pub(crate) fn finish(self) -> End {
+    /// Flushes the results. Returns the numbers of answers and the errors.
+    pub(crate) fn finish(self) -> Summary {
         let input = self.input.into_inner().unwrap_or_else(PoisonError::into_inner);
         let mut output = self.output.into_inner().unwrap_or_else(PoisonError::into_inner);
         let write_error = output.error.take().or_else(|| output.results.flush().err());
-        End {
+        Summary {
             answered: output.answered,
             failed: output.failed,
             read_error: input.error,
@@ -158,8 +162,9 @@ impl Pipeline {
         }
     }
 
-    /// The next lines, in the memory of those that are done with.
-    fn next_chunk(&self, spent: Vec<u8>) -> Option<Chunk> {
+    /// Waits until a chunk may be read, and reads it into `buffer`. Returns `None` at the end of the input, or after an
+    /// error of writing.
+    fn next_chunk(&self, buffer: Vec<u8>) -> Option<Chunk> {
         let mut input = lock(&self.input);
         let mut output = lock(&self.output);
         while output.error.is_none() && output.is_full(input.chunk_number, self.window) {
@@ -169,12 +174,12 @@ impl Pipeline {
             return None;
         }
         drop(output);
-        let chunk = input.next_chunk(spent)?;
+        let chunk = input.next_chunk(buffer)?;
         lock(&self.output).held += chunk.text.len();
         Some(chunk)
     }
 
-    /// Writes what can be written in order; returns how many queries are answered.
+    /// Stores the results of a chunk, and writes all that are next in order. Returns the number of written answers.
     fn deliver(&self, number: u64, read: usize, mut answers: Answers) -> u64 {
         answers.text.shrink_to_fit();
         let mut output = lock(&self.output);
@@ -187,10 +192,11 @@ impl Pipeline {
 }
 
 impl Input {
+    /// Reads a chunk into `text`; returns `None` at the end of the input.
     fn next_chunk(&mut self, mut text: Vec<u8>) -> Option<Chunk> {
         text.clear();
         let mut lines = Vec::with_capacity(CHUNK_LINES);
-        // Never wait for a second line while the first could be answered.
+        // Does not wait for a second line while the first one could be answered.
         while !self.ended
             && lines.len() < CHUNK_LINES
             && text.len() < CHUNK_BYTES
@@ -198,7 +204,7 @@ impl Input {
         {
             match self.next_line(&mut text) {
                 Ok(Some(line)) => match line.clone() {
-                    // Nothing of a blank line is kept, however many there are.
+                    // Blank lines are dropped.
                     Some(line) if text[line.clone()].trim_ascii().is_empty() => {
                         text.truncate(line.start);
                     }
@@ -220,12 +226,12 @@ impl Input {
         Some(Chunk { number, text, lines, flush, bytes_read: self.bytes })
     }
 
-    /// Whether a whole line has been read ahead.
+    /// Checks whether the buffer has a complete line.
     fn has_line(&self) -> bool {
         memchr::memchr(b'\n', self.queries.buffer()).is_some()
     }
 
-    /// Appends a line to the text; where it is, or `Some(None)` if it is too long and was skipped.
+    /// Appends a line to the text. Returns its range, `Some(None)` if it was too long and skipped, or `None` at the end.
     #[expect(clippy::option_option, reason = "the input may end, and a line may be too long")]
     fn next_line(&mut self, text: &mut Vec<u8>) -> io::Result<Option<Option<Range<usize>>>> {
         let start = text.len();
@@ -245,8 +251,8 @@ impl Input {
     }
 }
 
-/// Appends what is read up to the end of a line, or [`LINE_LIMIT`] bytes; how many there were. Searched in
-/// lanes, which [`BufRead::read_until`] does not.
+/// Appends bytes up to a line feed, at most [`LINE_LIMIT`]. Returns their number. `memchr` searches in SIMD lanes, in
+/// contrast to [`BufRead::read_until`].
 fn read_line(queries: &mut Queries, text: &mut Vec<u8>) -> io::Result<usize> {
     let mut queries = queries.take(LINE_LIMIT);
     let mut read = 0;
@@ -256,22 +262,23 @@ fn read_line(queries: &mut Queries, text: &mut Vec<u8>) -> io::Result<usize> {
             ahead => ahead?,
         };
         let end = memchr::memchr(b'\n', ahead).map(|end| end + 1);
-        let taken = end.unwrap_or(ahead.len());
-        text.extend_from_slice(&ahead[..taken]);
-        queries.consume(taken);
-        read += taken;
-        if end.is_some() || taken == 0 {
+        let consumed = end.unwrap_or(ahead.len());
+        text.extend_from_slice(&ahead[..consumed]);
+        queries.consume(consumed);
+        read += consumed;
+        if end.is_some() || consumed == 0 {
             return Ok(read);
         }
     }
 }
 
 impl Output {
-    /// Whether the chunk of a number must wait. The one that is to be written next never does.
+    /// Checks whether a chunk must wait before it is read. The one to be written next never waits.
     fn is_full(&self, chunk: u64, window: u64) -> bool {
-        chunk >= self.next + window || chunk > self.next && self.held > MOST_BYTES
+        chunk >= self.next + window || chunk > self.next && self.held > MAX_BYTES
     }
 
+    /// Writes all results that are next in order.
     fn write_in_order(&mut self) {
         while let Some(answers) = self.waiting.remove(&self.next) {
             self.held -= answers.text.len();
@@ -290,7 +297,7 @@ impl Output {
     }
 }
 
-/// No thread leaves the shared state half changed, so a poisoned lock is as good as any.
+/// Locks a state. A poisoned lock is usable, because no thread panics while it changes the state.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! One line: a query read, its bodies found, its answer written.
+//! Answers one line of a batch: parses the query, finds its bodies, writes the result.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -13,40 +13,40 @@ use colltrans_mesh::body::{LoadError, Take};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use super::cache::{Built, Cache, Key, Shape};
+use super::cache::{BuildResult, Cache, Key, Shape};
 use super::fast_path;
 use super::motion::{self, MotionSource};
 use super::pipeline::Line;
 use super::recent::Recent;
-use super::source::{Asked, BodySource, PoseSource, Query, as_written};
-use crate::args::{BodyArguments, normalised};
+use super::source::{BodySource, PoseSource, Query, QueryName, raw_value};
+use crate::args::{BodyArguments, normalised_pose_note};
 use crate::body::{self, Part};
 use crate::case;
-use crate::inputs::Watched;
+use crate::inputs::ReplacedFile;
 use crate::record::Line as AnswerLine;
 use crate::solid::{self, PartsMotion, PartsPair, PartsQuery};
 
-/// What all lines of a batch have in common.
+/// The state that all lines of a batch share.
 pub(crate) struct Batch {
-    /// What mesh paths are relative to.
+    /// The folder to which paths of meshes are relative.
     pub(crate) folder: PathBuf,
-    /// Whether the hull is taken of meshes that do not say.
+    /// Whether meshes are replaced by their hulls, unless the query specifies it.
     pub(crate) hull: bool,
     pub(crate) body: BodyArguments,
     pub(crate) cache: Cache,
     /// The file that the results will replace.
-    pub(crate) watched: Watched,
+    pub(crate) replaced_file: ReplacedFile,
 }
 
-/// Reads the id of a query that is otherwise wrong.
+/// Parses only the id of an invalid query.
 #[derive(Deserialize)]
 struct IdOnly<'a> {
-    #[serde(borrow, default, deserialize_with = "as_written")]
+    #[serde(borrow, default, deserialize_with = "raw_value")]
     id: Option<&'a RawValue>,
 }
 
 impl Batch {
-    /// Appends the result of a line as JSON; whether it is an answer.
+    /// Appends the result of a line as JSON. Returns whether it is an answer.
     pub(crate) fn answer(
         &self,
         number: u64,
@@ -55,140 +55,153 @@ impl Batch {
         results: &mut Vec<u8>,
     ) -> bool {
         let (id, answer) = match line {
-            Line::Text(text) => self.answer_text(number, text, recent),
+            Line::Text(text) => self.answer_line(number, text, recent),
             Line::TooLong => (None, Err(format!("line {number}: longer than 64 MiB"))),
         };
-        let line = answer.unwrap_or_else(AnswerLine::error);
-        line.write_with(id, results);
+        let line = answer.unwrap_or_else(AnswerLine::from_error);
+        line.write_with_id(id, results);
         !line.is_error()
     }
 
-    /// The id of a line, if it has one, and its answer.
-    fn answer_text<'a>(
+    /// Returns the id of a line, if it has one, and its answer.
+    fn answer_line<'a>(
         &self,
         number: u64,
         text: &'a [u8],
         recent: &mut Recent,
     ) -> (Option<&'a RawValue>, Result<AnswerLine, String>) {
-        // Some editors begin a file with a byte order mark.
+        // Some editors write a byte order mark at the start of a file.
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-        let usual = str::from_utf8(text).ok().and_then(fast_path::read);
+        let usual = str::from_utf8(text).ok().and_then(fast_path::parse_usual_line);
         if let Some(query) = usual
-            && let Some(answer) = self.answer_by_words(number, &query, recent)
+            && let Some(answer) = self.answer_usual(number, &query, recent)
         {
             return (query.id, answer);
         }
         match serde_json::from_slice::<Query<'_, BodySource>>(text) {
             Ok(query) => {
-                let bodies = || [&query.moving, &query.fixed].map(|source| self.body(source));
-                (query.id, guarded(number, || solve(&query, bodies())))
+                let bodies = || [&query.moving, &query.fixed].map(|source| self.build_body(source));
+                (query.id, catch_panic(number, || answer_with_notes(&query, bodies())))
             }
             Err(error) => {
                 let id = serde_json::from_slice::<IdOnly<'_>>(text).ok().and_then(|only| only.id);
-                (id, Err(syntax_message(number, &error)))
+                (id, Err(syntax_error_message(number, &error)))
             }
         }
     }
 
-    /// Unless what is said of a body is not right: the whole line tells the place.
-    fn answer_by_words(
+    /// Answers a query of the usual form. Returns `None` if the text of a body is invalid: `serde_json` then parses the whole
+    /// line, so that the error has the right position.
+    fn answer_usual(
         &self,
         number: u64,
         query: &Query<'_, &str>,
         recent: &mut Recent,
     ) -> Option<Result<AnswerLine, String>> {
-        let answer = guarded(number, || {
-            let moving = self.body_by_words(query.moving, recent);
-            let fixed = self.body_by_words(query.fixed, recent);
+        let answer = catch_panic(number, || {
+            let moving = self.cached_body(query.moving, recent);
+            let fixed = self.cached_body(query.fixed, recent);
             let (Some(moving), Some(fixed)) = (moving, fixed) else { return Ok(None) };
-            solve(query, [moving, fixed]).map(Some)
+            answer_with_notes(query, [moving, fixed]).map(Some)
         });
         answer.transpose()
     }
 
-    fn body_by_words(&self, words: &str, recent: &mut Recent) -> Option<Built> {
-        if let Some(shape) = recent.find(words) {
+    /// Returns the body with this text; `None` if the text is invalid.
+    fn cached_body(&self, text: &str, recent: &mut Recent) -> Option<BuildResult> {
+        if let Some(shape) = recent.find(text) {
             return Some(Ok(shape));
         }
-        let built = self.body(&serde_json::from_str(words).ok()?);
+        let built = self.build_body(&serde_json::from_str(text).ok()?);
         if let Ok(shape) = &built {
-            recent.keep(words, shape);
+            recent.insert(text, shape);
         }
         Some(built)
     }
 
-    /// The body of a source; one that occurs again is made once.
-    pub(crate) fn body(&self, source: &BodySource) -> Built {
+    /// Returns the body of a source, from the cache if possible.
+    ///
+    /// # Errors
+    /// The fields contradict each other, or the mesh does not become a body of this kind.
+    pub(crate) fn build_body(&self, source: &BodySource) -> BuildResult {
         let &BodySource { ref points, ref mesh, ref solid, open, hull, scale } = source;
         if open.is_some() && solid.is_none() {
-            return Err("`open` is for a `solid`".into());
+            return Err("`open` requires a `solid`".into());
         }
         match (points, mesh, solid) {
             (Some(points), None, None) if hull.is_none() && scale.is_none() => {
                 let bits = points.iter().map(|p| p.map(f64::to_bits)).collect();
-                self.cache.get(Key::Points(bits), |_| hull_of(points))
+                self.cache.get_or_build(Key::Points(bits), |_| hull_of_points(points))
             }
-            (Some(_), None, None) => Err("`hull` and `scale` are for meshes".into()),
+            (Some(_), None, None) => Err("`hull` and `scale` require a `mesh`".into()),
             (None, Some(path), None) => {
-                self.mesh(path, hull.unwrap_or(self.hull), positive(scale)?)
+                self.build_mesh(path, hull.unwrap_or(self.hull), checked_scale(scale)?)
             }
             (None, None, Some(path)) if hull.is_none() => {
-                self.solid(path, positive(scale)?, open.unwrap_or_default())
+                self.build_solid(path, checked_scale(scale)?, open.unwrap_or_default())
             }
-            (None, None, Some(_)) => Err("`hull` is for a `mesh`".into()),
-            _ => Err("a body has either `points` or `mesh` or `solid`".into()),
+            (None, None, Some(_)) => Err("`hull` requires a `mesh`".into()),
+            _ => Err("a body needs exactly one of `points`, `mesh` and `solid`".into()),
         }
     }
 
-    fn solid(&self, path: &Path, scale: f64, open: bool) -> Built {
+    /// Returns the solid of a mesh file.
+    fn build_solid(&self, path: &Path, scale: f64, open: bool) -> BuildResult {
         let path = self.folder.join(path);
         let key = Key::Solid { path: path.clone(), scale: scale.to_bits(), open };
-        self.cache.get(key, |_| {
-            self.watched.note(&path);
+        self.cache.get_or_build(key, |_| {
+            self.replaced_file.record_read(&path);
             let options = self.body.options(scale).with_open(open);
             let body = solid::Body::load(&[path], &options, || ())?;
             Ok(Arc::new(Shape::Solid(body)))
         })
     }
 
-    fn mesh(&self, path: &Path, hull: bool, scale: f64) -> Built {
+    /// Returns the convex body of a mesh file.
+    fn build_mesh(&self, path: &Path, hull: bool, scale: f64) -> BuildResult {
         let path = self.folder.join(path);
         let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
-        self.cache.get(key, |_| {
-            self.watched.note(&path);
+        self.cache.get_or_build(key, |_| {
+            self.replaced_file.record_read(&path);
             let options = self.body.options(scale).with_hull(hull);
-            let part = body::load(&path, &options).map_err(|error| refusal(&error))?;
+            let part = body::load(&path, &options).map_err(|error| mesh_error_message(&error))?;
             Ok(Arc::new(Shape::Convex(part)))
         })
     }
 }
 
-/// Why no body was made of a file, and which fields would help.
-fn refusal(error: &LoadError) -> String {
+/// Returns the error of a mesh file with a hint at fields that avoid it.
+fn mesh_error_message(error: &LoadError) -> String {
     let LoadError::Body { source, .. } = error else { return error.to_string() };
     let fields = source.instead().iter().map(|take| match take {
-        Take::Solid => r#"; "solid" in the place of "mesh" takes it as it is"#,
-        Take::Open => r#"; "solid" with "open": true takes it as a surface without an inside"#,
+        Take::Solid => r#"; "solid" instead of "mesh" accepts it"#,
+        Take::Open => r#"; "solid" with "open": true accepts it as a surface without an interior"#,
         _ => r#"; "mesh" with "hull": true takes its convex hull"#,
     });
     format!("{error}{}", fields.collect::<String>())
 }
 
-fn positive(scale: Option<f64>) -> Result<f64, String> {
+/// Returns the scale, 1 by default.
+///
+/// # Errors
+/// It is not finite and positive.
+fn checked_scale(scale: Option<f64>) -> Result<f64, String> {
     match scale.unwrap_or(1.0) {
         scale if scale.is_finite() && scale > 0.0 => Ok(scale),
-        scale => Err(format!("the scale {scale} is not finite and positive")),
+        scale => Err(format!("invalid scale {scale}; expected a finite positive number")),
     }
 }
 
-fn hull_of(points: &[[f64; 3]]) -> Built {
+/// Returns the convex hull of points.
+fn hull_of_points(points: &[[f64; 3]]) -> BuildResult {
     let points: Vec<DVec3> = points.iter().copied().map(DVec3::from_array).collect();
     let body = ConvexPolyhedron::from_points(&points).map_err(|e| e.to_string())?;
     Ok(Arc::new(Shape::Convex(Part::of(body))))
 }
 
-/// A bug must not take the other lines with it.
-fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+/// Calls `answer`. Returns its error, or a panic as an error, with the number of the line, so that other lines are still
+/// answered.
+fn catch_panic<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     let what = match catch_unwind(AssertUnwindSafe(answer)) {
         Ok(Ok(answer)) => return Ok(answer),
         Ok(Err(message)) => message,
@@ -197,14 +210,21 @@ fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result
     Err(format!("line {number}: {what}"))
 }
 
-/// Answers a query, with notes about quaternions that were normalised.
-fn solve<B>(query: &Query<'_, B>, bodies: [Built; 2]) -> Result<AnswerLine, String> {
-    let mut answer = answer(query, bodies)?;
+/// Answers a query. Appends notes about quaternions that were normalised.
+fn answer_with_notes<B>(
+    query: &Query<'_, B>,
+    bodies: [BuildResult; 2],
+) -> Result<AnswerLine, String> {
+    let mut answer = answer_query(query, bodies)?;
     answer.notes.extend(query.pose_notes());
     Ok(answer)
 }
 
-fn answer<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerLine, String> {
+/// Answers a query of built bodies.
+fn answer_query<B>(
+    query: &Query<'_, B>,
+    [moving, fixed]: [BuildResult; 2],
+) -> Result<AnswerLine, String> {
     let moving = moving.map_err(|e| format!("moving: {e}"))?;
     let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
     let pose = |pose: Option<PoseSource>, name| {
@@ -212,63 +232,66 @@ fn answer<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Answer
     };
     let poses = [pose(query.moving_pose, "moving_pose")?, pose(query.fixed_pose, "fixed_pose")?];
     let shapes = [&*moving, &*fixed];
-    match (query.asked()?, shapes) {
-        (Ask::Pair(question), shapes) => of_pair(question, shapes, poses),
-        (Ask::Motion(motions, clears), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
+    match (query.task()?, shapes) {
+        (Task::Pair(question), shapes) => pair_line(question, shapes, poses),
+        (Task::Motion(motions, clears), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             let parts = [moving, fixed];
-            let record = motion::of_convex(query, parts, &motions, clears)?;
-            Ok(of_parts(record.into(), parts))
+            let record = motion::convex_record(query, parts, &motions, clears)?;
+            Ok(convex_line(record.into(), parts))
         }
-        (Ask::Motion(motions, clears), shapes) => {
+        (Task::Motion(motions, clears), shapes) => {
             let [moving, fixed] = as_solids(shapes)?;
             let bodies = [moving.get(), fixed.get()];
             let (keep, motions) = (query.keep.unwrap_or_default(), &*motions);
             let ignore_start_overlaps = query.ignore_start_overlaps.unwrap_or_default();
             let tolerance = query.tolerance;
-            let asked =
+            let motion_query =
                 PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
-            Ok(of_bodies(asked.ask().map_err(|e| e.to_string())?.into(), bodies))
+            Ok(solid_line(motion_query.answer().map_err(|e| e.to_string())?.into(), bodies))
         }
-        (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
-            query.of_convex([moving, fixed], poses, direction)
+        (Task::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
+            query.convex_cast_line([moving, fixed], poses, direction)
         }
-        (Ask::Cast(direction), shapes) => query.of_solids(shapes, poses, direction),
+        (Task::Cast(direction), shapes) => query.solid_cast_line(shapes, poses, direction),
     }
 }
 
 impl<B> Query<'_, B> {
-    /// What is asked, with all that it needs and nothing else.
-    fn asked(&self) -> Result<Ask, String> {
+    /// Returns the task of the query.
+    ///
+    /// # Errors
+    /// A field is missing, or does not belong to this query.
+    fn task(&self) -> Result<Task, String> {
         let question = match self.question {
-            None | Some(Asked::Contact | Asked::Clearance) => {
-                self.refuse(&["length", "moving_motion", "fixed_motion"])?;
+            None | Some(QueryName::Contact | QueryName::Clearance) => {
+                self.reject_fields(&["length", "moving_motion", "fixed_motion"])?;
                 let direction = self.direction.ok_or("missing field `direction`")?;
-                return Ok(Ask::Cast(DVec3::from_array(direction)));
+                return Ok(Task::Cast(DVec3::from_array(direction)));
             }
-            Some(asked @ (Asked::Motion | Asked::MotionClearance)) => {
-                self.refuse(&[&OF_CASTS[..5], &["length"]].concat())?;
-                let clears = asked == Asked::MotionClearance;
-                return Ok(Ask::Motion(Box::new(motion::motions(self)?), clears));
+            Some(name @ (QueryName::Motion | QueryName::MotionClearance)) => {
+                self.reject_fields(&[&CAST_FIELDS[..5], &["length"]].concat())?;
+                let clears = name == QueryName::MotionClearance;
+                return Ok(Task::Motion(Box::new(motion::motions_of(self)?), clears));
             }
-            Some(Asked::Distance) => PairQuestion::Distance,
-            Some(Asked::Depth) => PairQuestion::Depth,
-            Some(Asked::Within) => {
+            Some(QueryName::Distance) => PairQuestion::Distance,
+            Some(QueryName::Depth) => PairQuestion::Depth,
+            Some(QueryName::Within) => {
                 PairQuestion::Within(self.length.ok_or(r#""within" needs a `length`"#)?)
             }
         };
-        self.refuse(&OF_CASTS)?;
-        self.refuse(&["keep", "tolerance", "moving_motion", "fixed_motion"])?;
+        self.reject_fields(&CAST_FIELDS)?;
+        self.reject_fields(&["keep", "tolerance", "moving_motion", "fixed_motion"])?;
         if !matches!(question, PairQuestion::Within(_)) {
-            self.refuse(&["length"])?;
+            self.reject_fields(&["length"])?;
         }
-        Ok(Ask::Pair(question))
+        Ok(Task::Pair(question))
     }
 
     /// Returns notes about quaternions that were normalised, at most one for each field.
     fn pose_notes(&self) -> impl Iterator<Item = String> {
         let pose = |pose: &Option<PoseSource>, place| pose.as_ref().and_then(|p| p.note(place));
         let motion =
-            |motion: &Option<MotionSource>, place| motion.as_ref().and_then(|m| m.note(place));
+            |motion: &Option<MotionSource>, place| motion.as_ref().and_then(|m| m.pose_note(place));
         [
             pose(&self.moving_pose, "moving_pose"),
             pose(&self.fixed_pose, "fixed_pose"),
@@ -279,9 +302,12 @@ impl<B> Query<'_, B> {
         .flatten()
     }
 
-    /// An error for the first of these fields that is there.
-    fn refuse(&self, fields: &[&str]) -> Result<(), String> {
-        let is_there = |field: &&&str| match **field {
+    /// Checks that none of these fields is given.
+    ///
+    /// # Errors
+    /// One is. The message names the first.
+    fn reject_fields(&self, fields: &[&str]) -> Result<(), String> {
+        let is_given = |field: &&&str| match **field {
             "direction" => self.direction.is_some(),
             "graze_tolerance" => self.graze_tolerance.is_some(),
             "solver" => self.solver.is_some(),
@@ -295,25 +321,29 @@ impl<B> Query<'_, B> {
             "fixed_motion" => self.fixed_motion.is_some(),
             _ => false,
         };
-        match fields.iter().find(is_there) {
-            Some(field @ &"length") => Err(format!(r#"`{field}` is for "query": "within""#)),
+        match fields.iter().find(is_given) {
+            Some(field @ &"length") => Err(format!(r#"`{field}` requires "query": "within""#)),
             Some(field @ (&"moving_motion" | &"fixed_motion")) => {
-                Err(format!(r#"`{field}` is for "query": "motion""#))
+                Err(format!(r#"`{field}` requires "query": "motion""#))
             }
-            Some(field) => Err(format!("`{field}` is not for this query")),
+            Some(field) => Err(format!("`{field}` does not belong to this query")),
             None => Ok(()),
         }
     }
 
-    /// How the solver narrows the search.
+    /// Returns the options of the solver `cta`.
+    ///
+    /// # Errors
+    /// There are such options for another solver.
     fn narrowing(&self) -> Result<cta::Options, String> {
         if self.solver != Some(Solver::Cta) && (self.start.is_some() || self.until.is_some()) {
-            return Err(r#"`start` and `until` are for "solver": "cta""#.into());
+            return Err(r#"`start` and `until` require "solver": "cta""#.into());
         }
         Ok(cta::Options::new(self.start.unwrap_or_default(), self.until.unwrap_or_default()))
     }
 
-    fn of_convex(
+    /// Answers a cast of convex bodies.
+    fn convex_cast_line(
         &self,
         [moving, fixed]: [&Part; 2],
         poses: [Pose; 2],
@@ -321,7 +351,7 @@ impl<B> Query<'_, B> {
     ) -> Result<AnswerLine, String> {
         if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
             let fields = "`tolerance` and `ignore_start_overlaps`";
-            return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
+            return Err(format!("{fields} require solids; convex bodies accept `graze_tolerance`"));
         }
         let options = Options::default()
             .with_solver(self.solver.unwrap_or_default())
@@ -333,32 +363,34 @@ impl<B> Query<'_, B> {
             .and_then(|cast| cast.with_options(options))
             .map_err(|error| error.to_string())?;
         let question = match self.question {
-            Some(Asked::Clearance) => Question::Clearance,
+            Some(QueryName::Clearance) => Question::Clearance,
             _ => Question::Contact,
         };
-        let answered = question.ask(&cast);
-        let answer = answered.map_err(|error| case::failure(error, &cast).into_message())?;
-        Ok(of_parts(answer.record(&cast), [moving, fixed]))
+        let answer = question.ask(&cast);
+        let answer = answer.map_err(|error| case::cast_failure(error, &cast).into_message())?;
+        Ok(convex_line(answer.record(&cast), [moving, fixed]))
     }
 
-    /// At least one of the bodies is a solid.
-    fn of_solids(
+    /// Answers a clearance of bodies at least one of which is a solid.
+    fn solid_cast_line(
         &self,
         shapes: [&Shape; 2],
         poses: [Pose; 2],
         direction: DVec3,
     ) -> Result<AnswerLine, String> {
-        if self.question == Some(Asked::Contact) {
-            return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
+        if self.question == Some(QueryName::Contact) {
+            return Err(r#"solids have no "contact"; use "query": "clearance""#.into());
         }
         if self.graze_tolerance.is_some() {
-            return Err("`graze_tolerance` is for convex bodies; solids have `tolerance`".into());
+            return Err(
+                "`graze_tolerance` requires convex bodies; solids accept `tolerance`".into()
+            );
         }
         if self.solver.is_some() || self.start.is_some() || self.until.is_some() {
-            return Err("`solver`, `start` and `until` are for convex bodies".into());
+            return Err("`solver`, `start` and `until` require convex bodies".into());
         }
         let [moving, fixed] = as_solids(shapes)?;
-        let question = PartsQuery {
+        let query = PartsQuery {
             bodies: [moving.get(), fixed.get()],
             poses,
             direction,
@@ -366,27 +398,27 @@ impl<B> Query<'_, B> {
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
             keep: self.keep.unwrap_or_default(),
         };
-        let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
-        let notes = question.bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
+        let answer = query.answer(|| ()).map_err(|e| e.to_string())?;
+        let notes = query.bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
         let notes = notes.cloned().collect();
-        Ok(AnswerLine { notes, ..AnswerLine::of(without_names(answer.record.into())) })
+        Ok(AnswerLine { notes, ..AnswerLine::from_record(without_names(answer.record.into())) })
     }
 }
 
-/// What is asked of two bodies: where they are, along a direction, or along motions.
-enum Ask {
+/// The question of a line: about placed bodies, along a direction, or along motions.
+enum Task {
     Pair(PairQuestion),
     Cast(DVec3),
-    /// When they first meet, or how far they can go.
+    /// The first contact, or with `true` how far the bodies can move.
     Motion(Box<[Motion; 2]>, bool),
 }
 
-/// Fields that only queries with a direction have; the last one motions have too.
-const OF_CASTS: [&str; 6] =
+/// Fields of queries with a direction. Motions have the last one, too.
+const CAST_FIELDS: [&str; 6] =
     ["direction", "graze_tolerance", "solver", "start", "until", "ignore_start_overlaps"];
 
-/// Of bodies where they are.
-fn of_pair(
+/// Answers a question about placed bodies.
+fn pair_line(
     question: PairQuestion,
     shapes: [&Shape; 2],
     poses: [Pose; 2],
@@ -395,27 +427,27 @@ fn of_pair(
         let placed = [moving.body.at(poses[0]), fixed.body.at(poses[1])];
         let pair = Pair::new(placed[0], placed[1]).map_err(|error| error.to_string())?;
         let answer = question.ask(&pair).map_err(|error| error.to_string())?;
-        return Ok(of_parts(answer.record(&pair), [moving, fixed]));
+        return Ok(convex_line(answer.record(&pair), [moving, fixed]));
     }
     let [moving, fixed] = as_solids(shapes)?;
     let bodies = [moving.get(), fixed.get()];
-    let record = PartsPair { bodies, poses }.ask(question).map_err(|e| e.to_string())?;
-    Ok(of_bodies(record, bodies))
+    let record = PartsPair { bodies, poses }.answer(question).map_err(|e| e.to_string())?;
+    Ok(solid_line(record, bodies))
 }
 
-/// The line of an answer about solids.
-fn of_bodies(record: Record, bodies: [&solid::Body; 2]) -> AnswerLine {
+/// Returns the line of an answer about solids, with the notes of their files.
+fn solid_line(record: Record, bodies: [&solid::Body; 2]) -> AnswerLine {
     let notes = bodies.into_iter().flat_map(|body| body.notes.clone()).collect();
-    AnswerLine { notes, ..AnswerLine::of(without_names(record)) }
+    AnswerLine { notes, ..AnswerLine::from_record(without_names(record)) }
 }
 
-/// The line of an answer about convex bodies.
-fn of_parts(record: Record, parts: [&Part; 2]) -> AnswerLine {
+/// Returns the line of an answer about convex bodies, with the notes of their files.
+fn convex_line(record: Record, parts: [&Part; 2]) -> AnswerLine {
     let notes = parts.into_iter().flat_map(|part| part.notes.clone()).collect();
     AnswerLine { notes, ..AnswerLine::from(record).with_parts(parts) }
 }
 
-/// Without the names of files: a body is one.
+/// Returns a record without names of files, because each body of a batch has one file.
 fn without_names(mut record: Record) -> Record {
     let (moving, fixed, overlaps) = match &mut record {
         Record::SolidClearance(of) => (&mut of.moving, &mut of.fixed, &mut of.start_overlaps),
@@ -431,60 +463,68 @@ fn without_names(mut record: Record) -> Record {
     record
 }
 
-/// A solid, or one made of a convex body.
-enum AsSolid<'a> {
-    Is(&'a solid::Body),
+/// A solid of the cache, or one that is made of a convex body.
+enum SolidOf<'a> {
+    Cached(&'a solid::Body),
     Made(Box<solid::Body>),
 }
 
-fn as_solid(shape: &Shape) -> Result<AsSolid<'_>, String> {
+/// Returns a shape as a solid.
+fn as_solid(shape: &Shape) -> Result<SolidOf<'_>, String> {
     match shape {
-        Shape::Solid(body) => Ok(AsSolid::Is(body)),
-        Shape::Convex(part) => Ok(AsSolid::Made(Box::new(solid::Body::of_convex(&part.body)?))),
+        Shape::Solid(body) => Ok(SolidOf::Cached(body)),
+        Shape::Convex(part) => Ok(SolidOf::Made(Box::new(solid::Body::from_convex(&part.body)?))),
     }
 }
 
-fn as_solids(shapes: [&Shape; 2]) -> Result<[AsSolid<'_>; 2], String> {
+/// Returns both shapes as solids.
+fn as_solids(shapes: [&Shape; 2]) -> Result<[SolidOf<'_>; 2], String> {
     let [moving, fixed] = shapes.map(as_solid);
     Ok([moving.map_err(|e| format!("moving: {e}"))?, fixed.map_err(|e| format!("fixed: {e}"))?])
 }
 
-impl AsSolid<'_> {
+impl SolidOf<'_> {
+    /// Returns the solid.
     fn get(&self) -> &solid::Body {
         match self {
-            Self::Is(body) => body,
+            Self::Cached(body) => body,
             Self::Made(body) => body,
         }
     }
 }
 
 impl PoseSource {
-    /// Returns the pose. A quaternion of few digits is normalised, which [`Self::note`] says.
+    /// Returns the pose. A quaternion with few digits is normalised; [`Self::note`] reports it.
+    ///
+    /// # Errors
+    /// The quaternion is not near length 1, or a number is not finite.
     pub(crate) fn pose(&self) -> Result<Pose, String> {
-        self.rounded().map(|(pose, _)| pose).map_err(|e| e.to_string())
+        self.normalised_pose().map(|(pose, _)| pose).map_err(|e| e.to_string())
     }
 
-    /// Returns the length of the quaternion as it was written, if it was normalised.
-    pub(super) fn rounded_length(&self) -> Option<f64> {
-        self.rounded().ok()?.1.map(|_| self.quaternion().length())
+    /// Returns the length of the given quaternion; `None` if it was not normalised.
+    pub(super) fn original_length(&self) -> Option<f64> {
+        self.normalised_pose().ok()?.1.map(|_| self.quaternion().length())
     }
 
     /// Returns a note about the quaternion if it was normalised.
     pub(crate) fn note(&self, place: &str) -> Option<String> {
-        self.rounded_length().map(|length| normalised(place, length))
+        self.original_length().map(|length| normalised_pose_note(place, length))
     }
 
-    fn rounded(&self) -> Result<(Pose, Option<f64>), PoseError> {
+    /// Returns the pose, and the deviation of the quaternion's length from 1 if it was normalised.
+    fn normalised_pose(&self) -> Result<(Pose, Option<f64>), PoseError> {
         Pose::from_rounded(self.quaternion(), DVec3::from_array(self.translation))
     }
 
+    /// Returns the given quaternion.
     fn quaternion(&self) -> DQuat {
         DQuat::from_array(self.rotation)
     }
 }
 
-/// The parser sees one line and calls it line 1.
-pub(crate) fn syntax_message(number: u64, error: &serde_json::Error) -> String {
+/// Returns the message of a syntax error with the number of its line in the file; the parser gets single lines.
+pub(crate) fn syntax_error_message(number: u64, error: &serde_json::Error) -> String {
     let what = plain(error)
         .replace("the file ends inside", "the line ends inside")
         .replace("expected path string", "expected a path");

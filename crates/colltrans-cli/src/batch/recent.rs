@@ -1,44 +1,47 @@
-//! Bodies by what a line says of them, for one thread.
+//! Bodies by their text in a line, for one thread.
 //!
-//! Lines of one file name the same few bodies over and over, in the same words. A body that is still
-//! in the [`Cache`](super::cache::Cache) is found by its words, without reading them. Invariant:
-//! bodies are held weakly, so no more of them stay in memory than the cache keeps.
+//! Lines of one file often repeat the same text of a few bodies. A body that is still in the
+//! [`Cache`](super::cache::Cache) is found by its text, without parsing it.
+//!
+//! Invariant: the references are weak, so that only the cache keeps bodies in memory.
 
 use std::sync::{Arc, Weak};
 
 use super::cache::Shape;
 
-/// Bodies that are remembered.
-const PLACES: usize = 8;
-/// Words that are longer are not kept: inline points seldom come twice.
-const LONGEST: usize = 4096;
+/// Maximum number of bodies.
+const MAX_ENTRIES: usize = 8;
+/// Maximum length of a text in bytes. Longer texts have inline points, which rarely repeat.
+const MAX_TEXT_BYTES: usize = 4096;
 
-/// What a thread has met last.
+/// The bodies that a thread has used recently.
 #[derive(Default)]
 pub(crate) struct Recent {
     known: Vec<(Box<str>, Weak<Shape>)>,
-    /// The place that is taken next, when all are.
+    /// The entry to be replaced next when all are in use.
     next: usize,
 }
 
 impl Recent {
-    pub(crate) fn find(&self, words: &str) -> Option<Arc<Shape>> {
-        let (_, shape) = self.known.iter().find(|(known, _)| **known == *words)?;
+    /// Returns the body with this text; `None` if it is unknown, or no longer in memory.
+    pub(crate) fn find(&self, text: &str) -> Option<Arc<Shape>> {
+        let (_, shape) = self.known.iter().find(|(known, _)| **known == *text)?;
         shape.upgrade()
     }
 
-    pub(crate) fn keep(&mut self, words: &str, shape: &Arc<Shape>) {
-        if words.len() > LONGEST {
+    /// Stores a body under its text, in place of the oldest one if necessary.
+    pub(crate) fn insert(&mut self, text: &str, shape: &Arc<Shape>) {
+        if text.len() > MAX_TEXT_BYTES {
             return;
         }
-        let entry = (words.into(), Arc::downgrade(shape));
-        if let Some(place) = self.known.iter().position(|(known, _)| **known == *words) {
+        let entry = (text.into(), Arc::downgrade(shape));
+        if let Some(place) = self.known.iter().position(|(known, _)| **known == *text) {
             self.known[place] = entry;
-        } else if self.known.len() < PLACES {
+        } else if self.known.len() < MAX_ENTRIES {
             self.known.push(entry);
         } else {
             self.known[self.next] = entry;
-            self.next = (self.next + 1) % PLACES;
+            self.next = (self.next + 1) % MAX_ENTRIES;
         }
     }
 }
@@ -57,29 +60,29 @@ mod tests {
     }
 
     #[test]
-    fn the_last_ones_are_found_while_somebody_keeps_them() {
+    fn recent_bodies_are_found_while_they_are_in_memory() {
         let mut recent = Recent::default();
-        let shapes: Vec<_> = (0..2 * PLACES).map(|_| shape()).collect();
+        let shapes: Vec<_> = (0..2 * MAX_ENTRIES).map(|_| shape()).collect();
         for (i, shape) in shapes.iter().enumerate() {
-            recent.keep(&i.to_string(), shape);
+            recent.insert(&i.to_string(), shape);
             assert!(Arc::ptr_eq(&recent.find(&i.to_string()).unwrap(), shape));
         }
         assert!(recent.find("0").is_none());
-        assert!(recent.find(&PLACES.to_string()).is_some());
+        assert!(recent.find(&MAX_ENTRIES.to_string()).is_some());
         drop(shapes);
-        assert!(recent.find(&PLACES.to_string()).is_none());
-        // Built again, it takes its old place.
+        assert!(recent.find(&MAX_ENTRIES.to_string()).is_none());
+        // A body that is built again replaces its old entry.
         let again = shape();
-        recent.keep(&PLACES.to_string(), &again);
-        assert!(Arc::ptr_eq(&recent.find(&PLACES.to_string()).unwrap(), &again));
-        assert_eq!(recent.known.len(), PLACES);
+        recent.insert(&MAX_ENTRIES.to_string(), &again);
+        assert!(Arc::ptr_eq(&recent.find(&MAX_ENTRIES.to_string()).unwrap(), &again));
+        assert_eq!(recent.known.len(), MAX_ENTRIES);
     }
 
     #[test]
-    fn long_words_are_not_kept() {
+    fn long_texts_are_not_stored() {
         let mut recent = Recent::default();
-        let (words, shape) = ("x".repeat(LONGEST + 1), shape());
-        recent.keep(&words, &shape);
-        assert!(recent.find(&words).is_none());
+        let (text, shape) = ("x".repeat(MAX_TEXT_BYTES + 1), shape());
+        recent.insert(&text, &shape);
+        assert!(recent.find(&text).is_none());
     }
 }

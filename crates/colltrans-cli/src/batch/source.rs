@@ -1,4 +1,4 @@
-//! What a line of a batch says, before anything is looked up.
+//! The format of a line of a batch.
 
 use std::path::{Path, PathBuf};
 
@@ -8,11 +8,11 @@ use serde_json::value::RawValue;
 
 use super::motion::MotionSource;
 
-/// A line. Its bodies are read, or what is written of them.
+/// A query. `Body` is a parsed body, or its text.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a query")]
+#[serde(deny_unknown_fields, expecting = "an object with a query")]
 pub(super) struct Query<'a, Body> {
-    #[serde(borrow, default, deserialize_with = "as_written")]
+    #[serde(borrow, default, deserialize_with = "raw_value")]
     pub(super) id: Option<&'a RawValue>,
     pub(super) moving: Body,
     pub(super) fixed: Body,
@@ -20,15 +20,15 @@ pub(super) struct Query<'a, Body> {
     pub(super) fixed_pose: Option<PoseSource>,
     pub(super) direction: Option<[f64; 3]>,
     #[serde(rename = "query")]
-    pub(super) question: Option<Asked>,
-    /// Of [`Asked::Motion`] and [`Asked::MotionClearance`].
+    pub(super) question: Option<QueryName>,
+    /// For [`QueryName::Motion`] and [`QueryName::MotionClearance`].
     pub(super) moving_motion: Option<MotionSource>,
     pub(super) fixed_motion: Option<MotionSource>,
-    /// Of [`Asked::Within`].
+    /// For [`QueryName::Within`].
     pub(super) length: Option<f64>,
     pub(super) graze_tolerance: Option<f64>,
     pub(super) solver: Option<Solver>,
-    /// Of [`Solver::Cta`].
+    /// For [`Solver::Cta`].
     pub(super) start: Option<cta::Start>,
     pub(super) until: Option<cta::Until>,
     pub(super) tolerance: Option<f64>,
@@ -36,17 +36,17 @@ pub(super) struct Query<'a, Body> {
     pub(super) keep: Option<f64>,
 }
 
-/// Reads a value as it is written. `null` is a value, too, which a result repeats.
-pub(super) fn as_written<'de, D: Deserializer<'de>>(
+/// Returns the text of a value. `null` is a value, too, which a result repeats.
+pub(super) fn raw_value<'de, D: Deserializer<'de>>(
     from: D,
 ) -> Result<Option<&'de RawValue>, D::Error> {
     <&RawValue>::deserialize(from).map(Some)
 }
 
-/// What is asked, by its name.
+/// The name of a question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Asked {
+pub(super) enum QueryName {
     Contact,
     Clearance,
     Distance,
@@ -57,7 +57,7 @@ pub(super) enum Asked {
 }
 
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a body")]
+#[serde(deny_unknown_fields, expecting = "an object with a body")]
 pub(crate) struct BodySource {
     pub(super) points: Option<Vec<[f64; 3]>>,
     pub(super) mesh: Option<PathBuf>,
@@ -68,14 +68,14 @@ pub(crate) struct BodySource {
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
+#[serde(deny_unknown_fields, default, expecting = "an object with a pose")]
 pub(crate) struct PoseSource {
     pub(super) translation: [f64; 3],
     pub(super) rotation: [f64; 4],
 }
 
 impl BodySource {
-    /// The file that it is made of.
+    /// Returns the file of the body; `None` for points.
     pub(crate) fn file(&self) -> Option<&Path> {
         self.mesh.as_deref().or(self.solid.as_deref())
     }

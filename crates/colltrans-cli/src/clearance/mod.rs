@@ -1,5 +1,6 @@
-//! `colltrans clearance`: how far a body can move before another blocks it. Two convex meshes are asked as
-//! `cast` asks them; this is the way of all others, the parts.
+//! `colltrans clearance`: how far a body can move before another blocks it.
+//!
+//! [`cast`](crate::cast) answers for two convex meshes, this module for parts.
 
 mod text;
 
@@ -18,58 +19,61 @@ use crate::record::Line;
 use crate::solid::{self, PartsQuery};
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
-    let sides = arguments.sides()?;
-    let request = Request::of(&arguments.pair, sides.files)?;
-    match load::convex_bodies(&sides, &arguments.pair.body_options())? {
-        Some([moving, fixed]) => request.convex(Question::Clearance, [&moving[0], &fixed[0]]),
-        None => parts(arguments, request, sides.files),
+    let inputs = arguments.input_pair()?;
+    let request = Request::from_arguments(&arguments.pair, inputs.files)?;
+    match load::read_if_convex(&inputs, &arguments.pair.body_options())? {
+        Some([moving, fixed]) => {
+            request.answer_convex(Question::Clearance, [&moving[0], &fixed[0]])
+        }
+        None => answer_parts(arguments, request, inputs.files),
     }
 }
 
-/// Asked of parts that need not be convex.
-fn parts(
+/// Answers the request for parts that need not be convex, and writes the answer.
+fn answer_parts(
     arguments: &ClearanceArguments,
     request: Request<'_>,
     files: [&[PathBuf]; 2],
 ) -> Result<(), Failure> {
     let Request { targets, poses, directions, .. } = request;
-    let bodies = load::parts(files, &arguments.part_options())?;
-    load::report_notes(&arguments.pair.places, bodies.iter().flat_map(|body| &body.notes));
+    let bodies = load::read_parts(files, &arguments.part_options())?;
+    load::print_notes(&arguments.pair.places, bodies.iter().flat_map(|body| &body.notes));
     let (bodies, keep) = (bodies.each_ref(), arguments.pair.keep);
     let ClearanceArguments { tolerance, ignore_start_overlaps, .. } = *arguments;
-    let question =
+    let query =
         |direction| PartsQuery { bodies, poses, direction, tolerance, ignore_start_overlaps, keep };
     let all = match directions {
         Directions::Many(all) => all,
         Directions::One(direction) => {
-            let question = question(direction);
-            let bar = progress::steps(question.pairs(), "looking");
-            let answer = question.ask(|| bar.inc(1));
+            let query = query(direction);
+            let bar = progress::step_bar(query.pair_count(), "searching");
+            let answer = query.answer(|| bar.inc(1));
             bar.finish_and_clear();
-            let answer = answer.map_err(|error| solid::refused(error, bodies, tolerance))?;
+            let answer = answer.map_err(|error| solid::query_failure(error, bodies, tolerance))?;
             answer.notes.iter().for_each(|text| note(text));
-            let told = Line { notes: answer.notes.clone(), ..Line::of(answer.record.clone()) };
-            let prove = || question.prove(answer.record.tolerance.unwrap_or_default());
+            let line =
+                Line { notes: answer.notes.clone(), ..Line::from_record(answer.record.clone()) };
+            let prove = || query.prove(answer.record.tolerance.unwrap_or_default());
             return targets.write_answer(AnswerOutputs {
-                record: &told,
-                words: || text::answer(&answer, direction, tolerance.is_none()),
+                record: &line,
+                text: || text::answer_text(&answer, direction, tolerance.is_none()),
                 proof: || Ok(Some(prove()?.to_json())),
-                picture: || Ok(draw_solids(&question, &answer)),
+                picture: || Ok(draw_solids(&query, &answer)),
             });
         }
     };
     if !targets.json {
-        print(&text::scan_head())?;
+        print(&text::scan_header())?;
     }
     let mut noted = false;
-    let ask = |direction| {
-        let answer = question(direction).ask(|| ())?;
-        // The same bodies and tolerance for all directions.
+    let line_of = |direction| {
+        let answer = query(direction).answer(|| ())?;
+        // All directions have the same bodies, and therefore the same notes.
         if !noted {
             answer.notes.iter().for_each(|text| note(text));
             noted = true;
         }
-        Ok(Line::of(answer.record.into()))
+        Ok(Line::from_record(answer.record.into()))
     };
-    answer_directions(targets.json, all, ask, text::scan_line)
+    answer_directions(targets.json, all, line_of, text::scan_line)
 }

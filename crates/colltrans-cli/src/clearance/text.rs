@@ -1,85 +1,89 @@
-//! The answer in words.
+//! Answers of `colltrans clearance` for parts as text.
 
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, Record};
 
 use crate::numbers::{known_vector, number, unit_vector};
 use crate::record::Line;
-use crate::report::{features, kept, line, overlaps, remedy, safely, times};
+use crate::report::{
+    bound_text, overlap_hint, push_features, push_line, push_min_gap, push_start_overlaps,
+    safe_travel,
+};
 use crate::solid::Answer;
 
-/// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
-const HARDLY: f64 = 4.0;
+/// Number of tolerances up to which a travel suggests that a fit is tighter than the tolerance.
+const TIGHT_FIT: f64 = 4.0;
 
-/// The readable answer of `colltrans clearance`.
-pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> String {
+/// Returns the answer. `is_default` states that no tolerance was given.
+pub(super) fn answer_text(answer: &Answer, direction: DVec3, is_default: bool) -> String {
     let mut text = String::new();
     let record = &answer.record;
     let tolerance = record.tolerance.unwrap_or_default();
     match record.outcome {
         Ending::Blocked => {
             text.push_str("blocked\n");
-            blocked(&mut text, answer, direction);
-            let hardly = HARDLY * tolerance;
-            if is_default && record.distance.is_some_and(|t| t * direction.length() <= hardly) {
-                let fit =
-                    "if a fit is meant to slide here, give the chord errors of both as --tolerance";
-                line(&mut text, "", fit);
+            push_contact(&mut text, answer, direction);
+            let tight = TIGHT_FIT * tolerance;
+            if is_default && record.distance.is_some_and(|t| t * direction.length() <= tight) {
+                let fit = "if a fit slides here, give the sum of both chord errors as --tolerance";
+                push_line(&mut text, "", fit);
             }
         }
         Ending::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
-        _ => text.push_str("free: nothing stops it along this direction\n"),
+        _ => text.push_str("free: nothing stops the body along this direction\n"),
     }
     if let Some([_, upper]) = record.exit_bounds {
-        line(&mut text, "exit", &format!("{}; after it they never meet", times(upper)));
+        push_line(&mut text, "exit", &format!("{}; after it they never meet", bound_text(upper)));
     }
     let ignored = record.outcome != Ending::Overlapping;
     let name = if ignored { "ignored" } else { "overlap" };
-    overlaps(&mut text, &record.start_overlaps, name);
+    push_start_overlaps(&mut text, &record.start_overlaps, name);
     if !ignored {
-        line(&mut text, "", remedy(&record.start_overlaps));
+        push_line(&mut text, "", overlap_hint(&record.start_overlaps));
     }
     if !record.surfaces.is_empty() {
-        let what = "open, blocking from both sides, rims included; what is inside is not known";
-        line(&mut text, "surface", &format!("{}, {what}", record.surfaces.join(" and ")));
+        let what = "open, blocks from both sides and with its boundary; its interior is unknown";
+        push_line(&mut text, "surface", &format!("{}, {what}", record.surfaces.join(" and ")));
     }
     let source = match (is_default, tolerance == 0.0) {
         (true, _) => "from the files' precision and the poses; --tolerance sets another",
-        (false, true) => "as asked: the bodies are taken as they are",
-        (false, false) => "as asked: both bodies are shrunk by half of it",
+        (false, true) => "as given: the nominal bodies",
+        (false, false) => "as given: each body is offset inwards by half of it",
     };
-    line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
-    kept(&mut text, record.keep);
+    push_line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
+    push_min_gap(&mut text, record.keep);
     text
 }
 
-/// The heads of the columns of [`scan_line`].
-pub(super) fn scan_head() -> String {
-    columns("direction", ["outcome", "distance", "shrunk", "exit"].map(str::to_owned))
+/// Returns the header of the columns of [`scan_line`].
+pub(super) fn scan_header() -> String {
+    join_columns("direction", ["outcome", "distance", "offset", "exit"].map(str::to_owned))
 }
 
-/// The answer for one of many directions.
-pub(super) fn scan_line(told: &Line, direction: DVec3) -> String {
+/// Returns the line of one direction of `--directions`.
+pub(super) fn scan_line(line: &Line, direction: DVec3) -> String {
     let direction = direction.to_array().map(number).join(",");
-    let outcome = told.record.outcome().name().to_owned();
-    let Record::SolidClearance(record) = &told.record else {
-        let message = told.message.clone().unwrap_or_default();
-        return columns(&direction, [outcome, message, String::new(), String::new()]);
+    let outcome = line.record.outcome().name().to_owned();
+    let Record::SolidClearance(record) = &line.record else {
+        let message = line.message.clone().unwrap_or_default();
+        return join_columns(&direction, [outcome, message, String::new(), String::new()]);
     };
     let shrunk = record.shrunk_distance_bounds.map(|[lower, _]| lower);
     let exit = record.exit_bounds.map(|[_, upper]| upper);
     let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
     let [distance, shrunk, exit] = [record.distance, shrunk, exit].map(or_none);
-    columns(&direction, [outcome, distance, shrunk, exit])
+    join_columns(&direction, [outcome, distance, shrunk, exit])
 }
 
-fn columns(direction: &str, others: [String; 4]) -> String {
+/// Joins columns with fixed widths.
+fn join_columns(direction: &str, others: [String; 4]) -> String {
     let [outcome, distance, shrunk, exit] = others;
     let text = format!("{direction:<24} {outcome:<11} {distance:<19} {shrunk:<19} {exit}");
     text.trim_end().to_owned() + "\n"
 }
 
-fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
+/// Appends the safe travel, the bounds, the features and the contact.
+fn push_contact(text: &mut String, answer: &Answer, direction: DVec3) {
     let record = &answer.record;
     let error = answer.error / direction.length();
     if let (Some(value), Some([lower, upper]), Some(distance), Some([shrunk, _])) = (
@@ -89,16 +93,20 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
         record.shrunk_distance_bounds,
     ) {
         let remark = if value.abs() <= error { " (the parts touch)" } else { "" };
-        let far = safely(value.max(0.0), error, [distance, shrunk], direction);
-        line(text, "distance", &format!("{far}{remark}"));
-        line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+        let travel = safe_travel(value.max(0.0), error, [distance, shrunk], direction);
+        push_line(text, "distance", &format!("{travel}{remark}"));
+        push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
         if record.tolerance > Some(0.0) {
-            line(text, "shrunk", &format!("{}, for the shrunk bodies", times(shrunk)));
+            push_line(text, "offset", &format!("{}, for the offset bodies", bound_text(shrunk)));
         }
     }
-    features(text, record.features.as_ref(), [record.moving.as_deref(), record.fixed.as_deref()]);
+    push_features(
+        text,
+        record.features.as_ref(),
+        [record.moving.as_deref(), record.fixed.as_deref()],
+    );
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
-        line(text, "normal", &unit_vector(normal.into()));
-        line(text, "point", &known_vector(point.into(), answer.error));
+        push_line(text, "normal", &unit_vector(normal.into()));
+        push_line(text, "point", &known_vector(point.into(), answer.error));
     }
 }

@@ -1,4 +1,4 @@
-//! The answer in words.
+//! Sets of removal directions as text.
 
 use std::fmt::Write as _;
 
@@ -7,75 +7,82 @@ use colltrans::glam::DVec3;
 use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord};
 
 use crate::numbers::{counted, number, six_digits, unit_vector};
-use crate::report::{line, overlaps, remedy};
-use crate::terminal::shown;
+use crate::report::{overlap_hint, push_line, push_start_overlaps};
+use crate::terminal::escape_line;
 
-/// Regions, arcs, points and what blocks are listed up to so many, and corners up to so many.
-const MOST: usize = 8;
-const MOST_CORNERS: usize = 12;
+/// Maximum number of regions, of arcs and of points that are listed.
+const MAX_LISTED: usize = 8;
+/// Maximum number of corners of a region that are listed.
+const MAX_CORNERS: usize = 12;
 
-/// The readable answer of `colltrans directions`.
-pub(super) fn answer(record: &FreeRecord) -> String {
+/// Returns the answer of `colltrans directions`.
+pub(super) fn answer_text(record: &FreeRecord) -> String {
     let mut text = match record.outcome {
         Ending::Free => "free along some directions\n",
-        Ending::Blocked => "blocked: it cannot leave along any direction, which is proven\n",
-        Ending::Undecided => "undecided: no direction is known to be free, and not all are known\n",
+        Ending::Blocked => "blocked: proven that it cannot leave along any direction\n",
+        Ending::Undecided => {
+            "undecided: no direction is known to be free, and not all are decided\n"
+        }
         _ => "overlapping: the bodies overlap now\n",
     }
     .to_owned();
-    told(&mut text, record);
+    push_directions(&mut text, record);
     if record.outcome == Ending::Overlapping {
-        overlaps(&mut text, &record.start_overlaps, "overlap");
-        line(&mut text, "", remedy(&record.start_overlaps));
+        push_start_overlaps(&mut text, &record.start_overlaps, "overlap");
+        push_line(&mut text, "", overlap_hint(&record.start_overlaps));
     }
     if let Some(tolerance) = record.tolerance {
-        let how = if tolerance > 0.0 { " (both bodies are shrunk by half of it)" } else { "" };
-        line(&mut text, "tolerance", &format!("{}{how}", number(tolerance)));
+        let how = if tolerance > 0.0 { " (each body is offset inwards by half of it)" } else { "" };
+        push_line(&mut text, "tolerance", &format!("{}{how}", number(tolerance)));
     }
     text
 }
 
-/// Lines on shares, regions, arcs, points and what blocks.
-pub(crate) fn told(text: &mut String, record: &FreeRecord) {
+/// Appends lines about shares, regions, arcs, points and blocking files.
+pub(crate) fn push_directions(text: &mut String, record: &FreeRecord) {
     let (Some(free), Some(undecided)) = (record.free_share, record.undecided_share) else { return };
-    let mut say = |name: &str, value: String| line(text, name, &value);
+    let mut put = |name: &str, value: String| push_line(text, name, &value);
     if record.outcome != Ending::Blocked {
         let none = free[1] == 0.0 && record.undecided_cells == Some(0);
-        say("free", if none { "no region of directions".into() } else { shares(free) });
+        put("free", if none { "no region of directions".into() } else { share_text(free) });
     }
     let count = |cells: Option<u64>| counted(cells.unwrap_or_default() as usize, "cell", "cells");
-    say(
+    put(
         "undecided",
         match record.undecided_cells {
             Some(0) | None => "nothing".into(),
             cells => {
-                format!("{}, {}; --depth and --looks do more", at_most(undecided), count(cells))
+                format!(
+                    "{}, {}; larger --depth and --looks decide more",
+                    at_most_share(undecided),
+                    count(cells)
+                )
             }
         },
     );
-    say("proof", format!("{} of the sphere of directions", count(record.cells)));
-    for region in record.regions.iter().take(MOST) {
-        say("region", self::region(region));
+    put("proof", format!("{} of the sphere of directions", count(record.cells)));
+    for region in record.regions.iter().take(MAX_LISTED) {
+        put("region", region_text(region));
     }
     let direction = |d: [f64; 3]| unit_vector(DVec3::from(d).normalize());
-    for arc in record.arcs.iter().take(MOST) {
-        say("arc", self::arc(arc));
+    for arc in record.arcs.iter().take(MAX_LISTED) {
+        put("arc", arc_text(arc));
     }
-    for point in record.points.iter().take(MOST) {
+    for point in record.points.iter().take(MAX_LISTED) {
         let [a, b] = point.planes.map(|plane| unit_vector(plane.normal.normalize()));
         let d = unit_vector(point.direction.normalize());
-        say("point", format!("{d}, alone; exactly across {a} and {b}"));
+        put("point", format!("{d}, isolated; exactly perpendicular to {a} and {b}"));
     }
-    for also in record.also_free.iter().take(MOST).copied() {
-        say("also free", format!("{}, among what is undecided", direction(also)));
+    for also in record.also_free.iter().take(MAX_LISTED).copied() {
+        put("also free", format!("{}, in an undecided cell", direction(also)));
     }
     for by in record.blocked_by.iter().filter(|by| by.moving.is_some() || by.fixed.is_some()) {
-        say("blocked by", blocker(by));
+        put("blocked by", blocker_text(by));
     }
     let [regions, arcs, points] = [record.regions.len(), record.arcs.len(), record.points.len()]
-        .map(|n| n.saturating_sub(MOST));
+        .map(|n| n.saturating_sub(MAX_LISTED));
     if regions + arcs + points > 0 {
-        say(
+        put(
             "",
             format!(
                 "and {regions} more regions, {arcs} more arcs, {points} more points (--json has all)"
@@ -84,14 +91,14 @@ pub(crate) fn told(text: &mut String, record: &FreeRecord) {
     }
 }
 
-/// What a proof says that was checked, in one line.
-pub(crate) fn verified(record: &FreeRecord) -> String {
+/// Returns the statement of a checked proof in one line.
+pub(crate) fn verified_text(record: &FreeRecord) -> String {
     let mut text = if record.outcome == Ending::Blocked {
         "the moving body cannot leave along any direction".to_owned()
     } else {
         let free = record.free_share.unwrap_or_default();
         let none = free[1] == 0.0;
-        let what = if none { "no region of directions that is known".into() } else { shares(free) };
+        let what = if none { "no known region of directions".into() } else { share_text(free) };
         format!("the moving body can leave along {what}")
     };
     let kinds = [
@@ -102,28 +109,32 @@ pub(crate) fn verified(record: &FreeRecord) -> String {
         let _ = write!(text, ", {}", counted(count, one, many));
     }
     if let Some(undecided) = record.undecided_share.filter(|_| record.undecided_cells > Some(0)) {
-        let _ = write!(text, "; undecided are {}", at_most(undecided));
+        let _ = write!(text, "; undecided: {}", at_most_share(undecided));
     }
     text
 }
 
-fn arc(arc: &FreeArc) -> String {
+/// Describes an arc of directions.
+fn arc_text(arc: &FreeArc) -> String {
     let turns = arc.along.windows(2).map(|ends| ends[0].angle_between(ends[1]));
     let degrees = six_digits(turns.sum::<f64>().to_degrees());
     let across = unit_vector(arc.plane.normal.normalize());
-    let Some(ends) = arc.ends else { return format!("all across {across}, {degrees} degrees") };
+    let Some(ends) = arc.ends else {
+        return format!("full circle perpendicular to {across}, {degrees} degrees");
+    };
     let [from, to] = ends.map(|end| unit_vector(end.direction.normalize()));
-    format!("from {from} to {to}, {degrees} degrees across {across}")
+    format!("from {from} to {to}, {degrees} degrees, perpendicular to {across}")
 }
 
-fn region(region: &FreeRegionRecord) -> String {
+/// Describes a region of directions.
+fn region_text(region: &FreeRegionRecord) -> String {
     let mut text =
         format!("{} around {}", percent(region.share), unit_vector(region.center.into()));
     let corners = &region.corners;
     let _ = write!(text, ", {} degrees from its border", six_digits(region.margin.to_degrees()));
     if corners.is_empty() {
         text.push_str(", without corners");
-    } else if corners.len() <= MOST_CORNERS {
+    } else if corners.len() <= MAX_CORNERS {
         let all: Vec<String> =
             corners.iter().map(|c| unit_vector(DVec3::from(*c).normalize())).collect();
         let _ = write!(text, ", corners {}", all.join("; "));
@@ -133,19 +144,20 @@ fn region(region: &FreeRegionRecord) -> String {
     text
 }
 
-fn blocker(by: &BlockedByRecord) -> String {
-    let name = |name: &Option<String>| name.as_ref().map(shown);
+/// Describes the files of a blocking pair, and a lower bound of the share that it blocks.
+fn blocker_text(by: &BlockedByRecord) -> String {
+    let name = |name: &Option<String>| name.as_ref().map(escape_line);
     let who = match (name(&by.moving), name(&by.fixed)) {
-        (Some(moving), Some(fixed)) => format!("{fixed}, which stops {moving}"),
+        (Some(moving), Some(fixed)) => format!("{fixed}, which blocks {moving}"),
         (None, Some(fixed)) => fixed,
-        (Some(moving), None) => format!("what stops {moving}"),
+        (Some(moving), None) => format!("a file that blocks {moving}"),
         (None, None) => String::new(),
     };
     format!("{who}: at least {} of all directions", percent(by.share))
 }
 
-/// Between two bounds.
-fn shares([low, high]: [f64; 2]) -> String {
+/// Returns a share of all directions with its two bounds.
+fn share_text([low, high]: [f64; 2]) -> String {
     if high == 0.0 {
         return "no region of directions is known to be".into();
     }
@@ -157,10 +169,12 @@ fn shares([low, high]: [f64; 2]) -> String {
     )
 }
 
-fn at_most(share: f64) -> String {
+/// Returns an upper bound of a share of all directions.
+fn at_most_share(share: f64) -> String {
     format!("at most {} of all directions", percent(share))
 }
 
+/// Returns a share in percent, with six digits.
 fn percent(share: f64) -> String {
     format!("{} %", six_digits(100.0 * share))
 }

@@ -1,5 +1,6 @@
-//! `colltrans distance`, `depth` and `within`: two bodies where they are. Two convex meshes are asked as
-//! convex bodies, all others as parts.
+//! `colltrans distance`, `depth` and `within`: queries of two placed bodies without a direction.
+//!
+//! Two convex meshes become convex bodies, all others parts.
 
 mod text;
 
@@ -15,42 +16,46 @@ use crate::failure::{Code, Failure};
 use crate::load;
 use crate::picture::draw_pair;
 use crate::record::Line;
-use crate::solid::{PartsPair, surface_of};
-pub(crate) use text::distance;
+use crate::solid::{PartsPair, placed_surface};
+pub(crate) use text::distance_text;
 
 pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
-    let sides = arguments.sides(question)?;
+    let inputs = arguments.input_pair(question)?;
     let PlacedArguments { json, save_proof, picture, .. } = arguments;
-    let inputs = load::input_files(sides.files);
-    let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &inputs)?;
-    match load::convex_bodies(&sides, &arguments.body_options())? {
-        Some([moving, fixed]) => convex(arguments, targets, question, [&moving[0], &fixed[0]]),
-        None => parts(arguments, targets, question, sides.files),
+    let paths = load::input_paths(inputs.files);
+    let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &paths)?;
+    match load::read_if_convex(&inputs, &arguments.body_options())? {
+        Some([moving, fixed]) => {
+            answer_convex(arguments, targets, question, [&moving[0], &fixed[0]])
+        }
+        None => answer_parts(arguments, targets, question, inputs.files),
     }
 }
 
-fn convex(
+/// Answers the question for convex bodies, and writes the answer.
+fn answer_convex(
     arguments: &PlacedArguments,
     targets: OutputTargets<'_>,
     question: PairQuestion,
     bodies: [&Part; 2],
 ) -> Result<(), Failure> {
     let poses = arguments.places.poses()?;
-    load::report_notes(&arguments.places, bodies.iter().flat_map(|part| &part.notes));
+    load::print_notes(&arguments.places, bodies.iter().flat_map(|part| &part.notes));
     let [moving, fixed] = [0, 1].map(|k| bodies[k].body.at(poses[k]));
     let pair = Pair::new(moving, fixed)?;
     let answer = question.ask(&pair)?;
-    let told = Line::of(answer.record(&pair)).with_parts(bodies);
-    let surface = |k: usize, origin| surface_of(&bodies[k].body, &poses[k], origin);
+    let line = Line::from_record(answer.record(&pair)).with_parts(bodies);
+    let surface = |k: usize, origin| placed_surface(&bodies[k].body, &poses[k], origin);
     targets.write_answer(AnswerOutputs {
-        record: &told,
-        words: || text::answer(question, &told, 0.0),
+        record: &line,
+        text: || text::answer_text(question, &line, 0.0),
         proof: || Ok(answer.proof(&pair).map(|proof| proof.to_json())),
-        picture: || Ok(draw_pair(&told.record, &surface)),
+        picture: || Ok(draw_pair(&line.record, &surface)),
     })
 }
 
-fn parts(
+/// Answers the question for parts that need not be convex, and writes the answer.
+fn answer_parts(
     arguments: &PlacedArguments,
     targets: OutputTargets<'_>,
     question: PairQuestion,
@@ -58,21 +63,21 @@ fn parts(
 ) -> Result<(), Failure> {
     let proves = targets.save_proof.is_some();
     if question == PairQuestion::Depth && proves {
-        let why = "the depth of parts has no proof; `colltrans clearance` has one of their overlap";
+        let why = "the depth of parts has no proof; `colltrans clearance --save-proof` proves their overlap";
         return Err(Failure::new(Code::Usage, why));
     }
     let poses = arguments.places.poses()?;
-    let bodies = load::parts(files, &arguments.part_options())?;
-    load::report_notes(&arguments.places, bodies.iter().flat_map(|body| &body.notes));
-    let asked = PartsPair { bodies: bodies.each_ref(), poses };
+    let bodies = load::read_parts(files, &arguments.part_options())?;
+    load::print_notes(&arguments.places, bodies.iter().flat_map(|body| &body.notes));
+    let query = PartsPair { bodies: bodies.each_ref(), poses };
     let (record, proof) =
-        if proves { asked.prove(question)? } else { (asked.ask(question)?, Ok(None)) };
-    let told = Line::of(record);
+        if proves { query.prove(question)? } else { (query.answer(question)?, Ok(None)) };
+    let line = Line::from_record(record);
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     targets.write_answer(AnswerOutputs {
-        record: &told,
-        words: || text::answer(question, &told, asked.error()),
+        record: &line,
+        text: || text::answer_text(question, &line, query.length_error()),
         proof: || Ok(proof?.map(|proof| proof.to_json())),
-        picture: || Ok(draw_pair(&told.record, &surface)),
+        picture: || Ok(draw_pair(&line.record, &surface)),
     })
 }

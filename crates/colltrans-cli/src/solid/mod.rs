@@ -1,9 +1,8 @@
-//! Parts that need not be convex: the library's solids, as the commands use them.
+//! Bodies of parts that need not be convex, and their queries.
 //!
-//! A body is made of one file or of several; each is a *piece* and keeps its name, so that an
-//! answer can say which files are involved. This is the only module that knows the library's
-//! solids: [`load`](Body::load) makes them of files, [`ask`] asks them for a clearance, [`pair`] where they
-//! are, [`free`] for all directions.
+//! A body has one file or several. Each is a *piece* with a name, so that an answer can name the files involved.
+//! [`load`](Body::load) reads them. [`ask`] answers clearances, [`pair`] distances and depths, [`free`] sets of directions,
+//! and [`motion`] motions.
 
 mod ask;
 mod free;
@@ -21,69 +20,74 @@ use colltrans::{ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid};
 
-use crate::body::{hint, of_file, refusal};
+use crate::body::{load_error_message, note_of_file, option_hint};
 use crate::failure::{Code, Failure};
 use crate::numbers::counted;
 pub(crate) use ask::{Answer, PartsQuery};
-pub(crate) use free::{FreeAnswer, PartsFree};
+pub(crate) use free::{DirectionsAnswer, PartsDirections};
 pub(crate) use motion::PartsMotion;
 pub(crate) use pair::PartsPair;
 use shrinkable::Reports;
 
-/// A body of one piece or several.
+/// A body of one or several pieces.
 #[derive(Debug)]
 pub(crate) struct Body {
     pieces: Vec<Piece>,
-    /// All pieces together, where there are several.
+    /// Union of all pieces; `None` if there is only one.
     union: Option<Solid>,
-    /// What was mended.
+    /// Notes about repairs.
     pub(crate) notes: Vec<String>,
 }
 
+/// The solid of one file.
 #[derive(Debug)]
 struct Piece {
     file: PathBuf,
     solid: Solid,
-    /// In the unit of the body.
+    /// Rounding error of the coordinates in the file, in the unit of the body.
     precision: f64,
-    /// What of it cannot be shrunk.
+    /// Reports about its offsets.
     reports: Reports,
 }
 
 impl Piece {
+    /// Returns the piece of a file.
     fn new(file: PathBuf, solid: Solid, precision: f64) -> Self {
         Self { file, solid, precision, reports: Reports::default() }
     }
 }
 
 impl Body {
-    /// Reads files as one body; `done` is called after each. The message of an error names the file
-    /// and says what would help.
+    /// Reads files as one body. Calls `file_done` after each.
+    ///
+    /// # Errors
+    /// A file cannot be read or is not a closed surface. The message names the file and options that avoid the error.
     pub(crate) fn load(
         files: &[PathBuf],
         options: &BodyOptions,
-        mut done: impl FnMut(),
+        mut file_done: impl FnMut(),
     ) -> Result<Self, String> {
         let mut pieces = Vec::with_capacity(files.len());
         let mut notes = Vec::new();
         for file in files {
-            let Loaded { body: solid, precision, notes: mended } =
-                load_solid(file, options).map_err(|error| refusal(&error))?;
-            notes.extend(mended.iter().map(|note| of_file(file, note)));
+            let Loaded { body: solid, precision, notes: repairs } =
+                load_solid(file, options).map_err(|error| load_error_message(&error))?;
+            notes.extend(repairs.iter().map(|note| note_of_file(file, note)));
             pieces.push(Piece::new(file.clone(), solid, precision));
-            done();
+            file_done();
         }
-        Self::of_pieces(pieces, notes)
+        Self::from_pieces(pieces, notes)
     }
 
-    /// Makes a body of the surface of a convex one, in double precision. A point or a segment is a facet without area.
-    pub(crate) fn of_convex(body: &ConvexPolyhedron) -> Result<Self, String> {
-        let made = body.as_surface().map_err(|error| Refused::Solid(error).to_string())?;
-        let piece = Piece::new(PathBuf::new(), made.clone(), 0.0);
-        Self::of_pieces(vec![piece], Vec::new())
+    /// Builds a body of the surface of a convex one, with precision 0. A point or a segment becomes a facet without area.
+    pub(crate) fn from_convex(body: &ConvexPolyhedron) -> Result<Self, String> {
+        let surface = body.as_surface().map_err(|error| Refused::Solid(error).to_string())?;
+        let piece = Piece::new(PathBuf::new(), surface.clone(), 0.0);
+        Self::from_pieces(vec![piece], Vec::new())
     }
 
-    fn of_pieces(pieces: Vec<Piece>, notes: Vec<String>) -> Result<Self, String> {
+    /// Builds the body of pieces, and their union if there are several.
+    fn from_pieces(pieces: Vec<Piece>, notes: Vec<String>) -> Result<Self, String> {
         let union = match pieces.as_slice() {
             [_] => None,
             several => Some(
@@ -94,26 +98,28 @@ impl Body {
         Ok(Self { pieces, union, notes })
     }
 
+    /// Returns the union of all pieces.
     pub(crate) fn solid(&self) -> &Solid {
         self.union.as_ref().unwrap_or_else(|| &self.pieces[0].solid)
     }
 
-    /// The solids that it is the union of.
+    /// Returns the solids of all pieces.
     fn solids(&self) -> Vec<&Solid> {
         self.pieces.iter().map(|piece| &piece.solid).collect()
     }
 
-    /// The coarsest of its files.
+    /// Returns the coarsest precision of its files.
     pub(crate) fn precision(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.precision).fold(0.0, f64::max)
     }
 
+    /// Returns the memory of all solids.
     pub(crate) fn memory_bytes(&self) -> usize {
         let pieces: usize = self.pieces.iter().map(|piece| piece.solid.memory_bytes()).sum();
         pieces + self.union.as_ref().map_or(0, Solid::memory_bytes)
     }
 
-    /// Its vertices where it is placed, relative to a point, and its triangles.
+    /// Returns the vertices at a pose, relative to `origin`, and the triangles.
     pub(crate) fn surface(&self, pose: &Pose, origin: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let solid = self.solid();
         let offset = pose.translation() - origin;
@@ -122,27 +128,31 @@ impl Body {
     }
 }
 
-/// Returns why a query about two bodies has no answer. If nobody chose the tolerance, a tolerance that leaves
-/// nothing of a body is a fault of the file with the largest coordinates, because these ask for it.
-pub(crate) fn refused(error: QueryError, bodies: [&Body; 2], tolerance: Option<f64>) -> Failure {
+/// Returns the failure of a query of two bodies. If the default tolerance removes a body completely, the message names the
+/// file with the largest coordinates, because the default follows from their rounding error.
+pub(crate) fn query_failure(
+    error: QueryError,
+    bodies: [&Body; 2],
+    tolerance: Option<f64>,
+) -> Failure {
     let (QueryError::NothingLeft { .. }, None) = (&error, tolerance) else { return error.into() };
     let largest = |piece: &Piece| {
         let bounds = piece.solid.bounds();
         bounds.low.abs().max(bounds.high.abs()).max_element()
     };
     let pieces = bodies.into_iter().flat_map(|body| &body.pieces);
-    let sized = pieces.map(|piece| (largest(piece), &piece.file));
-    let Some((size, file)) = sized.max_by(|a, b| a.0.total_cmp(&b.0)) else { return error.into() };
+    let sizes = pieces.map(|piece| (largest(piece), &piece.file));
+    let Some((size, file)) = sizes.max_by(|a, b| a.0.total_cmp(&b.0)) else { return error.into() };
     let text = format!(
-        "{}: its coordinates reach {size:e}, and the default tolerance follows from their rounding; {error}. \
-         Check the unit of the file, or give --tolerance",
+        "{}: coordinates up to {size:e}, whose rounding determines the default tolerance; {error}. Check the unit of \
+         the file, or give --tolerance",
         file.display()
     );
     Failure::new(Code::Input, text)
 }
 
-/// The vertices of a convex body where it is placed, relative to a point, and triangles of its faces.
-pub(crate) fn surface_of(
+/// Returns the vertices of a convex body at a pose, relative to `origin`, and triangles of its faces.
+pub(crate) fn placed_surface(
     body: &ConvexPolyhedron,
     pose: &Pose,
     origin: DVec3,
@@ -154,33 +164,33 @@ pub(crate) fn surface_of(
     (placed, faces.flat_map(fan).collect())
 }
 
-/// What `info` says of a mesh as a solid: a line for each heading.
-pub(crate) fn describe(mesh: &Mesh) -> Vec<(&'static str, String)> {
+/// Returns the lines of `info` about a mesh as a solid, with their headings; none for a point cloud.
+pub(crate) fn description_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
     if mesh.faces.is_empty() {
         return Vec::new();
     }
     let Loaded { body: solid, notes, .. } = match body::solid(mesh, &BodyOptions::default()) {
         Ok(loaded) => loaded,
         Err(refused) => {
-            let mut lines = vec![("solid", format!("no: {refused}{}", hint(&refused)))];
+            let mut lines = vec![("solid", format!("no: {refused}{}", option_hint(&refused)))];
             let open = body::solid(mesh, &BodyOptions::default().with_open(true));
             let surface = open.ok().and_then(|open| open.body.report().surface());
             lines.extend(surface.map(|surface| ("with --open", surface)));
             return lines;
         }
     };
-    let mut lines = vec![("solid", format!("yes: {}", shells(solid.report())))];
+    let mut lines = vec![("solid", format!("yes: {}", shell_counts(solid.report())))];
     lines.extend(notes.iter().filter_map(|note| match note {
-        // It has a line of its own.
+        // `info` has another line for it.
         Note::Merged(_) => None,
         Note::Crowded(_) => Some(("touches", format!("itself: {note}"))),
-        mended => Some(("mended", mended.to_string())),
+        repair => Some(("repaired", repair.to_string())),
     }));
     lines
 }
 
-/// Shells, cavities and holes through.
-fn shells(report: &SolidReport) -> String {
+/// Returns the numbers of shells, of cavities and of through holes.
+fn shell_counts(report: &SolidReport) -> String {
     let cavities = report.shells.iter().filter(|shell| shell.volume < 0.0).count();
     let mut text = counted(report.shells.len() - cavities, "shell", "shells");
     if cavities > 0 {
@@ -196,10 +206,13 @@ fn shells(report: &SolidReport) -> String {
     text
 }
 
-/// Renumbers features as the files do; returns the names of the files that they are of.
-fn name_features(bodies: [&Body; 2], features: &mut Option<FeaturesRecord>) -> [Option<String>; 2] {
+/// Renumbers the vertices of features as in their files. Returns the names of the two files; `None` without features.
+fn renumber_features(
+    bodies: [&Body; 2],
+    features: &mut Option<FeaturesRecord>,
+) -> [Option<String>; 2] {
     let Some(FeaturesRecord { moving, fixed }) = features else { return [None, None] };
-    [Some(bodies[0].renumber(moving)), Some(bodies[1].renumber(fixed))]
+    [Some(bodies[0].renumber_feature(moving)), Some(bodies[1].renumber_feature(fixed))]
 }
 
 #[cfg(test)]
@@ -208,7 +221,7 @@ mod tests {
 
     use super::*;
 
-    /// A cube of side 2 around a cavity of side 1, and beside it a cube of side 1 inside out.
+    /// Returns a cube of side 2 with a cavity of side 1, and next to it a reversed cube of side 1.
     fn cubes() -> Mesh {
         let cube = |low: f64, high: f64| block([low; 3], [high; 3]);
         let all = cube(0.0, 2.0).joined(&cube(0.5, 1.5).reversed());
@@ -217,14 +230,14 @@ mod tests {
     }
 
     #[test]
-    fn shells_cavities_and_turned_ones_are_told_apart() {
-        let lines = describe(&cubes());
+    fn description_counts_shells_cavities_and_reversed_shells() {
+        let lines = description_lines(&cubes());
         assert_eq!(lines[0], ("solid", "yes: 2 shells, 1 cavity, 0 holes through".into()));
-        assert_eq!(lines[1], ("mended", "1 shell turned, inside out in the file".into()));
+        assert_eq!(lines[1], ("repaired", "1 shell turned, inside out in the file".into()));
         assert_eq!(lines.len(), 2);
         let mut open = cubes();
         open.faces.pop();
-        let [("solid", what), ("with --open", surface)] = &describe(&open)[..] else {
+        let [("solid", what), ("with --open", surface)] = &description_lines(&open)[..] else {
             panic!("two lines")
         };
         assert!(what.starts_with("no: ") && what.contains("--open"), "{what}");

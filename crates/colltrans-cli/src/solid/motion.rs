@@ -1,4 +1,4 @@
-//! The question between two bodies made of parts that turn.
+//! Motions of two bodies of parts.
 
 use colltrans::motion::{Motion, MotionCast};
 use colltrans::record::{Ending, MotionRecord};
@@ -6,37 +6,38 @@ use colltrans::solid::StartOverlap;
 use colltrans::{QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 
-use super::{Body, PartsQuery, name_features};
+use super::{Body, PartsQuery, renumber_features};
 
-/// Two bodies and what they do.
+/// The query of two bodies and their motions.
 #[derive(Clone, Copy)]
 pub(crate) struct PartsMotion<'a> {
     pub(crate) bodies: [&'a Body; 2],
     pub(crate) motions: &'a [Motion; 2],
-    /// `None` for what the files' precision asks for.
+    /// `None` for the default, which follows from the precision of the files.
     pub(crate) tolerance: Option<f64>,
-    /// Whether it is asked how far they can go.
+    /// Whether the query is how far they can move, instead of their first contact.
     pub(crate) clears: bool,
     pub(crate) ignore_start_overlaps: bool,
-    /// The gap to be kept, or 0.
+    /// The minimum gap, or 0.
     pub(crate) keep: f64,
 }
 
 impl PartsMotion<'_> {
-    /// The answer, with the names of files: the first contact, or how far they can go; that too where what overlaps when
-    /// the motion begins is ignored, and what that is.
-    pub(crate) fn ask(&self) -> Result<MotionRecord, QueryError> {
+    /// Answers the query, with the names of files. If overlaps at the start are ignored, the first contact is computed as
+    /// a clearance, and the record lists these overlaps.
+    pub(crate) fn answer(&self) -> Result<MotionRecord, QueryError> {
         let cast = self.cast()?;
         let mut record = if self.clears || self.ignore_start_overlaps {
-            self.clearance(cast)?
+            self.clearance_record(cast)?
         } else {
             MotionRecord::of_solids(&cast.first_contact()?, &cast)
         };
-        [record.moving, record.fixed] = name_features(self.bodies, &mut record.features);
+        [record.moving, record.fixed] = renumber_features(self.bodies, &mut record.features);
         Ok(record)
     }
 
-    fn clearance(&self, cast: MotionCast<'_, Solid>) -> Result<MotionRecord, QueryError> {
+    /// Returns the record of a clearance. Without `clears` its outcome is that of a first contact.
+    fn clearance_record(&self, cast: MotionCast<'_, Solid>) -> Result<MotionRecord, QueryError> {
         let ignores = self.ignore_start_overlaps;
         let start = if ignores { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let cast = cast.with_start_overlap(start);
@@ -46,21 +47,25 @@ impl PartsMotion<'_> {
             record.outcome = if is_proven { Ending::Contact } else { Ending::Grazing };
         }
         if ignores || record.outcome == Ending::Overlapping {
-            record.start_overlaps = self.start().overlaps(cast.tolerance(), || ())?;
+            record.start_overlaps =
+                self.query_at_start().start_overlaps(cast.tolerance(), || ())?;
         }
         Ok(record)
     }
 
-    /// The question as the library has it.
+    /// Returns the cast of the library.
     pub(crate) fn cast(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().along(&self.motions[k]));
         let precisions = self.bodies.map(Body::precision);
         between_motions(moving, fixed, precisions, self.tolerance)?.keeping(self.keep)
     }
 
-    /// The bodies where the motion begins; of no direction.
-    fn start(&self) -> PartsQuery<'_> {
+    /// Returns a query at the start of the motions whose direction does not matter.
+    fn query_at_start(&self) -> PartsQuery<'_> {
         let poses = self.motions.each_ref().map(Motion::start);
-        PartsQuery { keep: self.keep, ..PartsQuery::placed(self.bodies, poses, self.tolerance) }
+        PartsQuery {
+            keep: self.keep,
+            ..PartsQuery::without_direction(self.bodies, poses, self.tolerance)
+        }
     }
 }

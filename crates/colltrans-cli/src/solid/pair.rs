@@ -1,15 +1,15 @@
-//! The questions about two placed bodies without a direction.
+//! Distances and depths of two placed bodies of parts.
 
 use colltrans::record::{Ending, PairQuestion, Record};
 use colltrans::{Pair, Pose, ProofFile, ProofFileError, QueryError, Solid};
 
-use super::{Body, PartsQuery, name_features};
+use super::{Body, PartsQuery, renumber_features};
 use crate::failure::{Code, Failure};
 
-/// A proof, where there is one; or why none could be made.
-type Proven = Result<Option<ProofFile>, Failure>;
+/// The proof, `None` if the answer has none, or the failure of computing it.
+type ProofResult = Result<Option<ProofFile>, Failure>;
 
-/// Two bodies where they are.
+/// Two placed bodies.
 #[derive(Clone, Copy)]
 pub(crate) struct PartsPair<'a> {
     pub(crate) bodies: [&'a Body; 2],
@@ -17,33 +17,40 @@ pub(crate) struct PartsPair<'a> {
 }
 
 impl<'a> PartsPair<'a> {
-    /// The answer, with the names of files.
-    pub(crate) fn ask(&self, question: PairQuestion) -> Result<Record, QueryError> {
+    /// Answers the question, with the names of files.
+    pub(crate) fn answer(&self, question: PairQuestion) -> Result<Record, QueryError> {
         let pair = self.pair()?;
-        self.named(question.ask_solids(&pair)?.record(&pair)?)
+        self.with_names(question.ask_solids(&pair)?.record(&pair)?)
     }
 
-    /// The same by the same search, and the proof of a distance, or of its comparison with a length.
-    pub(crate) fn prove(&self, question: PairQuestion) -> Result<(Record, Proven), QueryError> {
+    /// Answers the question, and proves the distance or its comparison with a length.
+    ///
+    /// # Errors
+    /// The query fails. A failure of the proof is part of the result.
+    pub(crate) fn prove(
+        &self,
+        question: PairQuestion,
+    ) -> Result<(Record, ProofResult), QueryError> {
         let [moving, fixed] = self.bodies.map(Body::solids);
         let pair = self.pair()?;
         match question.prove_solids(&pair, [&moving, &fixed]) {
-            Ok((answer, proof)) => Ok((self.named(answer.record(&pair)?)?, Ok(proof))),
+            Ok((answer, proof)) => Ok((self.with_names(answer.record(&pair)?)?, Ok(proof))),
             Err(ProofFileError::Query(error)) => Err(error),
             Err(error) => {
                 let failed = Failure::new(Code::Query, error.to_string());
-                Ok((self.ask(question)?, Err(failed)))
+                Ok((self.answer(question)?, Err(failed)))
             }
         }
     }
 
-    fn named(&self, mut record: Record) -> Result<Record, QueryError> {
+    /// Adds the names of files to a record.
+    fn with_names(&self, mut record: Record) -> Result<Record, QueryError> {
         match &mut record {
             Record::Distance(of) => {
-                [of.moving, of.fixed] = name_features(self.bodies, &mut of.features);
+                [of.moving, of.fixed] = renumber_features(self.bodies, &mut of.features);
             }
             Record::Depth(of) if of.outcome == Ending::Overlapping => {
-                of.start_overlaps = self.clearance().overlaps(0.0, || ())?;
+                of.start_overlaps = self.parts_query().start_overlaps(0.0, || ())?;
                 let deepest = of.start_overlaps.first();
                 (of.moving, of.fixed) =
                     deepest.map_or((None, None), |of| (of.moving.clone(), of.fixed.clone()));
@@ -53,18 +60,19 @@ impl<'a> PartsPair<'a> {
         Ok(record)
     }
 
-    /// How far lengths may be off by the precision of the files and by rounding.
-    pub(crate) fn error(&self) -> f64 {
-        self.clearance().error()
+    /// Returns the error of lengths: the precision of the files, and rounding.
+    pub(crate) fn length_error(&self) -> f64 {
+        self.parts_query().length_error()
     }
 
+    /// Returns the pair of the library.
     fn pair(&self) -> Result<Pair<'a, Solid>, QueryError> {
         let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().at(self.poses[k]));
         Pair::new(moving, fixed)
     }
 
-    /// The same bodies, as they are, in a query whose direction plays no part.
-    const fn clearance(&self) -> PartsQuery<'a> {
-        PartsQuery::placed(self.bodies, self.poses, Some(0.0))
+    /// Returns a query of the nominal bodies whose direction does not matter.
+    const fn parts_query(&self) -> PartsQuery<'a> {
+        PartsQuery::without_direction(self.bodies, self.poses, Some(0.0))
     }
 }

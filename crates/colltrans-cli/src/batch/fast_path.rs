@@ -78,7 +78,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// A name that comes twice is not usual.
+/// Sets a value; returns `None` if it was set before.
 fn once<T>(place: &mut Option<T>, value: T) -> Option<()> {
     place.replace(value).is_none().then_some(())
 }

@@ -1,28 +1,31 @@
-//! How large the scene is drawn, and which part of it.
+//! Scale and position of the bodies on the page.
 //!
-//! Bodies may differ in size by any factor and start at any distance: the smaller one
-//! and the contact rule, the larger one may be cut by the window.
+//! Bodies may differ in size by any factor and start at any distance. The smaller body and the contact determine the
+//! scale; the window may cut the larger one.
 
 use colltrans::glam::DVec2;
 use colltrans_picture::{Frame, View};
 
 use super::size::working_size;
 use super::subject::Subject;
-use super::{Cast, Solid};
+use super::{PictureBodies, Solid};
 
+/// Width of the page in pixels.
 const PAGE_WIDTH: f64 = 720.0;
+/// Maximum height of the window in pixels.
 const WINDOW_HEIGHT: f64 = 520.0;
-/// Room for arrows and labels around the bodies.
+/// Space for arrows and labels around the bodies, in pixels.
 const MARGIN: DVec2 = DVec2::new(84.0, 62.0);
+/// Height of the headline and the legend, in pixels.
 const CAPTION_HEIGHT: f64 = 44.0;
-/// Height of a line of details in the caption.
+/// Height of a line of details in the caption, in pixels.
 pub(super) const LINE_HEIGHT: f64 = 17.0;
-/// Bodies are shown whole unless one is larger than the other by this factor;
-const WHOLE: f64 = 8.0;
-/// then the larger one is shown up to this many working sizes from the contact.
-const REACH: f64 = 1.4;
+/// Maximum ratio of a body's radius to a third of the working size at which both bodies are shown completely.
+const MAX_SIZE_RATIO: f64 = 8.0;
+/// Distance from the contact, in working sizes, up to which a larger body is shown.
+const CUT_DISTANCE: f64 = 1.4;
 
-/// Scale and place of the scene on the page.
+/// Scale and position of the bodies on the page.
 pub(super) struct Layout {
     scale: f64,
     centre_in_view: DVec2,
@@ -32,21 +35,22 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn of(cast: &Cast, subject: &Subject, view: &View) -> Self {
-        let radii = [cast.stop.ball().1, cast.fixed.ball().1];
-        let size = working_size(radii[0], radii[1], cast.way.length());
-        let is_whole = radii[0].max(radii[1]) <= WHOLE * size / 3.0;
-        let reach = if is_whole { f64::INFINITY } else { REACH * size };
-        // The origin is the contact; the moving body is near it where it stops.
-        let mut frame = part_near(&cast.stop, DVec2::ZERO, reach, view);
-        frame = union(frame, part_near(&cast.fixed, DVec2::ZERO, reach, view));
-        if let Some(start) = &cast.start {
-            frame = union(frame, part_near(start, -view.project(cast.way), reach, view));
+    /// Computes the layout that shows all bodies, ghosts and marks of a picture.
+    pub(super) fn compute(bodies: &PictureBodies, subject: &Subject, view: &View) -> Self {
+        let radii = [bodies.stop.bounding_sphere().1, bodies.fixed.bounding_sphere().1];
+        let size = working_size(radii[0], radii[1], bodies.way.length());
+        let shows_all = radii[0].max(radii[1]) <= MAX_SIZE_RATIO * size / 3.0;
+        let cut = if shows_all { f64::INFINITY } else { CUT_DISTANCE * size };
+        // The origin is the contact. Both bodies and all ghosts are near it.
+        let mut frame = visible_frame(&bodies.stop, DVec2::ZERO, cut, view);
+        frame = union(frame, visible_frame(&bodies.fixed, DVec2::ZERO, cut, view));
+        if let Some(start) = &bodies.start {
+            frame = union(frame, visible_frame(start, -view.project(bodies.way), cut, view));
         }
-        for (_, ghost) in &cast.ghosts {
-            frame = union(frame, part_near(ghost, DVec2::ZERO, reach, view));
+        for (_, ghost) in &bodies.ghosts {
+            frame = union(frame, visible_frame(ghost, DVec2::ZERO, cut, view));
         }
-        for corner in subject.corners(cast).into_iter().map(|p| view.project(p)) {
+        for corner in subject.extra_points(bodies).into_iter().map(|p| view.project(p)) {
             frame = union(frame, Frame { low: corner, high: corner });
         }
         let extent = (frame.high - frame.low).max(DVec2::splat(1e-3 * size));
@@ -64,25 +68,26 @@ impl Layout {
         }
     }
 
-    /// From the view's plane (y upwards) to the page (y downwards).
+    /// Maps a point of the view plane (y upwards) to the page (y downwards).
     pub(super) fn on_page(&self, p: DVec2) -> DVec2 {
         let q = (p - self.centre_in_view) * self.scale;
         self.centre_on_page + DVec2::new(q.x, -q.y)
     }
 }
 
-/// The box of what lies within `reach` of a point.
-fn part_near(body: &Solid, point: DVec2, reach: f64, view: &View) -> Frame {
+/// Returns the frame of the body's projection, cut at the distance `cut` from a point.
+fn visible_frame(body: &Solid, point: DVec2, cut: f64, view: &View) -> Frame {
     let first = view.project(body.vertices[0]);
     let (low, high) = body
         .vertices
         .iter()
         .map(|&v| view.project(v))
         .fold((first, first), |(l, h), p| (l.min(p), h.max(p)));
-    let near = |p: DVec2| p.clamp(point - reach, point + reach);
-    Frame { low: near(low), high: near(high) }
+    let clamp = |p: DVec2| p.clamp(point - cut, point + cut);
+    Frame { low: clamp(low), high: clamp(high) }
 }
 
+/// Returns the smallest frame that contains both.
 fn union(a: Frame, b: Frame) -> Frame {
     Frame { low: a.low.min(b.low), high: a.high.max(b.high) }
 }

@@ -1,7 +1,7 @@
-//! The size that a picture is made for, which of two bodies may be of very different ones.
+//! The working size of a picture, to which its scale and its tolerances are relative.
 
-/// The size that the picture is made for: that of the smaller body, or of the larger one while
-/// both can be seen well. Positive also for two points.
+/// Returns the working size: the radius of the larger body, but at most three times that of the smaller one. Points and
+/// short segments count as larger, so that the size is positive even for two points.
 pub(super) fn working_size(moving: f64, fixed: f64, way: f64) -> f64 {
     let (small, large) = (moving.min(fixed), moving.max(fixed));
     // A point or a short segment has no size of its own.

@@ -1,30 +1,29 @@
-//! A placed body as it is seen: which faces, which edges, in which look.
+//! A placed body, and how a convex one is drawn.
 //!
-//! A convex body hides its own parts exactly where a face looks away from the viewer, so no two of
-//! its visible faces overlap on the page. An edge between a visible and a hidden face is
-//! part of the silhouette.
+//! A face of a convex body is hidden exactly if it looks away from the viewer. Therefore no two visible faces overlap on
+//! the page. An edge between a visible and a hidden face belongs to the silhouette.
 
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::{Aabb, ConvexPolyhedron, Feature, Pose};
 use colltrans_picture::{Page, Paint, SHADES, SMOOTH, Stroke, View};
 
-/// A placed body, relative to a point of the scene.
+/// A placed body, relative to the origin of the picture.
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
     pub(super) vertices: Vec<DVec3>,
     pub(super) faces: Vec<Vec<u32>>,
-    /// Outward normals as long as the faces' areas.
+    /// Outward normals of the faces with their areas as lengths.
     pub(super) areas: Vec<DVec3>,
-    /// Vertices and the faces on both sides.
+    /// The two vertices and the two faces of each edge; empty for triangle meshes.
     edges: Vec<([u32; 2], [u32; 2])>,
 }
 
-/// Hidden edges are drawn for bodies with no more edges than this.
-const FEW_EDGES: usize = 64;
-/// On smooth surfaces, edges are drawn if they are longer than this on average, in pixels.
-const DENSE: f64 = 7.0;
+/// Maximum number of edges of a body whose hidden edges are drawn.
+const MAX_HIDDEN_EDGES: usize = 64;
+/// Mean length of edges in pixels above which the smooth edges of a body are drawn.
+const MIN_EDGE_LENGTH: f64 = 7.0;
 
-/// A feature by the numbers of the body that is drawn.
+/// A feature of a drawn body, by the numbers of its vertices or of its face.
 #[derive(Clone, Copy)]
 pub(super) enum Mark {
     Vertex(u32),
@@ -33,7 +32,8 @@ pub(super) enum Mark {
 }
 
 impl Mark {
-    pub(super) fn of(feature: Feature, body: &ConvexPolyhedron) -> Self {
+    /// Returns the mark of a feature of a convex body.
+    pub(super) fn from_feature(feature: Feature, body: &ConvexPolyhedron) -> Self {
         match (feature, &feature.own_vertices(body)[..]) {
             (Feature::Face(face), _) => Self::Face(face.0),
             (Feature::Edge(_), &[a, b]) => Self::Edge([a.0, b.0]),
@@ -43,47 +43,49 @@ impl Mark {
 }
 
 impl Solid {
+    /// Returns a convex body at a pose, relative to `origin`.
     pub(super) fn new(body: &ConvexPolyhedron, pose: &Pose, origin: DVec3) -> Self {
-        // The difference of the translations first: it is exact where the bodies are near.
+        // The translations are subtracted first, because their difference is exact for near bodies.
         let offset = pose.translation() - origin;
         let vertices: Vec<DVec3> =
             body.vertices().iter().map(|&v| pose.matrix() * v + offset).collect();
         let faces: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-        let areas = faces.iter().map(|face| area(&vertices, face)).collect();
-        let edges = if faces.is_empty() { Vec::new() } else { edges(&faces) };
+        let areas = faces.iter().map(|face| vector_area(&vertices, face)).collect();
+        let edges = if faces.is_empty() { Vec::new() } else { edges_of_faces(&faces) };
         Self { vertices, faces, areas, edges }
     }
 
-    /// Triangles, relative to a point, with outward normals; edges are not looked at.
-    pub(super) fn of_triangles(vertices: Vec<DVec3>, triangles: &[[u32; 3]]) -> Self {
+    /// Returns a body of triangles with outward normals, without edges.
+    pub(super) fn from_triangles(vertices: Vec<DVec3>, triangles: &[[u32; 3]]) -> Self {
         let faces: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
-        let areas = faces.iter().map(|face| area(&vertices, face)).collect();
+        let areas = faces.iter().map(|face| vector_area(&vertices, face)).collect();
         Self { vertices, faces, areas, edges: Vec::new() }
     }
 
-    pub(super) fn moved(&self, by: DVec3) -> Self {
+    /// Returns the body translated by a vector.
+    pub(super) fn translated(&self, by: DVec3) -> Self {
         let vertices = self.vertices.iter().map(|&v| v + by).collect();
         Self { vertices, ..self.clone() }
     }
 
-    /// Centre of the box around the body, and half its diagonal.
-    pub(super) fn ball(&self) -> (DVec3, f64) {
+    /// Returns the center of the bounding box, and half of its diagonal.
+    pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {
         let bounds = Aabb::of_points(self.vertices.iter().copied());
         (bounds.center(), 0.5 * bounds.size().length())
     }
 
-    /// The vertices furthest along `n` (within a part of the body's size) and their mean.
-    pub(super) fn support(&self, n: DVec3) -> DVec3 {
+    /// Returns the mean of the vertices that are farthest along `n`, to within a share of the body's size.
+    pub(super) fn support_center(&self, n: DVec3) -> DVec3 {
         let height = |v: &DVec3| v.dot(n);
         let top = self.vertices.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
-        let slack = 1e-9 * self.ball().1;
+        let slack = 1e-9 * self.bounding_sphere().1;
         let at_top: Vec<DVec3> =
             self.vertices.iter().copied().filter(|v| height(v) >= top - slack).collect();
         at_top.iter().sum::<DVec3>() / at_top.len() as f64
     }
 
-    /// Draws the body opaque: faces, visible edges, silhouette, and hidden edges of simple bodies.
+    /// Draws the opaque body: faces, visible edges, silhouette, and hidden edges if there are few.
     pub(super) fn draw(
         &self,
         page: &mut Page,
@@ -91,18 +93,18 @@ impl Solid {
         paint: &Paint,
         on_page: impl Fn(DVec3) -> DVec2,
     ) {
-        let flat: Vec<DVec2> = self.vertices.iter().map(|&v| on_page(v)).collect();
-        if Self::draw_low(page, paint, &flat) {
+        let points: Vec<DVec2> = self.vertices.iter().map(|&v| on_page(v)).collect();
+        if Self::draw_point_or_segment(page, paint, &points) {
             return;
         }
         let front: Vec<bool> = self.areas.iter().map(|a| a.dot(view.toward) > 0.0).collect();
-        self.fill(page, view, paint, &flat, &front);
-        self.draw_edges(page, paint, &flat, &front);
+        self.fill_faces(page, view, paint, &points, &front);
+        self.draw_edges(page, paint, &points, &front);
     }
 
-    /// A point or a segment; `false` for anything else.
-    fn draw_low(page: &mut Page, paint: &Paint, flat: &[DVec2]) -> bool {
-        match *flat {
+    /// Draws a point or a segment. Returns `false` for other bodies.
+    fn draw_point_or_segment(page: &mut Page, paint: &Paint, points: &[DVec2]) -> bool {
+        match *points {
             [point] => page.dot(point, 4.0, paint.line, "#ffffff"),
             [a, b] => page.haloed(Stroke::solid(paint.line, 3.0), [a, b]),
             _ => return false,
@@ -110,29 +112,38 @@ impl Solid {
         true
     }
 
-    fn fill(&self, page: &mut Page, view: &View, paint: &Paint, flat: &[DVec2], front: &[bool]) {
+    /// Fills the visible faces by their shades.
+    fn fill_faces(
+        &self,
+        page: &mut Page,
+        view: &View,
+        paint: &Paint,
+        points: &[DVec2],
+        front: &[bool],
+    ) {
         let mut by_shade: Vec<Vec<Vec<DVec2>>> = vec![Vec::new(); SHADES + 1];
         for (face, corners) in self.faces.iter().enumerate().filter(|(f, _)| front[*f]) {
             let lit = view.brightness(self.areas[face].normalize_or_zero());
             let shade = (lit * SHADES as f64).round() as usize;
-            by_shade[shade].push(corners.iter().map(|&v| flat[v as usize]).collect());
+            by_shade[shade].push(corners.iter().map(|&v| points[v as usize]).collect());
         }
         for (shade, polygons) in by_shade.into_iter().enumerate() {
             let colour = paint.shade(shade);
-            // The thin rim closes the seams that anti-aliasing leaves between faces.
-            let look = format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.7""#);
-            page.polygons(&look, polygons);
+            // The thin stroke closes the seams of anti-aliasing between faces.
+            let style = format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.7""#);
+            page.polygons(&style, polygons);
         }
     }
 
-    fn draw_edges(&self, page: &mut Page, paint: &Paint, flat: &[DVec2], front: &[bool]) {
-        let ends = |[a, b]: [u32; 2]| [flat[a as usize], flat[b as usize]];
-        let is_seen = |f: u32| front[f as usize];
+    /// Draws the edges of an opaque body.
+    fn draw_edges(&self, page: &mut Page, paint: &Paint, points: &[DVec2], front: &[bool]) {
+        let ends = |[a, b]: [u32; 2]| [points[a as usize], points[b as usize]];
+        let is_visible = |f: u32| front[f as usize];
         let length = |edge: [u32; 2]| ends(edge)[0].distance(ends(edge)[1]);
         let mean = self.edges.iter().map(|e| length(e.0)).sum::<f64>() / self.edges.len() as f64;
         let (mut outline, mut sharp, mut smooth, mut hidden) = (vec![], vec![], vec![], vec![]);
         for &(edge, [f, g]) in &self.edges {
-            let list = match (is_seen(f), is_seen(g)) {
+            let list = match (is_visible(f), is_visible(g)) {
                 (true, true) if self.is_sharp(f, g) => &mut sharp,
                 (true, true) => &mut smooth,
                 (false, false) => &mut hidden,
@@ -140,24 +151,25 @@ impl Solid {
             };
             list.push(ends(edge));
         }
-        if self.edges.len() <= FEW_EDGES {
+        if self.edges.len() <= MAX_HIDDEN_EDGES {
             page.segments(Stroke::dashed(paint.fine, 0.7, "2.5 3"), hidden);
         }
-        if mean > DENSE {
+        if mean > MIN_EDGE_LENGTH {
             page.segments(Stroke::solid(paint.fine, 0.45), smooth);
         }
-        if mean > 0.5 * DENSE {
+        if mean > 0.5 * MIN_EDGE_LENGTH {
             page.segments(Stroke::solid(paint.line, 0.9), sharp);
         }
         page.segments(Stroke::solid(paint.line, 1.6), outline);
     }
 
+    /// Checks whether the normals of two faces differ by more than a smooth edge permits.
     fn is_sharp(&self, f: u32, g: u32) -> bool {
         let normal = |f: u32| self.areas[f as usize].normalize_or_zero();
         normal(f).dot(normal(g)) < SMOOTH
     }
 
-    /// Draws the body as a light outline that hides nothing.
+    /// Draws the body as a ghost: a translucent outline that hides nothing.
     pub(super) fn draw_ghost(
         &self,
         page: &mut Page,
@@ -166,8 +178,8 @@ impl Solid {
         on_page: impl Fn(DVec3) -> DVec2,
     ) {
         page.open_group(r#"opacity="0.75""#);
-        let flat: Vec<DVec2> = self.vertices.iter().map(|&v| on_page(v)).collect();
-        if !Self::draw_low(page, paint, &flat) {
+        let points: Vec<DVec2> = self.vertices.iter().map(|&v| on_page(v)).collect();
+        if !Self::draw_point_or_segment(page, paint, &points) {
             let front: Vec<bool> = self.areas.iter().map(|a| a.dot(view.toward) > 0.0).collect();
             let (outline, inner): (Vec<_>, Vec<_>) = self
                 .edges
@@ -177,10 +189,10 @@ impl Solid {
                     front[*f as usize] != front[*g as usize] || self.is_sharp(*f, *g)
                 })
                 .partition(|(_, [f, g])| front[*f as usize] != front[*g as usize]);
-            let shape = convex_outline(&flat);
+            let shape = convex_outline(&points);
             page.polygons(r##"fill="#dce7f5" fill-opacity="0.55" stroke="none""##, [shape]);
-            let ends = |&([a, b], _): &([u32; 2], _)| [flat[a as usize], flat[b as usize]];
-            if self.edges.len() <= 10 * FEW_EDGES {
+            let ends = |&([a, b], _): &([u32; 2], _)| [points[a as usize], points[b as usize]];
+            if self.edges.len() <= 10 * MAX_HIDDEN_EDGES {
                 page.segments(Stroke::solid(paint.fine, 0.6), inner.iter().map(ends));
             }
             page.segments(Stroke::solid(paint.line, 0.9), outline.iter().map(ends));
@@ -188,9 +200,8 @@ impl Solid {
         page.close_group();
     }
 
-    /// Marks the visible part of a feature: a vertex, an edge or the rim of a face. Bodies that
-    /// are drawn later cover it.
-    pub(super) fn mark(
+    /// Marks a feature if it is visible: a vertex, an edge or the boundary of a face. Bodies that are drawn later cover it.
+    pub(super) fn mark_visible(
         &self,
         page: &mut Page,
         view: &View,
@@ -201,7 +212,7 @@ impl Solid {
         if !self.is_in_front(view, feature) {
             return;
         }
-        match self.lines(feature, &on_page) {
+        match self.feature_edges(feature, &on_page) {
             lines if lines.is_empty() => {
                 page.dot(on_page(self.first_vertex(feature)), 3.4, colour, "#ffffff");
             }
@@ -209,7 +220,7 @@ impl Solid {
         }
     }
 
-    /// Marks all of a feature through whatever covers it.
+    /// Marks a feature by dashes, also if it is covered.
     pub(super) fn mark_hidden(
         &self,
         page: &mut Page,
@@ -217,7 +228,7 @@ impl Solid {
         colour: &'static str,
         on_page: impl Fn(DVec3) -> DVec2,
     ) {
-        match self.lines(feature, &on_page) {
+        match self.feature_edges(feature, &on_page) {
             lines if lines.is_empty() => {
                 page.dot(on_page(self.first_vertex(feature)), 3.0, "none", colour);
             }
@@ -225,6 +236,7 @@ impl Solid {
         }
     }
 
+    /// Returns a vertex of a feature.
     fn first_vertex(&self, feature: Mark) -> DVec3 {
         let vertex = match feature {
             Mark::Vertex(v) | Mark::Edge([v, _]) => v,
@@ -233,8 +245,8 @@ impl Solid {
         self.vertices[vertex as usize]
     }
 
-    /// The edges of a feature; none of a vertex.
-    fn lines(&self, feature: Mark, on_page: impl Fn(DVec3) -> DVec2) -> Vec<[DVec2; 2]> {
+    /// Returns the edges of a feature on the page; none for a vertex.
+    fn feature_edges(&self, feature: Mark, on_page: impl Fn(DVec3) -> DVec2) -> Vec<[DVec2; 2]> {
         let line = |a: u32, b: u32| [a, b].map(|v| on_page(self.vertices[v as usize]));
         match feature {
             Mark::Vertex(_) => Vec::new(),
@@ -250,29 +262,34 @@ impl Solid {
         }
     }
 
-    /// Whether a face that the feature belongs to looks towards the viewer.
+    /// Checks whether a face of the feature looks towards the viewer.
     fn is_in_front(&self, view: &View, feature: Mark) -> bool {
         let has = |face: &Vec<u32>| match feature {
             Mark::Vertex(v) => face.contains(&v),
             Mark::Edge(ends) => ends.iter().all(|v| face.contains(v)),
             Mark::Face(_) => false,
         };
-        let looks = |area: &DVec3| area.dot(view.toward) > 0.0;
+        let faces_viewer = |area: &DVec3| area.dot(view.toward) > 0.0;
         match feature {
-            Mark::Face(face) => looks(&self.areas[face as usize]),
+            Mark::Face(face) => faces_viewer(&self.areas[face as usize]),
             _ if self.faces.is_empty() => true,
-            _ => self.faces.iter().zip(&self.areas).any(|(face, area)| looks(area) && has(face)),
+            _ => self
+                .faces
+                .iter()
+                .zip(&self.areas)
+                .any(|(face, area)| faces_viewer(area) && has(face)),
         }
     }
 }
 
-/// The vector area of a face: half the sum of the cross products along its rim.
-fn area(vertices: &[DVec3], face: &[u32]) -> DVec3 {
+/// Returns the vector area of a face: half of the sum of the cross products along its boundary.
+fn vector_area(vertices: &[DVec3], face: &[u32]) -> DVec3 {
     let corner = |i: usize| vertices[face[i] as usize] - vertices[face[0] as usize];
     (1..face.len() - 1).map(|i| 0.5 * corner(i).cross(corner(i + 1))).sum()
 }
 
-fn edges(faces: &[Vec<u32>]) -> Vec<([u32; 2], [u32; 2])> {
+/// Returns the edges of a closed surface, each with its two vertices and its two faces.
+fn edges_of_faces(faces: &[Vec<u32>]) -> Vec<([u32; 2], [u32; 2])> {
     let mut sides = Vec::new();
     for (index, face) in faces.iter().enumerate() {
         for (i, &from) in face.iter().enumerate() {
@@ -285,7 +302,7 @@ fn edges(faces: &[Vec<u32>]) -> Vec<([u32; 2], [u32; 2])> {
     sides.chunks_exact(2).map(|pair| (pair[0].0, [pair[0].1, pair[1].1])).collect()
 }
 
-/// The convex outline of points on the page (monotone chain).
+/// Returns the convex hull of points on the page (monotone chain).
 pub(super) fn convex_outline(points: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));

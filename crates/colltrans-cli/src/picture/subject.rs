@@ -1,69 +1,72 @@
-//! What a picture has to tell, taken from the answer.
+//! The content of a picture, taken from the answer.
 
 use colltrans::glam::DVec3;
 use colltrans::{Clearance, Contact, ContactRange, Separated, WhyFree};
 
 use super::size::working_size;
 use super::solid::Mark;
-use super::{Cast, Scene, Solid};
+use super::{CastPicture, PictureBodies, Solid};
 use crate::numbers::decade;
 
-/// What touches, of either body as it is drawn.
+/// The features in contact.
 #[derive(Clone, Copy)]
 pub(super) struct Marks {
     pub(super) moving: Mark,
     pub(super) fixed: Mark,
 }
 
-/// What is shown and said.
+/// The content of a picture.
 pub(super) struct Subject {
-    /// The point of the world that coordinates are relative to.
+    /// The origin of the picture's coordinates, in the world.
     pub(super) origin: DVec3,
-    /// How far the moving body goes from its start until it stops, as a length.
+    /// Length of the translation from the start of the moving body to its stop.
     pub(super) stop: f64,
-    /// The contact normal, or that of the separating plane.
+    /// The contact normal, or the normal of the separating plane.
     pub(super) normal: DVec3,
-    /// Whether the bodies touch where the moving one stops, which is at the origin.
+    /// Whether the bodies touch at the stop; the contact is then the origin.
     pub(super) touches: bool,
-    /// What touches there.
+    /// The features in contact.
     pub(super) marks: Option<Marks>,
+    /// Margin of separated bodies.
     pub(super) margin: Option<f64>,
-    /// The ends of the shortest way between the bodies, and what it is labelled with.
+    /// The ends of the shortest way between the bodies, and its label.
     pub(super) link: Option<([DVec3; 2], String)>,
-    /// Whether both bodies have the origin.
+    /// Whether the origin is a common point of the bodies.
     pub(super) meets: bool,
-    /// Whether nothing moves.
+    /// Whether no translation is drawn.
     pub(super) is_still: bool,
-    /// What the way is labelled with.
+    /// Label of the translation.
     pub(super) way: String,
     pub(super) headline: String,
     pub(super) details: Vec<String>,
 }
 
 impl Subject {
-    pub(super) fn of(scene: &Scene<'_>) -> Self {
-        match scene.answer {
+    /// Returns the content of the picture of a cast.
+    pub(super) fn from_cast(picture: &CastPicture<'_>) -> Self {
+        match picture.answer {
             ContactRange::Contact { first, last } => {
-                Self::of_contact(scene, [first, last], "Contact", None)
+                Self::from_contact(picture, [first, last], "Contact", None)
             }
             ContactRange::Grazing { first, last } => {
                 let overlap = short(first.overlap);
                 let also = format!("the bodies slide along each other, overlapping by {overlap}");
-                Self::of_contact(scene, [&first.contact, &last.contact], "Grazing", Some(also))
+                Self::from_contact(picture, [&first.contact, &last.contact], "Grazing", Some(also))
             }
-            ContactRange::Separated(separated) => Self::of_separated(scene, separated),
+            ContactRange::Separated(separated) => Self::from_separation(picture, separated),
         }
     }
 
-    fn of_contact(
-        scene: &Scene<'_>,
+    /// Returns the content for a contact.
+    fn from_contact(
+        picture: &CastPicture<'_>,
         [contact, last]: [&Contact; 2],
         name: &str,
         also: Option<String>,
     ) -> Self {
-        let length = scene.cast.direction().length();
-        let (features, points) = (contact.features(scene.cast), contact.points(scene.cast));
-        let way = quantity(contact.translation, length);
+        let length = picture.cast.direction().length();
+        let (features, points) = (contact.features(picture.cast), contact.points(picture.cast));
+        let way = translation_text(contact.translation, length);
         let proof = &contact.certificate;
         let touch = format!(
             "{} of the moving body on {} of the fixed body",
@@ -73,21 +76,21 @@ impl Subject {
         let mut details: Vec<String> = also.into_iter().collect();
         details.push(touch);
         let agreement = if proof.upper.is_finite() {
-            // The gap itself changes with the last bits of a search.
+            // A floor, because the gap itself depends on the last bits of a search.
             let within = proof.gap().max(proof.rounding);
             format!("proven lower and upper bound of t agree to {within:.0e}")
         } else {
             "t is a proven lower bound".into()
         };
-        details.push(format!("normal n = {}; {agreement}", components(contact.normal)));
+        details.push(format!("normal n = {}; {agreement}", vector_text(contact.normal)));
         Self {
             origin: points.on_fixed,
             stop: contact.translation * length,
             normal: contact.normal,
             touches: true,
             marks: Some(Marks {
-                moving: Mark::of(features.moving, scene.cast.moving()),
-                fixed: Mark::of(features.fixed, scene.cast.fixed()),
+                moving: Mark::from_feature(features.moving, picture.cast.moving()),
+                fixed: Mark::from_feature(features.fixed, picture.cast.fixed()),
             }),
             margin: None,
             link: None,
@@ -105,15 +108,15 @@ impl Subject {
         }
     }
 
-    /// The bodies pass each other: shown where they are side by side.
-    fn of_separated(scene: &Scene<'_>, separated: &Separated) -> Self {
+    /// Returns the content for bodies that pass each other. The stop is where they are side by side.
+    fn from_separation(picture: &CastPicture<'_>, separated: &Separated) -> Self {
         let normal = separated.certificate.normal;
-        let cast = scene.cast;
+        let cast = picture.cast;
         let origin = cast.fixed_pose().transform_point(cast.fixed().vertices()[0]);
         let moving = Solid::new(cast.moving(), &cast.moving_pose(), origin);
         let fixed = Solid::new(cast.fixed(), &cast.fixed_pose(), origin);
         let unit = cast.direction().normalize();
-        let ahead = (fixed.support(-normal) - moving.support(normal)).dot(unit);
+        let ahead = (fixed.support_center(-normal) - moving.support_center(normal)).dot(unit);
         let margin = separated.certificate.margin;
         Self {
             origin,
@@ -130,14 +133,14 @@ impl Subject {
             details: vec![format!(
                 "margin (gap along the normal n) {}, n = {} of the separating plane",
                 short(margin),
-                components(normal)
+                vector_text(normal)
             )],
         }
     }
 
-    /// The normal, or its opposite where that shows the contact face of the moving body: a face is
-    /// seen from its own side, and the body that has only a vertex or an edge there hides less.
-    pub(super) fn looked_along(&self) -> DVec3 {
+    /// Returns the preferred direction of the view: the normal, or its opposite if only the moving body touches with a
+    /// face. A face is visible from its own side, and a vertex or an edge of the other body hides little of it.
+    pub(super) fn view_direction(&self) -> DVec3 {
         let is_face = |mark| matches!(mark, Mark::Face(_));
         match self.marks {
             Some(m) if is_face(m.moving) && !is_face(m.fixed) => -self.normal,
@@ -145,37 +148,39 @@ impl Subject {
         }
     }
 
-    /// Ends of the gap between separated bodies where the moving one stops, along the normal.
-    pub(super) fn gap(&self, cast: &Cast) -> Option<[DVec3; 2]> {
-        let from = cast.stop.support(self.normal);
+    /// Returns the ends of the gap between separated bodies at the stop, along the normal; `None` for other answers.
+    pub(super) fn margin_ends(&self, cast: &PictureBodies) -> Option<[DVec3; 2]> {
+        let from = cast.stop.support_center(self.normal);
         self.margin.map(|margin| [from, from + margin * self.normal])
     }
 
-    /// What has to be seen besides the bodies.
-    pub(super) fn corners(&self, cast: &Cast) -> Vec<DVec3> {
+    /// Returns the points that must be visible in addition to the bodies.
+    pub(super) fn extra_points(&self, cast: &PictureBodies) -> Vec<DVec3> {
         let link = self.link.iter().flat_map(|(ends, _)| *ends);
-        self.plane(cast).into_iter().flatten().chain(link).collect()
+        self.plane_corners(cast).into_iter().flatten().chain(link).collect()
     }
 
-    /// A piece of the separating plane, midway in the gap.
-    pub(super) fn plane(&self, cast: &Cast) -> Option<[DVec3; 4]> {
-        let [from, to] = self.gap(cast)?;
+    /// Returns the corners of a square of the separating plane in the middle of the gap; `None` for other answers.
+    pub(super) fn plane_corners(&self, cast: &PictureBodies) -> Option<[DVec3; 4]> {
+        let [from, to] = self.margin_ends(cast)?;
         let along = cast.way.normalize_or(self.normal.any_orthonormal_vector());
         let across = self.normal.cross(along);
-        let half = 1.1 * working_size(cast.stop.ball().1, cast.fixed.ball().1, 0.0);
+        let half =
+            1.1 * working_size(cast.stop.bounding_sphere().1, cast.fixed.bounding_sphere().1, 0.0);
         let middle = 0.5 * (from + to);
         let corner = |a: f64, b: f64| middle + a * half * along + b * half * across;
         Some([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)])
     }
 }
 
-/// A unit vector, with rounding noise as 0.
-pub(super) fn components(unit: DVec3) -> String {
+/// Returns a unit vector as text, with rounding noise as 0.
+pub(super) fn vector_text(unit: DVec3) -> String {
     let [x, y, z] = unit.to_array().map(|c| if c.abs() < 1e-12 { 0.0 } else { c }).map(short);
     format!("({x}, {y}, {z})")
 }
 
-pub(super) fn quantity(translation: f64, length: f64) -> String {
+/// Returns a translation, and its length if the direction does not have length 1.
+pub(super) fn translation_text(translation: f64, length: f64) -> String {
     if (length - 1.0).abs() < 1e-12 {
         format!("t = {}", short(translation))
     } else {
@@ -183,7 +188,7 @@ pub(super) fn quantity(translation: f64, length: f64) -> String {
     }
 }
 
-/// A number in up to six digits.
+/// Returns a number with at most six digits.
 pub(super) fn short(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude == 0.0 {
@@ -206,7 +211,7 @@ mod tests {
     use super::short;
 
     #[test]
-    fn numbers_are_short() {
+    fn numbers_have_at_most_six_digits() {
         let shown = [0.0, -0.0, 2.5, -1.0 / 3.0, 123_456.78, 1e-16, 2e7, 1e-4].map(short);
         assert_eq!(shown, ["0", "0", "2.5", "-0.333333", "123457", "1.00e-16", "2.00e7", "0.0001"]);
     }

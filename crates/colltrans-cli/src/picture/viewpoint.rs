@@ -1,28 +1,29 @@
-//! Where to look from: the view that shows the motion and the contact.
+//! Chooses the view that shows the motion and the contact.
 //!
-//! Notation. `v` is the unit vector towards the viewer, `d` the direction of motion, `n` the
-//! contact normal. The viewer stands above the ground.
+//! Notation: `v` is the unit vector towards the viewer, `d` the direction of motion, `n` the contact normal. The viewer is
+//! above the ground.
 //!
-//! Functions of `libm`, not of the platform: a view that wins by a last bit is the same everywhere.
+//! The functions are those of `libm`, so that the choice is the same on all platforms.
 
 use colltrans::glam::DVec3;
 use colltrans_picture::View;
 
 use super::solid::Solid;
 
-/// Heights above the horizon that are tried, in degrees.
+/// Elevations above the horizon that are tried, in degrees.
 const ELEVATIONS: [f64; 6] = [22.0, 12.0, 32.0, 45.0, 58.0, 72.0];
+/// Number of azimuths that are tried for each elevation.
 const AZIMUTHS: u32 = 72;
-/// Bodies with more faces look alike from everywhere.
-const MANY_FACES: usize = 1000;
+/// Number of faces above which the shape of a body does not affect the score.
+const MAX_SHAPE_FACES: usize = 1000;
 
-/// The view that shows `d` and `n` at length and much of the shapes of both bodies, if
-/// possible from the side that `n` comes from.
-pub(super) fn choose(bodies: [&Solid; 2], d: DVec3, n: DVec3) -> View {
+/// Returns the view with the best score. It shows `d` and `n` with little foreshortening and many faces of both bodies, if
+/// possible from the side against which `n` points.
+pub(super) fn best_view(bodies: [&Solid; 2], d: DVec3, n: DVec3) -> View {
     let mut best = (f64::NEG_INFINITY, View::new(0.0, 0.0));
     for elevation in ELEVATIONS {
         for step in 0..AZIMUTHS {
-            // Starting from the front right makes that the choice among equals.
+            // The first of equal views wins; the order starts at the front right.
             let azimuth = f64::from(step) * 360.0 / f64::from(AZIMUTHS) - 60.0;
             let view = View::new(azimuth.to_radians(), elevation.to_radians());
             let score = score(&view, bodies, d, n)
@@ -36,21 +37,22 @@ pub(super) fn choose(bodies: [&Solid; 2], d: DVec3, n: DVec3) -> View {
     best.1
 }
 
+/// Returns the score of a view; larger is better.
 fn score(view: &View, bodies: [&Solid; 2], d: DVec3, n: DVec3) -> f64 {
-    // Nearly sideways is as good as sideways.
-    let seen = |u: DVec3| view.project(u).length().min(0.96);
-    let shapes: f64 = bodies.into_iter().map(|body| shape_seen(view, body)).sum();
+    // A direction that is nearly perpendicular to the view counts as perpendicular.
+    let shown_length = |u: DVec3| view.project(u).length().min(0.96);
+    let shapes: f64 = bodies.into_iter().map(|body| shape_score(view, body)).sum();
     let against = (-n.dot(view.toward)).clamp(-0.28, 0.28);
-    2.0 * seen(d) + 1.5 * seen(n) + 0.6 * shapes + 1.2 * against
+    2.0 * shown_length(d) + 1.5 * shown_length(n) + 0.6 * shapes + 1.2 * against
 }
 
 /// How evenly the visible area is spread over the faces: the entropy of their projected
 /// areas, 1 if all of one half are seen alike.
-fn shape_seen(view: &View, body: &Solid) -> f64 {
+fn shape_score(view: &View, body: &Solid) -> f64 {
     match body.areas.as_slice() {
-        // A flat body: how little it is foreshortened.
+        // Of a flat body, the cosine between its normal and the view.
         [front, _] => return front.normalize_or_zero().dot(view.toward).abs(),
-        areas if areas.len() < 4 || areas.len() > MANY_FACES => return 0.0,
+        areas if areas.len() < 4 || areas.len() > MAX_SHAPE_FACES => return 0.0,
         _ => {}
     }
     let areas: Vec<f64> =

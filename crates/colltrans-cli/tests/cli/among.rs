@@ -1,4 +1,4 @@
-//! `--among`: one body among many, its proofs, and what is wrong with scenes.
+//! Queries with a scene (`--among`), their proofs, and invalid scenes.
 
 use serde_json::{Value, json};
 
@@ -27,7 +27,7 @@ fn number(value: &Value, name: &str) -> f64 {
 }
 
 #[test]
-fn the_nearest_the_near_and_the_first() {
+fn scene_queries_find_nearest_near_and_first_obstacles() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
@@ -67,17 +67,17 @@ fn the_nearest_the_near_and_the_first() {
 }
 
 #[test]
-fn answers_are_told_in_words() {
+fn scene_answers_are_printed_as_text() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
     for (command, more, said) in [
-        ("distance", &[][..], "apart\n  nearest      cube 12, number 12 of 22, from 0 on\n"),
+        ("distance", &[][..], "apart\n  nearest      cube 12, number 12 of 22, counted from 0\n"),
         ("within", &["--length", "3.2"], "closer: 2 of 22 are no farther away than 3.2\n"),
         ("within", &["--length", "1"], "farther: all of 22 are farther away than 1\n"),
         ("clearance", &["--direction", "-z"], "blocked\n  by           cube 12, number 12 of 22"),
-        ("clearance", &["--direction", "z"], "free: none of 22 stops it"),
-        ("clearance", &["--direction", "-z", "--tolerance", "0.01"], "0.01 (as asked"),
+        ("clearance", &["--direction", "z"], "free: none of 22 stops the body"),
+        ("clearance", &["--direction", "-z", "--tolerance", "0.01"], "0.01 (as given"),
     ] {
         let text = answered(folder, &[&[command], &ABOVE[..], more].concat());
         assert!(text.contains(said), "{said:?} is not in {text}");
@@ -88,7 +88,7 @@ fn answers_are_told_in_words() {
 }
 
 #[test]
-fn proofs_hold_here_and_in_fractions() {
+fn scene_proofs_hold_in_both_checkers() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
@@ -122,23 +122,23 @@ fn proofs_hold_here_and_in_fractions() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_scene_arguments_are_rejected() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
     let among = |command: &'static str, more: &[&'static str]| {
         [&[command, "cube.off", "--among", "scene.jsonl"], more].concat()
     };
-    refused(folder, &among("depth", &[]), 2, &["a depth is of two bodies"]);
+    refused(folder, &among("depth", &[]), 2, &["a depth needs two bodies"]);
     refused(folder, &among("distance", &["--from", "cube.off"]), 2, &["--from"]);
     refused(folder, &among("distance", &["--picture", "a.svg"]), 2, &["--picture"]);
     refused(folder, &among("distance", &["--fixed-pose", "1,0,0"]), 2, &["--fixed-pose"]);
     refused(folder, &among("clearance", &["--directions", "-"]), 2, &["one --direction"]);
     let three = ["distance", "cube.off", "dent.off", "open.off"];
-    refused(folder, &three, 2, &["3 meshes", "cube.off --among dent.off open.off", "--from"]);
+    refused(folder, &three, 2, &["3 meshes given", "cube.off --among dent.off open.off", "--from"]);
     let two = ["distance", "cube.off", "dent.off", "--among", "scene.jsonl"];
     refused(folder, &two, 2, &["one mesh before --among"]);
-    refused(folder, &["distance", "cube.off", "scene.jsonl"], 2, &["behind --among"]);
+    refused(folder, &["distance", "cube.off", "scene.jsonl"], 2, &["give files of obstacles to --among"]);
     // Where there are no others to be among, nothing is said of them.
     for command in ["directions", "depth"] {
         for bodies in
@@ -156,10 +156,10 @@ fn what_is_wrong_is_said() {
     let over = among("distance", &["--save-proof", "scene.jsonl"]);
     refused(folder, &over, 3, &["is the same file"]);
     for (line, said) in [
-        ("", "holds no obstacles"),
+        ("", "contains no obstacles"),
         ("{", "line 1, column"),
         (r#"{"mesh":"cube.off"}"#, "unknown field `mesh`"),
-        (r#"{"body":{"mesh":"dent.off"}}"#, r#""solid" in the place of "mesh""#),
+        (r#"{"body":{"mesh":"dent.off"}}"#, r#""solid" instead of "mesh""#),
         (r#"{"body":{"mesh":"none.off"}}"#, "none.off: cannot be read"),
         (r#"{"body":{"mesh":"cube.off"},"pose":{"rotation":[1,1,1,1]}}"#, "line 1: pose: "),
     ] {
@@ -169,7 +169,7 @@ fn what_is_wrong_is_said() {
 }
 
 #[test]
-fn a_pose_of_few_digits_in_a_scene_is_normalised_with_a_note() {
+fn scene_pose_with_few_digits_is_normalised_with_a_note() {
     let folder = folder();
     let folder = folder.path();
     let line = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[4,0,0],"rotation":[0,0,0.707,0.707]}}"#;
@@ -181,7 +181,7 @@ fn a_pose_of_few_digits_in_a_scene_is_normalised_with_a_note() {
 }
 
 #[test]
-fn options_of_other_commands_are_told() {
+fn unknown_options_suggest_their_command() {
     let folder = folder();
     let folder = folder.path();
     let two = |command, more: &[&'static str]| [&[command, "cube.off", "cube.off"], more].concat();
@@ -210,7 +210,7 @@ fn checked(folder: &std::path::Path, proof: &Value) -> Option<i32> {
 }
 
 #[test]
-fn proofs_that_say_more_than_rounding_explains_are_refused() {
+fn forged_rounding_in_a_scene_proof_is_rejected() {
     let folder = folder();
     let folder = folder.path();
     let behind = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[-1,0,0]}}"#;
@@ -230,7 +230,7 @@ fn proofs_that_say_more_than_rounding_explains_are_refused() {
 }
 
 #[test]
-fn bodies_are_asked_as_what_they_are() {
+fn convex_proof_of_a_nonconvex_body_is_rejected() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
@@ -258,7 +258,7 @@ fn bodies_are_asked_as_what_they_are() {
 }
 
 #[test]
-fn a_graze_tolerance_is_said() {
+fn graze_tolerance_is_reported() {
     let folder = folder();
     let folder = folder.path();
     let aside = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[3,0.75,0]}}"#;
@@ -266,7 +266,7 @@ fn a_graze_tolerance_is_said() {
     let ask = ["clearance", "cube.off", "--among", "aside.jsonl", "--direction", "1,0,0"];
     let graze = ["--graze-tolerance", "0.5", "--save-proof", "proof.json"];
     let text = answered(folder, &[&ask[..], &graze].concat());
-    assert!(text.contains("who overlaps sideways by no more than 0.5 is passed"), "{text}");
+    assert!(text.contains("obstacles that overlap sideways by no more than 0.5 do not block"), "{text}");
     let text = answered(folder, &["verify", "proof.json"]);
     assert!(text.contains("passed where they overlap sideways by no more than 0.5"), "{text}");
 }

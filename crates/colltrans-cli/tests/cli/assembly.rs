@@ -56,7 +56,7 @@ fn names(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_small_gearbox_comes_apart() {
+fn gearbox_plan_removes_bolts_before_the_cover() {
     let found = facts(&data(), &["gearbox_small"]);
     assert_eq!(found["parts"].as_array().unwrap().len(), 16);
     let steps = found["plan"].as_array().unwrap();
@@ -86,7 +86,7 @@ fn the_small_gearbox_comes_apart() {
 }
 
 #[test]
-fn rooms_say_how_far_and_who() {
+fn free_travels_have_bounds_and_blockers() {
     let folder = stacked();
     let arguments = ["two.toml", "--direction", "0,0,-2", "--direction", "z", "--only"];
     let found = facts(folder.path(), &arguments);
@@ -125,7 +125,7 @@ fn rooms_say_how_far_and_who() {
 }
 
 #[test]
-fn many_directions_come_from_a_file_or_the_sphere() {
+fn directions_are_read_from_a_file_or_sampled() {
     let folder = stacked();
     let file = folder.path().join("ways.txt");
     std::fs::write(&file, "# up\nz\n\n0.6, 0, 0.8 # aside\n").unwrap();
@@ -142,7 +142,7 @@ fn many_directions_come_from_a_file_or_the_sphere() {
 
 #[test]
 #[ignore = "long: plans of a whole machine"]
-fn the_answer_is_the_same_on_any_number_of_threads() {
+fn answer_is_equal_for_all_thread_counts() {
     let (small, out) = (stacked(), TemporaryFolder::new());
     let ask = |source: &Path, arguments: &[&str], threads: &str| {
         let folder = out.path().join(threads);
@@ -168,7 +168,7 @@ fn the_answer_is_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn the_files_stand_for_themselves() {
+fn output_files_are_self_contained() {
     let folder = stacked();
     answered(folder.path(), &["two.toml", "-o", "out", "--map", "low"]);
     let out = folder.path().join("out");
@@ -197,32 +197,32 @@ fn the_files_stand_for_themselves() {
 }
 
 #[test]
-fn outputs_never_take_the_place_of_inputs() {
+fn outputs_that_would_overwrite_inputs_are_rejected() {
     let folder = stacked();
     let place = folder.path();
     let text = r#"{"parts": [{"file": "report.html.off", "name": "a"}]}"#;
     std::fs::copy(place.join("cube.off"), place.join("report.html.off")).unwrap();
     std::fs::write(place.join("assembly.json"), text).unwrap();
-    let words = ["assembly.json: is the same file as assembly.json", "another folder"];
+    let words = ["assembly.json: is the same file as the input assembly.json", "another folder"];
     refused(place, &["assembly.json", "-o", "."], 3, &words);
     assert_eq!(std::fs::read_to_string(place.join("assembly.json")).unwrap(), text);
     assert!(!place.join("report.html").exists(), "nothing is written before");
     std::fs::write(place.join("matrix.csv"), "z\n").unwrap();
     let arguments = ["two.toml", "--directions", "matrix.csv", "-o", "."];
-    refused(place, &arguments, 3, &["matrix.csv: is the same file as matrix.csv"]);
+    refused(place, &arguments, 3, &["matrix.csv: is the same file as the input matrix.csv"]);
     // A mesh may be reached by any name.
     #[cfg(unix)]
     {
         std::fs::create_dir(place.join("out")).unwrap();
         std::fs::hard_link(place.join("cube.off"), place.join("out/report.html")).unwrap();
-        refused(place, &["two.toml", "-o", "out"], 3, &["is the same file as cube.off"]);
+        refused(place, &["two.toml", "-o", "out"], 3, &["is the same file as the input cube.off"]);
     }
     // Where a file stands no folder can be made.
     refused(place, &["two.toml", "-o", "open.off"], 5, &["open.off"]);
 }
 
 #[test]
-fn sources_that_are_wrong_are_named() {
+fn invalid_sources_are_rejected_with_their_place() {
     let folder = stacked();
     let place = folder.path();
     let write = |name: &str, text: &str| std::fs::write(place.join(name), text).unwrap();
@@ -278,7 +278,7 @@ fn sources_that_are_wrong_are_named() {
 }
 
 #[test]
-fn meshes_that_a_urdf_file_misses_are_named_or_skipped() {
+fn missing_urdf_meshes_are_named_or_skipped() {
     let folder = stacked();
     let place = folder.path();
     let root = ["--package", "."];
@@ -297,7 +297,7 @@ fn meshes_that_a_urdf_file_misses_are_named_or_skipped() {
 }
 
 #[test]
-fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
+fn invalid_flags_are_rejected() {
     let folder = stacked();
     let cases: [(&[&str], &[&str]); 14] = [
         (&["--tolerance", "-1"], &["--tolerance", "-1"]),
@@ -307,10 +307,10 @@ fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
         (&["--map", "hig"], &["unknown part hig; did you mean high?"]),
         (&["--map", "q*"], &["unknown part q*"]),
         (&["--fixed", "lo"], &["unknown part lo; did you mean low?"]),
-        (&["--ignore", "low"], &["--ignore low: not two names"]),
+        (&["--ignore", "low"], &["--ignore low: expected two names"]),
         (&["--ignore", "low,low"], &["pair low,low names the same part twice"]),
-        (&["--joint", "elbow"], &["--joint elbow: not NAME=VALUE"]),
-        (&["--joint", "elbow=nan"], &["--joint elbow=nan: not NAME=VALUE"]),
+        (&["--joint", "elbow"], &["--joint elbow: expected NAME=VALUE"]),
+        (&["--joint", "elbow=nan"], &["--joint elbow=nan: expected NAME=VALUE"]),
         (&["--samples", "-3"], &["--samples", "from 0 to 655362"]),
         (&["--samples", "99999999999"], &["--samples", "from 0 to 655362"]),
         (&["--threads", "0"], &["--threads"]),
@@ -322,7 +322,7 @@ fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
 }
 
 #[test]
-fn overlaps_are_told_with_what_to_try() {
+fn overlaps_suggest_a_tolerance() {
     let folder = stacked();
     let text = "[[part]]\nfile = 'cube.off'\nname = 'low'\n[[part]]\nfile = 'cube.off'\n\
                 name = 'high'\ntranslation = [0, 0, 0.98]\n";
@@ -341,7 +341,7 @@ fn overlaps_are_told_with_what_to_try() {
 }
 
 #[test]
-fn parts_thinner_than_the_tolerance_are_told_of() {
+fn parts_thinner_than_the_tolerance_are_reported() {
     let folder = stacked();
     let told = answered(folder.path(), &["two.toml", "--tolerance", "3"]);
     assert!(told.contains("low: shrunk by half the tolerance; nothing of it is left"), "{told}");
@@ -351,7 +351,7 @@ fn parts_thinner_than_the_tolerance_are_told_of() {
 }
 
 #[test]
-fn files_outside_of_the_source_need_a_flag_that_is_named() {
+fn files_outside_of_the_source_need_a_flag() {
     let folder = stacked();
     let place = folder.path();
     std::fs::create_dir(place.join("in")).unwrap();
@@ -365,7 +365,7 @@ fn files_outside_of_the_source_need_a_flag_that_is_named() {
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_never_opened() {
+fn pipes_and_devices_are_rejected() {
     let folder = stacked();
     let place = folder.path();
     let made = std::process::Command::new("mkfifo").arg(place.join("p.stl")).status().unwrap();
@@ -387,7 +387,7 @@ fn pipes_and_devices_are_never_opened() {
 
 /// Codes in names reach neither the terminal nor, as formulas or markup, the files.
 #[test]
-fn names_that_steer_a_terminal_are_written_out() {
+fn control_characters_in_names_are_escaped() {
     let folder = stacked();
     let place = folder.path();
     let name = "=low\u{1b}[2J\u{9b}31m\nstep\u{202e}\u{200b}\u{e0041}<script>";
@@ -447,7 +447,7 @@ fn names_that_steer_a_terminal_are_written_out() {
 }
 
 #[test]
-fn two_maps_whose_names_are_one_file_get_two() {
+fn maps_with_equal_file_names_get_two_files() {
     let folder = stacked();
     let text = "[[part]]\nfile = 'cube.off'\nname = 'a/b'\n[[part]]\nfile = 'cube.off'\n\
                 name = 'A_B'\ntranslation = [0, 0, 3]\n";
@@ -465,7 +465,7 @@ fn two_maps_whose_names_are_one_file_get_two() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_leaves_nothing_and_is_said() {
+fn full_disk_returns_exit_code_5_and_leaves_no_file() {
     let folder = stacked();
     let place = folder.path();
     let full = || std::process::Stdio::from(std::fs::File::create("/dev/full").unwrap());
@@ -512,7 +512,7 @@ fn a_full_disk_leaves_nothing_and_is_said() {
 
 #[test]
 #[ignore = "long: plans of a whole machine"]
-fn what_is_asked_of_a_plan_is_kept_to() {
+fn plan_satisfies_its_constraints() {
     let text = answered(&data(), &["gearbox_small", "--fixed", "housing", "--remove", "cover"]);
     let words = "cover: 4 other parts go (bolt_0, bolt_1, bolt_2, bolt_3); no fewer are enough";
     assert!(text.contains(words), "{text}");
@@ -528,7 +528,7 @@ fn what_is_asked_of_a_plan_is_kept_to() {
     let wrong: [(&[&str], &[&str]); 5] = [
         (&["--before", "bolt_0,cover", "--after", "bolt_0,cover"], &["bolt_0, cover"]),
         (&["--together", "cover"], &["needs at least two parts; 1 given"]),
-        (&["--never", "cover"], &["not PART=X,Y,Z"]),
+        (&["--never", "cover"], &["expected PART=X,Y,Z"]),
         (&["--never", "cover=z@200"], &["200 degrees"]),
         (&["--remove", "*"], &["16 of 16 parts"]),
     ];
@@ -539,7 +539,7 @@ fn what_is_asked_of_a_plan_is_kept_to() {
 }
 
 #[test]
-fn a_manifest_asks_for_an_order() {
+fn manifest_constraints_change_the_plan() {
     let folder = stacked();
     let text = std::fs::read_to_string(folder.path().join("two.toml")).unwrap();
     let ask = |more: &str| {
@@ -572,7 +572,7 @@ fn pressed() -> TemporaryFolder {
 }
 
 #[test]
-fn pairs_have_roles_and_what_overlaps_is_suggested() {
+fn roles_of_pairs_and_suggestions_free_a_press_fit() {
     let folder = pressed();
     let ask = |words: &[&str]| facts(folder.path(), &[words, &["--fixed", "block"]].concat());
     let plain = ask(&["press.toml"]);
@@ -580,7 +580,7 @@ fn pairs_have_roles_and_what_overlaps_is_suggested() {
     assert_eq!((&said["role"], said["tolerance"].as_f64().unwrap() > 0.05), (&"soft".into(), true));
     assert_eq!(plain["left"].as_array().unwrap().len(), 2);
     let text = answered(folder.path(), &["press.toml", "--fixed", "block"]);
-    assert!(text.contains("perhaps on purpose, which --auto takes for granted: soft="), "{text}");
+    assert!(text.contains("perhaps intended, which --auto assumes: soft="), "{text}");
     let ways: [(&[&str], &str); 6] = [
         (&["press.toml", "--auto"], "soft"),
         (&["said.toml"], "soft"),
@@ -602,9 +602,9 @@ fn pairs_have_roles_and_what_overlaps_is_suggested() {
     let glued = ask(&["said.toml", "--glued", "o-ring,floor"]);
     assert!(glued["plan"].as_array().unwrap().iter().any(|s| names(&s["parts"]).len() == 2));
     let wrong: [(&[&str], &[&str]); 4] = [
-        (&["--pair", "block,o-ring"], &["--pair block,o-ring: not A,B=L"]),
-        (&["--snap", "block,o-ring=x"], &["not A,B=L"]),
-        (&["--press", "block"], &["not two names"]),
+        (&["--pair", "block,o-ring"], &["--pair block,o-ring: expected A,B=L"]),
+        (&["--snap", "block,o-ring=x"], &["expected A,B=L"]),
+        (&["--press", "block"], &["expected two names"]),
         (&["--press", "block,o-ring=-1"], &["-1"]),
     ];
     for (words, said) in wrong {

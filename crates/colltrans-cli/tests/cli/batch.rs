@@ -36,7 +36,7 @@ fn run(text: &str, arguments: &[&str]) -> (std::process::Output, Vec<Value>) {
 }
 
 #[test]
-fn results_come_in_order_and_alike_for_any_number_of_threads() {
+fn results_are_ordered_and_equal_for_all_thread_counts() {
     let text = queries(3000);
     let (one, results) = run(&text, &["--threads", "1"]);
     assert_eq!(one.status.code(), Some(0), "{}", stderr(&one));
@@ -61,7 +61,7 @@ fn results_come_in_order_and_alike_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_bad_line_costs_one_result() {
+fn invalid_line_returns_one_error() {
     let good = format!(r#"{{"id":"good","moving":{BOX},"fixed":{BOX},"direction":[1,0,0]}}"#);
     let with = |from: &str, to: &str| good.replace(from, to).replace("good", "bad");
     let bad = [
@@ -73,7 +73,7 @@ fn a_bad_line_costs_one_result() {
         (with(BOX, r#"{"mesh":"dent.off"}"#), "bad".into(), r#""hull": true"#),
         (with(BOX, r#"{"points":[]}"#), "bad".into(), "no points"),
         (with(BOX, r#"{"points":[[1,2,1e999]]}"#), "bad".into(), "out of range"),
-        (with(BOX, "{}"), "bad".into(), "either `points` or `mesh`"),
+        (with(BOX, "{}"), "bad".into(), "exactly one of `points`, `mesh`"),
         (
             with("\"id\"", "\"moving_pose\":{\"rotation\":[0,0,0,2]},\"id\""),
             "bad".into(),
@@ -106,7 +106,7 @@ fn a_bad_line_costs_one_result() {
 }
 
 #[test]
-fn blank_lines_do_not_end_a_batch() {
+fn many_blank_lines_are_skipped() {
     // More of them than fit in what is read at once.
     let text = format!("{}{}", " \n".repeat(2 << 20), queries(2));
     let (output, results) = run(&text, &["--threads", "2"]);
@@ -115,7 +115,7 @@ fn blank_lines_do_not_end_a_batch() {
 }
 
 #[test]
-fn any_id_comes_back_as_it_was_written() {
+fn ids_are_repeated_verbatim() {
     let ids = [r#""a \u0062""#, "12345678901234567890123", "1.50", "null", "[1, {\"x\": 2}]"];
     let mut text = String::from("\u{feff}");
     for id in ids {
@@ -129,7 +129,7 @@ fn any_id_comes_back_as_it_was_written() {
 }
 
 #[test]
-fn a_result_has_the_documented_fields() {
+fn contact_result_has_the_documented_fields() {
     let query = format!(
         r#"{{"moving":{BOX},"fixed":{{"mesh":"cube.off"}},"direction":[1,0,0],
         "moving_pose":{{"translation":[-3,0.25,0.5],"rotation":[0,0,0,1]}},"fixed_pose":{{}},
@@ -150,7 +150,7 @@ fn a_result_has_the_documented_fields() {
 }
 
 #[test]
-fn files_and_standard_streams() {
+fn queries_and_results_use_files_or_standard_streams() {
     let folder = folder();
     let nested = folder.path().join("sub");
     std::fs::create_dir(&nested).unwrap();
@@ -195,7 +195,7 @@ fn files_and_standard_streams() {
 
 /// A result comes as soon as its query is there, before the next one is.
 #[test]
-fn queries_are_answered_while_they_come() {
+fn each_query_is_answered_before_the_next_arrives() {
     let folder = folder();
     let mut child = Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
         .args(["batch", "-"])
@@ -218,7 +218,7 @@ fn queries_are_answered_while_they_come() {
 
 #[cfg(unix)]
 #[test]
-fn a_reader_that_leaves_ends_the_work() {
+fn closed_pipe_ends_the_batch_without_error() {
     let folder = folder();
     std::fs::write(folder.path().join("queries.jsonl"), queries(20_000)).unwrap();
     let binary = assert_cmd::cargo::cargo_bin("colltrans");
@@ -234,7 +234,7 @@ fn a_reader_that_leaves_ends_the_work() {
 }
 
 #[test]
-fn results_never_overwrite_their_queries() {
+fn results_that_would_overwrite_the_queries_are_rejected() {
     let folder = TemporaryFolder::new();
     let path = folder.path().join("queries.jsonl");
     let text = "{\"moving\":{\"points\":[[0,0,0]]},\"fixed\":{\"points\":[[1,0,0]]},\"direction\":[1,0,0]}\n";
@@ -258,7 +258,7 @@ fn results_never_overwrite_their_queries() {
 }
 
 #[test]
-fn errors_speak_json_and_not_rust() {
+fn type_errors_use_terms_of_json() {
     let text = r#"{"moving": 3}
 {"moving": {"points": "all"}}
 {"moving": {"points": [[1, 2, "z"]]}}
@@ -272,16 +272,16 @@ fn errors_speak_json_and_not_rust() {
     let (_, results) = run(text, &[]);
     assert_eq!(results.len(), 10);
     for (result, word) in results.iter().zip([
-        "expected an object that holds a body",
+        "expected an object with a body",
         "expected a list",
         "expected a number",
         "expected a list of 3",
         "expected a number",
-        "expected an object that holds a pose",
+        "expected an object with a pose",
         "expected a number",
         "expected a boolean",
         "expected a path",
-        "expected an object that holds a query",
+        "expected an object with a query",
     ]) {
         let message = result["message"].as_str().unwrap();
         assert!(message.contains(word), "{message}");
@@ -292,7 +292,7 @@ fn errors_speak_json_and_not_rust() {
 }
 
 #[test]
-fn what_was_merged_is_told_with_the_result() {
+fn merged_vertices_are_noted_in_the_result() {
     let folder = folder();
     // The tetrahedron's first corner once more, a little off, for one of its faces.
     let text = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1e-17 0 0\n\
@@ -318,7 +318,7 @@ fn what_was_merged_is_told_with_the_result() {
 /// Somebody ends it in the middle: what was there stays, and no file looks like results.
 #[cfg(unix)]
 #[test]
-fn a_batch_that_is_killed_leaves_no_results() {
+fn killed_batch_leaves_the_old_results() {
     let folder = folder();
     for name in ["new.jsonl", "old.jsonl"] {
         let path = folder.path().join(name);
@@ -357,7 +357,7 @@ fn a_batch_that_is_killed_leaves_no_results() {
 
 /// What touches may leave, and is stopped where it is pushed in.
 #[test]
-fn clearances_of_motions_are_asked_in_lines() {
+fn motion_clearance_queries_are_answered() {
     let line = |body: &str, more: &str| {
         format!(r#"{{"moving":{body},"fixed":{BOX},"query":"motion_clearance",{more}}}"#)
     };
@@ -386,7 +386,7 @@ fn clearances_of_motions_are_asked_in_lines() {
 }
 
 #[test]
-fn motions_are_asked_in_lines() {
+fn motion_queries_are_answered_or_rejected() {
     let line = |body: &str, more: &str| {
         format!(r#"{{"id":1,"moving":{body},"fixed":{BOX},"query":"motion",{more}}}"#)
     };
@@ -434,14 +434,14 @@ fn motions_are_asked_in_lines() {
     let moved = format!(r#""moving_motion":{turn}"#);
     let bad = [
         (asked(there), "\"motion\" needs a `moving_motion` or a `fixed_motion`"),
-        (asked(&format!(r#"{moved},"direction":[1,0,0]"#)), "`direction` is not for this query"),
+        (asked(&format!(r#"{moved},"direction":[1,0,0]"#)), "`direction` does not belong to this query"),
         (asked(&format!(r#"{moved},"keep":1,"tolerance":1"#)), "either `keep` or `tolerance`"),
         (asked(&format!(r#"{moved},"keep":-1"#)), "-1"),
         (asked(&moved.replace("axis\":[0,0,1]", "axis\":[0,0,0]")), "moving_motion: the axis"),
         (asked(&moved.replace('6', "1e9")), "moving_motion: the angle"),
         (
             asked(r#""moving_motion":{"slide":{"by":[1,0,0]},"still":{},"spin":7}"#),
-            "moving_motion: a motion is of one kind; there is `still` besides",
+            "moving_motion: a motion has one kind; remove `still`",
         ),
         (asked(r#""moving_motion":{}"#), "the field that gives the kind is missing"),
         (asked(r#""moving_motion":{"still":null}"#), "found null, expected an object"),
@@ -459,11 +459,11 @@ fn motions_are_asked_in_lines() {
         ),
         (
             asked(&moved).replace("\"motion\"", "\"distance\""),
-            "`moving_motion` is for \"query\": \"motion\"",
+            "`moving_motion` requires \"query\": \"motion\"",
         ),
         (
             asked(&format!(r#"{moved},"direction":[1,0,0]"#)).replace(r#""query":"motion","#, ""),
-            "`moving_motion` is for \"query\": \"motion\"",
+            "`moving_motion` requires \"query\": \"motion\"",
         ),
     ];
     let text: Vec<&str> = bad.iter().map(|(line, _)| line.as_str()).collect();
@@ -479,7 +479,7 @@ fn motions_are_asked_in_lines() {
 
 /// As of `--moving-pose`: one rule for quaternions of few digits, and a note for each field.
 #[test]
-fn quaternions_of_few_digits_are_normalised_and_the_line_says_so() {
+fn quaternions_with_few_digits_are_normalised_with_a_note() {
     let line = |body: &str, fields: &str| format!(r#"{{"moving":{body},"fixed":{BOX},{fields}}}"#);
     let rounded = r#""moving_pose":{"translation":[-3,0.25,0.5],"rotation":[0,0,0.707,0.707]}"#;
     let exact = rounded.replace("0.707", "0.7071067811865476");

@@ -17,7 +17,7 @@ fn assert_error(output: &Output, code: i32, words: &[&str]) {
 }
 
 #[test]
-fn the_papers_algorithm_starts_and_ends_where_it_is_told() {
+fn start_and_until_control_the_papers_algorithm() {
     let folder = folder();
     let asked = |more: &[&str]| {
         colltrans(folder.path()).args(CAST).args(["--json"]).args(more).output().unwrap()
@@ -30,7 +30,7 @@ fn the_papers_algorithm_starts_and_ends_where_it_is_told() {
     assert!(problems(&["--solver", "cta"]) >= 1);
     assert!(problems(&["--solver", "cta", "--start", "center", "--until", "0.5"]) >= 1);
     assert_eq!(problems(&["--solver", "cta", "--start", "ellipsoids"]), 0);
-    assert_error(&asked(&["--until", "exit"]), 2, &["--start and --until are of --solver cta"]);
+    assert_error(&asked(&["--until", "exit"]), 2, &["--start and --until require --solver cta"]);
     let wrong = asked(&["--solver", "cta", "--until", "soon"]);
     assert_error(&wrong, 2, &["accepted: `exit`, or a number"]);
     let lines = r#"{"id":1,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta"}
@@ -44,13 +44,13 @@ fn the_papers_algorithm_starts_and_ends_where_it_is_told() {
     let results: Vec<_> = stdout(&output).lines().map(json).collect();
     let problems = |k: usize| results[k]["steps"]["planar_problems"].as_u64();
     assert!(problems(0).unwrap() >= 1 && problems(1) == Some(0), "{results:?}");
-    for (k, words) in [(2, "`start` and `until` are for"), (3, "gap -1 at which narrowing ends")] {
+    for (k, words) in [(2, "`start` and `until` require"), (3, "gap -1 at which narrowing ends")] {
         assert!(results[k]["message"].as_str().unwrap().contains(words), "{}", results[k]);
     }
 }
 
 #[test]
-fn a_contact_in_words() {
+fn contact_is_printed_as_text() {
     let folder = folder();
     let output = colltrans(folder.path()).args(CAST).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -71,7 +71,7 @@ fn a_contact_in_words() {
 }
 
 #[test]
-fn a_contact_as_json() {
+fn contact_in_json_has_all_fields() {
     let folder = folder();
     for solver in ["auto", "cta", "portal"] {
         let output = colltrans(folder.path())
@@ -105,7 +105,7 @@ fn a_contact_as_json() {
 }
 
 #[test]
-fn other_outcomes() {
+fn separated_and_grazing_casts_in_json() {
     let folder = folder();
     let outcome = |pose: &str, more: &[&str]| {
         let output = colltrans(folder.path())
@@ -140,12 +140,12 @@ fn other_outcomes() {
 }
 
 #[test]
-fn wrong_command_lines() {
+fn invalid_cast_arguments_are_rejected() {
     let folder = folder();
     let run = |arguments: &[&str]| colltrans(folder.path()).args(arguments).output().unwrap();
     let cast = |more: &[&str]| run(&[&["cast", "cube.off", "cube.off"], more].concat());
     assert_error(&cast(&[]), 2, &["--direction"]);
-    assert_error(&cast(&["--direction", "1,2"]), 2, &["2 numbers, not 3"]);
+    assert_error(&cast(&["--direction", "1,2"]), 2, &["2 numbers given, expected 3"]);
     assert_error(&cast(&["--direction", "1,2,x"]), 2, &["`x` is not a number"]);
     assert_error(&cast(&["--direction", "0,0,0"]), 2, &["direction"]);
     assert_error(&cast(&["--direction", "nan,0,0"]), 2, &["direction"]);
@@ -160,7 +160,7 @@ fn wrong_command_lines() {
 }
 
 #[test]
-fn bad_files_are_named_with_what_helps() {
+fn invalid_files_are_named_with_helpful_options() {
     let folder = folder();
     let cast = |moving: &str, more: &[&str]| {
         colltrans(folder.path())
@@ -194,20 +194,27 @@ fn bad_files_are_named_with_what_helps() {
 }
 
 #[test]
-fn help_documents_exit_codes_and_poses() {
+fn help_topics_document_exit_codes_poses_and_fields() {
     let folder = folder();
-    let help = colltrans(folder.path()).args(["cast", "--help"]).output().unwrap();
-    let text = stdout(&help);
-    for part in ["Exit codes:", "x,y,z,qx,qy,qz,qw", "1e-5", "single precision", "STL", "Examples:"]
-    {
-        assert!(text.contains(part), "{part:?} is not in {text}");
+    let help = |words: &[&str]| stdout(&colltrans(folder.path()).args(words).output().unwrap());
+    for (words, parts) in [
+        (&["help", "files"][..], &["Exit codes:", "qx,qy,qz,qw", "single precision", "STL"][..]),
+        (&["files", "--help"], &["Exit codes:", "Manifest of an assembly", "--merge-tolerance"]),
+        (&["help", "json"], &["start_overlaps", "shrunk_distance", "EXCESS =", "liaisons"]),
+        (&["cast", "--help"], &["Examples:", "x,y,z,qx,qy,qz,qw", "1e-5", "colltrans help files"]),
+    ] {
+        let text = help(words);
+        for part in parts {
+            assert!(text.contains(part), "{part:?} is not in {text}");
+        }
     }
+    assert!(help(&["files"]).contains("Exit codes:"));
     let batch = colltrans(folder.path()).args(["batch", "--help"]).output().unwrap();
     assert!(stdout(&batch).contains(r#"BODY = {"points""#));
 }
 
 #[test]
-fn info_says_what_is_there_and_what_is_wrong() {
+fn info_describes_meshes_and_defects() {
     let folder = folder();
     let info = |name: &str| {
         let output = colltrans(folder.path()).args(["info", name]).output().unwrap();
@@ -238,7 +245,7 @@ fn info_says_what_is_there_and_what_is_wrong() {
             "vertices     9",
             "surface      closed",
             "solid        yes: 1 shell, 0 holes through",
-            "no; `clearance` takes it as it is, --hull takes its hull: face 1 lies 0.25 below",
+            "no; `clearance` accepts it, --hull takes its hull: face 1 lies 0.25 below",
             "volume       0.9166",
             "hull volume  1\n",
             "hull exceeds 0.0833333 of its volume 1 is not the part (8.333 %); the part's surface \
@@ -254,8 +261,8 @@ fn info_says_what_is_there_and_what_is_wrong() {
             "hull volume  1\n",
         ],
     );
-    contains("points.ply", &["faces        0 (a cloud of points)", "no faces", "hull volume  1\n"]);
-    // A vertex that no face uses is none of the part, wherever it is.
+    contains("points.ply", &["faces        0 (a point cloud)", "no faces", "hull volume  1\n"]);
+    // A vertex in no face does not belong to the part.
     let cube = std::fs::read_to_string(folder.path().join("cube.off")).unwrap();
     for place in ["5 5 5", "1e9 0 0", "nan 0 0"] {
         let more =
@@ -264,7 +271,7 @@ fn info_says_what_is_there_and_what_is_wrong() {
         contains(
             "more.off",
             &[
-                "vertices     9, 1 of them used by no face\n",
+                "vertices     9, 1 of them in no face\n",
                 "surface      closed\n",
                 "volume       1\n",
             ],
@@ -282,9 +289,9 @@ fn info_says_what_is_there_and_what_is_wrong() {
     assert!(stderr(&both).contains("none.stl") && stdout(&both).contains("cube.off"));
 }
 
-/// A stray vertex between two parts was a part of the hull, which then came in the way.
+/// A vertex outside of all faces must not enlarge the hull.
 #[test]
-fn a_hull_leaves_out_a_vertex_that_no_face_uses() {
+fn hull_ignores_an_unused_vertex() {
     let folder = folder();
     let cube = std::fs::read_to_string(folder.path().join("cube.off")).unwrap();
     let stray = cube.replace("8 6 12", "9 6 12").replace("0 1 1\n", "0 1 1\n0.5 0.5 500\n");
@@ -310,7 +317,7 @@ fn a_hull_leaves_out_a_vertex_that_no_face_uses() {
 
 #[cfg(unix)]
 #[test]
-fn a_closed_pipe_is_no_panic() {
+fn closed_pipe_does_not_panic() {
     let folder = folder();
     // `true` reads nothing; the message of a panic would be the last line.
     let binary = assert_cmd::cargo::cargo_bin("colltrans");

@@ -125,7 +125,7 @@ const BLOCKED_FIELDS: [&str; 12] = [
 ];
 
 #[test]
-fn a_bolt_stops_where_its_head_does() {
+fn bolt_is_blocked_by_its_head() {
     let words = "bolt.stl --from plate.off --direction -z --moving-pose 0,0,7";
     let (answer, notes) = ask(&data(), words);
     assert_eq!(notes, "");
@@ -156,14 +156,14 @@ fn a_bolt_stops_where_its_head_does() {
     assert_eq!(ask(&data(), &up).0["outcome"], "free");
     let text = stdout(&run(&data(), words, &[]));
     assert!(text.starts_with("blocked\n  distance     7 times the direction, a length of 7\n"));
-    for part in ["shrunk       7.0000", "of bolt.stl", "of plate.off", "from the files' precision"]
+    for part in ["offset       7.0000", "of bolt.stl", "of plate.off", "from the files' precision"]
     {
         assert!(text.contains(part), "{part:?} is not in {text}");
     }
 }
 
 #[test]
-fn the_page_shows_what_is_printed() {
+fn guide_shows_the_printed_answer_and_picture() {
     let root = data().join("..");
     let page = std::fs::read_to_string(root.join("docs/guide/clearance.md")).unwrap();
     let (_, rest) = page.split_once("```sh\ncolltrans clearance ").unwrap();
@@ -179,7 +179,7 @@ fn the_page_shows_what_is_printed() {
 }
 
 #[test]
-fn a_pin_goes_through_a_hole_of_its_size_with_the_chord_errors_as_tolerance() {
+fn pin_passes_a_hole_of_its_radius_with_chord_tolerance() {
     let folder = folder();
     let words = "pin.off --from plate.off --direction -z --moving-pose 0,0,3";
     let (stopped, _) = ask(folder.path(), words);
@@ -196,7 +196,7 @@ fn a_pin_goes_through_a_hole_of_its_size_with_the_chord_errors_as_tolerance() {
 }
 
 #[test]
-fn a_block_on_a_table() {
+fn block_on_a_table_is_blocked_only_downwards() {
     let folder = folder();
     let (down, _) = ask(folder.path(), "block.off --from table.off --direction 0,0,-2");
     assert_eq!(down["outcome"], "blocked");
@@ -214,7 +214,7 @@ fn a_block_on_a_table() {
 }
 
 #[test]
-fn overlaps_are_told_file_by_file() {
+fn start_overlaps_are_listed_by_file() {
     let folder = folder();
     write(&block([-1.0, -1.0, 2.0], [1.0, 1.0, 3.0]), folder.path(), "lid.off");
     let words =
@@ -243,15 +243,15 @@ fn overlaps_are_told_file_by_file() {
     for part in ["overlapping: ", "block.off in table.off", "0.25", "--ignore-start-overlaps"] {
         assert!(text.contains(part), "{part:?} is not in {text}");
     }
-    assert!(text.contains("--tolerance allows for it"), "{text}");
+    assert!(text.contains("--tolerance permits it"), "{text}");
     // A body within itself is parted by none, so none is advised.
     let itself = stdout(&run(folder.path(), "block.off --from block.off --direction z", &[]));
-    assert!(itself.contains("no tolerance would part them"), "{itself}");
-    assert!(!itself.contains("--tolerance allows for it"), "{itself}");
+    assert!(itself.contains("no tolerance would separate them"), "{itself}");
+    assert!(!itself.contains("--tolerance permits it"), "{itself}");
 }
 
 #[test]
-fn the_files_that_touch_are_named() {
+fn files_and_vertices_in_contact_are_named() {
     let folder = folder();
     write(&block([5.0, 5.0, 3.0], [6.0, 6.0, 4.0]), folder.path(), "near.off");
     write(&block([-6.0, -6.0, 5.0], [-5.0, -5.0, 6.0]), folder.path(), "high.off");
@@ -273,7 +273,7 @@ fn the_files_that_touch_are_named() {
 }
 
 #[test]
-fn twins_in_an_stl_file_are_merged_and_said() {
+fn near_stl_vertices_are_merged_with_a_note() {
     let folder = folder();
     write_with_twins(&plate(1.5, 24, [-2.0, 0.0]), folder.path(), "plate.stl");
     let words = "pin.off --from plate.stl --direction -z --moving-pose 0,0,3";
@@ -293,7 +293,7 @@ fn twins_in_an_stl_file_are_merged_and_said() {
 }
 
 #[test]
-fn open_surfaces_are_refused_unless_they_are_meant() {
+fn open_surface_requires_open_flag() {
     let folder = folder();
     let words = "open.off --from table.off --direction -z --moving-pose 0,0,4";
     let parts = ["open.off", "not closed: 4 edges", "--merge-tolerance", "--open"];
@@ -313,7 +313,7 @@ fn open_surfaces_are_refused_unless_they_are_meant() {
 }
 
 #[test]
-fn two_meshes_are_asked_as_what_they_are() {
+fn convex_meshes_become_convex_bodies_and_others_parts() {
     let folder = folder();
     let ask = |words: &str| ask(folder.path(), &format!("{words} --direction -z")).0;
     let convex = ask("block.off table.off --moving-pose 0,0,5");
@@ -331,7 +331,7 @@ fn two_meshes_are_asked_as_what_they_are() {
 }
 
 #[test]
-fn a_tolerance_that_leaves_nothing_of_a_part_is_refused() {
+fn tolerance_beyond_the_thickness_is_rejected() {
     let folder = folder();
     let folder = folder.path();
     let words = "block.off --from table.off --direction -z --moving-pose 0,0,5 --tolerance";
@@ -357,7 +357,7 @@ fn a_tolerance_that_leaves_nothing_of_a_part_is_refused() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_clearance_arguments_are_rejected() {
     let folder = folder();
     let folder = folder.path();
     refused(folder, "none.off --from table.off --direction z", 3, &["none.off", "cannot be read"]);
@@ -376,13 +376,13 @@ fn what_is_wrong_is_said() {
     refused(folder, &words.replace(" z", " 0,0,0"), 2, &["direction"]);
     refused(folder, &format!("{words} --picture a.png"), 2, &["a.svg"]);
     let help = stdout(&run(folder, "--help", &[]));
-    for part in ["Examples:", "Exit codes:", "in the unit", "start_overlaps", "shrunk_distance"] {
+    for part in ["Examples:", "in the unit", "shrunk_distance", "--open", "colltrans help json"] {
         assert!(help.contains(part), "{part:?} is not in {help}");
     }
 }
 
 #[test]
-fn cast_says_who_takes_parts_that_are_not_convex() {
+fn cast_error_suggests_clearance_for_nonconvex_parts() {
     let folder = folder();
     let words = ["cast", "block.off", "plate.off", "--direction", "z"];
     let output = colltrans(folder.path()).args(words).output().unwrap();
@@ -396,17 +396,17 @@ fn cast_says_who_takes_parts_that_are_not_convex() {
 
 #[cfg(unix)]
 #[test]
-fn a_picture_never_overwrites_a_part() {
+fn picture_that_would_overwrite_a_part_is_rejected() {
     let folder = folder();
     std::fs::hard_link(folder.path().join("plate.off"), folder.path().join("hard.svg")).unwrap();
     let before = std::fs::read(folder.path().join("plate.off")).unwrap();
     let words = "block.off --from table.off plate.off --direction z --picture hard.svg";
-    refused(folder.path(), words, 3, &["hard.svg", "is the same file as plate.off"]);
+    refused(folder.path(), words, 3, &["hard.svg", "is the same file as the input plate.off"]);
     assert!(std::fs::read(folder.path().join("plate.off")).unwrap() == before);
 }
 
 #[test]
-fn batches_take_solids() {
+fn batch_answers_solids_or_rejects_their_fields() {
     let folder = folder();
     let solid = |name: &str| format!(r#"{{"solid":"{name}"}}"#);
     let line = |id: u32, moving: &str, fixed: &str, more: &str| {
@@ -444,12 +444,12 @@ fn batches_take_solids() {
     assert!((number(&results[2], "translation") - 2.0).abs() < 1e-9, "block on plate");
     assert!((number(&results[3], "distance") - 1.0).abs() < 1e-9, "as convex bodies");
     for (result, word) in results[4..9].iter().chain(&results[10..11]).zip([
-        "asked for their clearance",
-        "solids have `tolerance`",
-        "are for solids",
+        "solids have no \"contact\"",
+        "solids accept `tolerance`",
+        "require solids",
         "not closed",
-        "`hull` is for a `mesh`",
-        "`solver`, `start` and `until` are for convex bodies",
+        "`hull` requires a `mesh`",
+        "`solver`, `start` and `until` require convex bodies",
     ]) {
         assert_eq!(result["outcome"], "error");
         assert!(result["message"].as_str().unwrap().contains(word), "{result}");
@@ -464,7 +464,7 @@ fn batches_take_solids() {
 }
 
 #[test]
-fn info_speaks_of_holes_and_defects() {
+fn info_reports_holes_and_defects() {
     let folder = folder();
     let twice = plate(1.0, 12, [0.0, 1.0]).joined(&block([20.0; 3], [21.0; 3]).reversed());
     write(&twice, folder.path(), "two.off");
@@ -473,7 +473,7 @@ fn info_speaks_of_holes_and_defects() {
     for (name, part) in [
         ("plate.off", "solid        yes: 1 shell, 1 hole through"),
         ("two.off", "solid        yes: 2 shells, 1 hole through"),
-        ("two.off", "mended       1 shell turned, inside out in the file"),
+        ("two.off", "repaired     1 shell turned, inside out in the file"),
         ("open.off", "solid        no: the surface is not closed: 4 edges"),
         ("open.off", "with --open  1 sheet, blocking from both sides, rims included"),
     ] {
@@ -483,7 +483,7 @@ fn info_speaks_of_holes_and_defects() {
 }
 
 #[test]
-fn many_directions_give_one_answer_a_line() {
+fn clearance_along_many_directions_prints_one_line_each() {
     let folder = folder();
     let path = folder.path();
     std::fs::write(path.join("d.txt"), "-z # down\nz\n0 0 -2\n0,0,0\n").unwrap();
@@ -497,7 +497,7 @@ fn many_directions_give_one_answer_a_line() {
     assert_eq!(stderr(&output), "error: 1 of 4 directions have no answer\n");
     let text = stdout(&output);
     let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
-    assert_eq!(lines[0], ["direction", "outcome", "distance", "shrunk", "exit"]);
+    assert_eq!(lines[0], ["direction", "outcome", "distance", "offset", "exit"]);
     assert_eq!(lines[1][..2], ["0,0,-1", "blocked"]);
     assert_eq!(lines[2][..4], ["0,0,1", "free", "-", "-"]);
     assert_eq!(lines[3][..2], ["0,0,-2", "blocked"]);

@@ -15,7 +15,7 @@ fn facts(folder: &Path, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn a_lid_can_leave_along_half_of_all_directions() {
+fn lid_has_a_free_hemisphere() {
     let folder = folder();
     let told = facts(folder.path(), &[&LID[..], &["--tolerance", "0"]].concat());
     let share = |k: usize| told["free_share"][k].as_f64().unwrap();
@@ -32,7 +32,7 @@ fn a_lid_can_leave_along_half_of_all_directions() {
 }
 
 #[test]
-fn a_bolt_leaves_its_plate_and_the_proof_holds_elsewhere() {
+fn bolt_directions_have_a_proof_that_both_checkers_accept() {
     let folder = folder();
     let [bolt, plate] = ["bolt.stl", "plate.off"].map(|name| data().join(name));
     let [bolt, plate] = [&bolt, &plate].map(|path| path.to_str().unwrap());
@@ -54,7 +54,7 @@ fn a_bolt_leaves_its_plate_and_the_proof_holds_elsewhere() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused_with_a_reason() {
+fn overlaps_are_reported_and_invalid_inputs_rejected() {
     let folder = folder();
     let folder = folder.path();
     let told = facts(folder, &["directions", "cube.off", "cube.off", "--moving-pose", "0.5,0,0"]);
@@ -62,11 +62,11 @@ fn what_cannot_be_asked_is_refused_with_a_reason() {
     assert_eq!(told["start_overlaps"].as_array().unwrap().len(), 1);
     let text =
         answered(folder, &["directions", "cube.off", "cube.off", "--moving-pose", "0.5,0,0"]);
-    assert!(text.contains("--tolerance allows for it"), "{text}");
+    assert!(text.contains("--tolerance permits it"), "{text}");
     // No tolerance parts a body from itself.
     let text = answered(folder, &["directions", "cube.off", "cube.off"]);
-    assert!(text.contains("no tolerance would part them"), "{text}");
-    assert!(!text.contains("--tolerance allows for it") && text.contains("lets it pass"), "{text}");
+    assert!(text.contains("no tolerance would separate them"), "{text}");
+    assert!(!text.contains("--tolerance permits it") && text.contains("ignores it"), "{text}");
     fs::write(folder.join("points.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n").unwrap();
     refused(
         folder,
@@ -82,7 +82,7 @@ fn what_cannot_be_asked_is_refused_with_a_reason() {
 }
 
 #[test]
-fn little_work_leaves_directions_undecided_and_says_so() {
+fn small_work_limit_leaves_directions_undecided() {
     let folder = folder();
     let told = facts(folder.path(), &[&LID[..], &["--looks", "0"]].concat());
     assert_eq!(told["outcome"], "free", "along directions that casts find");
@@ -92,7 +92,7 @@ fn little_work_leaves_directions_undecided_and_says_so() {
 
 #[test]
 #[ignore = "long: all directions of a whole machine"]
-fn parts_of_an_assembly_are_told_with_what_blocks_them() {
+fn free_directions_of_assembly_parts_list_blockers() {
     let output = folder();
     let output = output.path().to_str().unwrap();
     let asked = ["--free", "bolt_0", "--free", "cover", "-o", output];
@@ -115,7 +115,7 @@ fn parts_of_an_assembly_are_told_with_what_blocks_them() {
 
 #[test]
 #[ignore = "long: all directions of a whole machine"]
-fn what_is_stuck_is_proven_or_says_what_was_asked() {
+fn interlocked_group_is_proven_unless_disabled() {
     let asked = facts(&data(), &["assembly", "gearbox_small", "--no-proofs"]);
     let proven = facts(&data(), &["assembly", "gearbox_small"]);
     let proof = |told: &Value| told["stuck"][0]["proof"].clone();
@@ -130,10 +130,10 @@ fn what_is_stuck_is_proven_or_says_what_was_asked() {
 }
 
 #[test]
-fn coordinates_too_large_for_the_other_body_are_a_fault_of_their_file() {
+fn oversized_coordinates_are_an_input_error() {
     let folder = folder();
     let folder = folder.path();
-    for (size, words) in [("1e300", "outside the exact range"), ("1e50", "coordinates reach 1e50")]
+    for (size, words) in [("1e300", "outside the exact range"), ("1e50", "coordinates up to 1e50")]
     {
         let vertices = format!("0 0 0\n{size} 0 0\n0 {size} 0\n0 0 {size}\n");
         let wild = format!("OFF\n4 4 0\n{vertices}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");

@@ -27,7 +27,7 @@ fn number(value: &Value, name: &str) -> f64 {
 }
 
 #[test]
-fn distances_have_bounds_points_and_features() {
+fn distance_has_bounds_points_and_features() {
     let told = ask("distance", &APART, &[]);
     assert_eq!(told["outcome"], "apart");
     assert!(number(&told, "lower") <= 2.0 && number(&told, "upper") >= 2.0, "{told}");
@@ -50,7 +50,7 @@ fn distances_have_bounds_points_and_features() {
 }
 
 #[test]
-fn depths_say_which_way_out() {
+fn depth_has_bounds_and_direction() {
     let told = ask("depth", &DEEP, &[]);
     assert_eq!(told["outcome"], "overlapping");
     assert!(number(&told, "lower") <= 0.25 && number(&told, "upper") >= 0.25, "{told}");
@@ -68,7 +68,7 @@ fn depths_say_which_way_out() {
 }
 
 #[test]
-fn a_length_is_compared_with() {
+fn within_compares_the_distance_with_a_length() {
     for bodies in [APART, PARTS] {
         let told = ask("within", &bodies, &["--length", "2.5"]);
         assert!(told["outcome"] == "closer" && number(&told, "upper") <= 2.5, "{told}");
@@ -81,13 +81,13 @@ fn a_length_is_compared_with() {
 }
 
 #[test]
-fn answers_are_told_in_words() {
+fn answers_are_printed_as_text() {
     let folder = folder();
     for (words, said) in [
         (&[&["distance"], &APART[..]].concat(), "distance     2\n"),
         (&[&["distance"], &DEEP[..]].concat(), "meeting: the bodies touch or overlap"),
-        (&[&["depth"], &DEEP[..]].concat(), "direction    -1,0,0, of the moving body"),
-        (&[&["depth"], &APART[..]].concat(), "apart: the bodies have no point in common"),
+        (&[&["depth"], &DEEP[..]].concat(), "direction    -1,0,0, for the moving body"),
+        (&[&["depth"], &APART[..]].concat(), "apart: the bodies have no common point"),
         (
             &[&["within"], &APART[..], &["--length", "3"]].concat(),
             "closer: the bodies are no farther apart than 3",
@@ -103,7 +103,7 @@ fn answers_are_told_in_words() {
 }
 
 #[test]
-fn proofs_hold_here_and_in_fractions() {
+fn saved_proofs_hold_in_both_checkers() {
     let folder = folder();
     let folder = folder.path();
     let within = |length| ["--length", length];
@@ -137,7 +137,7 @@ fn proofs_hold_here_and_in_fractions() {
 }
 
 #[test]
-fn pictures_show_the_way_between() {
+fn pictures_show_the_shortest_way() {
     let folder = folder();
     let folder = folder.path();
     for (command, bodies, said) in [
@@ -159,7 +159,7 @@ fn pictures_show_the_way_between() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_distance_arguments_are_rejected() {
     let folder = folder();
     let folder = folder.path();
     let within = |length| ["within", "cube.off", "cube.off", "--length", length];
@@ -168,8 +168,8 @@ fn what_is_wrong_is_said() {
     refused(folder, &within("inf"), 2, &["--length", "finite"]);
     refused(folder, &within("two"), 2, &["--length"]);
     refused(folder, &["within", "cube.off", "cube.off"], 2, &["--length <L>"]);
-    refused(folder, &["distance", "cube.off"], 2, &["or --from"]);
-    refused(folder, &["distance", "cube.off", "cube.off", "cube.off"], 2, &["3 meshes, not two"]);
+    refused(folder, &["distance", "cube.off"], 2, &["fixed meshes with --from"]);
+    refused(folder, &["distance", "cube.off", "cube.off", "cube.off"], 2, &["3 meshes given, expected two"]);
     refused(folder, &["distance", "cube.off", "none.off"], 3, &["none.off: cannot be read"]);
     refused(folder, &["distance", "cube.off", "broken.off"], 3, &["broken.off"]);
     refused(folder, &["distance", "cube.off", "open.off"], 3, &["open.off", "--open"]);
@@ -187,7 +187,7 @@ fn what_is_wrong_is_said() {
 }
 
 #[test]
-fn lines_of_a_batch_are_the_commands() {
+fn batch_answers_equal_those_of_the_commands() {
     let folder = folder();
     let cube = r#"{"mesh":"cube.off"}"#;
     let line = |query: &str, fixed: &str, pose: &str| {
@@ -227,16 +227,16 @@ fn lines_of_a_batch_are_the_commands() {
 }
 
 #[test]
-fn lines_that_do_not_fit_their_query_are_refused() {
+fn fields_of_other_queries_are_rejected() {
     let folder = folder();
     let bodies = r#""moving":{"mesh":"cube.off"},"fixed":{"mesh":"cube.off"}"#;
     let wrong = [
         (r#""query":"within""#, "needs a `length`"),
         (r#""query":"within","length":-1"#, "the length -1 is negative"),
-        (r#""query":"distance","length":1"#, r#"`length` is for "query": "within""#),
-        (r#""query":"distance","direction":[1,0,0]"#, "`direction` is not for this query"),
-        (r#""query":"depth","tolerance":0"#, "`tolerance` is not for this query"),
-        (r#""direction":[1,0,0],"length":1"#, r#"`length` is for "query": "within""#),
+        (r#""query":"distance","length":1"#, r#"`length` requires "query": "within""#),
+        (r#""query":"distance","direction":[1,0,0]"#, "`direction` does not belong to this query"),
+        (r#""query":"depth","tolerance":0"#, "`tolerance` does not belong to this query"),
+        (r#""direction":[1,0,0],"length":1"#, r#"`length` requires "query": "within""#),
         (r#""query":"contact""#, "missing field `direction`"),
         (r#""query":"far""#, "within"),
     ];
@@ -253,7 +253,7 @@ fn lines_that_do_not_fit_their_query_are_refused() {
 }
 
 #[test]
-fn what_a_hull_has_dropped_is_said() {
+fn points_dropped_by_a_hull_are_reported() {
     let folder = folder();
     let folder = folder.path();
     let near = "OFF\n5 3 0\n0 0 0\n1 0 0\n0.5 1e-16 0\n0 1 0\n1 1 1\n3 0 1 3\n3 1 4 3\n3 0 2 4\n";
@@ -261,6 +261,6 @@ fn what_a_hull_has_dropped_is_said() {
     let ask =
         ["within", "near.off", "cube.off", "--hull", "--moving-pose", "9,0,0", "--length", "3"];
     let text = answered(folder, &ask);
-    let told = "but for      what of the moving part itself";
+    let told = "except for   points of the moving part itself";
     assert_eq!(text.contains(told), text.contains("proven for"), "{text}");
 }

@@ -7,7 +7,7 @@ use crate::support::data;
 use colltrans_testkit::TemporaryFolder;
 
 #[test]
-fn the_program_writes_the_committed_files() {
+fn example_program_writes_the_committed_files() {
     let folder = TemporaryFolder::new();
     make_parts::write_parts(folder.path()).unwrap();
     let mut names: Vec<_> =

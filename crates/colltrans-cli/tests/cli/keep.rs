@@ -1,4 +1,4 @@
-//! A gap to be kept: `--keep`, and `"keep"` in batches.
+//! The minimum gap: `--keep`, and `"keep"` in batches.
 
 use serde_json::Value;
 
@@ -10,7 +10,7 @@ fn number(record: &Value, field: &str) -> f64 {
 }
 
 #[test]
-fn casts_and_clearances_keep_a_gap() {
+fn casts_and_clearances_use_the_minimum_gap() {
     let folder = folder();
     let with = |extra: &[&str]| json(&answered(folder.path(), &[&CAST, extra].concat()));
     let record = with(&["--keep", "0.25", "--json"]);
@@ -18,7 +18,7 @@ fn casts_and_clearances_keep_a_gap() {
     assert_eq!(number(&record, "keep"), 0.25);
     assert!(with(&["--json"])["keep"].is_null());
     let text = answered(folder.path(), &[&CAST[..], &["--keep", "0.25"]].concat());
-    assert!(text.contains("kept") && text.contains("0.25, a gap"), "{text}");
+    assert!(text.contains("minimum gap  0.25, at which"), "{text}");
     // Of convex meshes, and of parts.
     for parts in [&[][..], &["--tolerance", "0"]] {
         let clearance = |gap: &str| {
@@ -32,11 +32,11 @@ fn casts_and_clearances_keep_a_gap() {
     }
     let dent = ["clearance", "cube.off", "dent.off", "--direction", "-z", "--moving-pose"];
     let text = answered(folder.path(), &[&dent[..], &["0,0,5", "--keep", "0.5"]].concat());
-    assert!(text.starts_with("blocked") && text.contains("0.5, a gap"), "{text}");
+    assert!(text.starts_with("blocked") && text.contains("minimum gap  0.5, at which"), "{text}");
 }
 
 #[test]
-fn gaps_that_are_none_are_refused() {
+fn invalid_minimum_gaps_are_rejected() {
     let folder = folder();
     for gap in ["-1", "nan", "inf", "a"] {
         refused(folder.path(), &[&CAST[..], &["--keep", gap]].concat(), 2, &["--keep"]);
@@ -46,7 +46,7 @@ fn gaps_that_are_none_are_refused() {
 }
 
 #[test]
-fn saved_proofs_are_of_the_gap() {
+fn saved_proofs_include_the_minimum_gap() {
     let folder = folder();
     for (fixed, name) in [("cube.off", "convex.json"), ("dent.off", "parts.json")] {
         let asked = ["clearance", "cube.off", fixed, "--direction", "-z", "--moving-pose", "0,0,5"];
@@ -68,7 +68,7 @@ fn saved_proofs_are_of_the_gap() {
 }
 
 #[test]
-fn lines_of_a_batch_keep_gaps() {
+fn batch_queries_use_the_minimum_gap() {
     let folder = folder();
     let line = |body: &str, more: &str| {
         let fixed = format!("{{\"{body}\":\"cube.off\"}}");

@@ -1,4 +1,4 @@
-//! The real binary, run as a user runs it.
+//! Runs the program as a user does.
 
 mod among;
 mod assembly;
@@ -8,6 +8,7 @@ mod clearance;
 mod directions;
 mod distance;
 mod example_parts;
+mod help;
 mod keep;
 mod motion;
 mod newcomers;

@@ -28,7 +28,7 @@ fn names_of(folder: &Path, file: &str, extension: &str) -> Vec<String> {
 
 #[cfg(unix)]
 #[test]
-fn a_picture_never_overwrites_a_mesh() {
+fn picture_that_would_overwrite_a_mesh_is_rejected() {
     let folder = folder();
     // A mesh may have any name that a link to it has not.
     for picture in &names_of(folder.path(), "cube.off", "svg")[2..] {
@@ -36,7 +36,7 @@ fn a_picture_never_overwrites_a_mesh() {
         for (moving, fixed) in [("cube.off", "dent.off"), ("dent.off", "cube.off")] {
             let arguments =
                 ["cast", moving, fixed, "--hull", "--direction", "x", "--picture", picture];
-            refused(folder.path(), &arguments, 3, &[picture, "is the same file as cube.off"]);
+            refused(folder.path(), &arguments, 3, &[picture, "is the same file as the input cube.off"]);
         }
         assert!(contents(folder.path()) == before);
     }
@@ -44,12 +44,12 @@ fn a_picture_never_overwrites_a_mesh() {
 }
 
 #[test]
-fn a_picture_is_svg() {
+fn picture_path_requires_svg_extension() {
     let folder = folder();
     for name in ["out.png", "out", "cube.off"] {
         let before = contents(folder.path());
         let arguments = [&CAST[..], &["--picture", name]].concat();
-        refused(folder.path(), &arguments, 2, &["pictures are written as SVG", ".svg"]);
+        refused(folder.path(), &arguments, 2, &["pictures are SVG files", ".svg"]);
         assert!(contents(folder.path()) == before);
     }
 }
@@ -59,13 +59,13 @@ const QUERY: &str =
 
 #[cfg(unix)]
 #[test]
-fn results_never_overwrite_what_is_read() {
+fn results_that_would_overwrite_an_input_are_kept_elsewhere() {
     let folder = folder();
     let path = folder.path();
     std::fs::write(path.join("q.jsonl"), QUERY).unwrap();
     for output in names_of(path, "q.jsonl", "jsonl") {
         let before = contents(path);
-        refused(path, &["batch", "q.jsonl", "-o", &output], 3, &["holds the queries"]);
+        refused(path, &["batch", "q.jsonl", "-o", &output], 3, &["contains the queries"]);
         let input = std::fs::File::open(path.join("q.jsonl")).unwrap();
         let result = std::process::Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
             .args(["batch", "-", "-o", &output])
@@ -92,7 +92,7 @@ fn results_never_overwrite_what_is_read() {
 
 #[cfg(unix)]
 #[test]
-fn results_replace_an_earlier_file_in_the_end() {
+fn results_replace_an_existing_file() {
     let folder = folder();
     let path = folder.path();
     std::fs::write(path.join("q.jsonl"), QUERY).unwrap();
@@ -109,7 +109,7 @@ fn results_replace_an_earlier_file_in_the_end() {
 }
 
 #[test]
-fn a_hull_says_what_it_exceeds_and_what_that_means() {
+fn hull_excess_and_its_meaning_are_reported() {
     let folder = folder();
     let path = folder.path();
     let cast = |more: &[&str]| {
@@ -154,13 +154,13 @@ fn a_hull_says_what_it_exceeds_and_what_that_means() {
     let records: Vec<_> = stdout(&output).lines().map(json).collect();
     assert_eq!(records[0]["translation"], 7.0);
     assert_eq!(records[0]["hull"]["moving"]["depth"], 0.5);
-    for (record, word) in records[1..].iter().zip(["not convex", "scale 0", "are for meshes"]) {
+    for (record, word) in records[1..].iter().zip(["not convex", "scale 0", "require a `mesh`"]) {
         assert!(record["message"].as_str().unwrap().contains(word), "{record}");
     }
 }
 
 #[test]
-fn scales_angles_and_named_axes() {
+fn scales_angles_and_axis_names_are_applied() {
     let folder = folder();
     let path = folder.path();
     let cast = |more: &[&str]| {
@@ -181,12 +181,12 @@ fn scales_angles_and_named_axes() {
     assert!((turned - 4.0).abs() < 1e-12, "{turned}");
     let both = ["--moving-pose", "0,0,0,0,0,0,1", "--moving-rpy", "0,0,90"];
     let arguments = [&["cast", "cube.off", "cube.off", "--direction", "x"], &both[..]].concat();
-    refused(path, &arguments, 2, &["--moving-rpy; give one of them"]);
+    refused(path, &arguments, 2, &["--moving-rpy have a rotation; give one of them"]);
     for (option, value, word) in [
         ("--moving-scale", "0", "positive"),
         ("--moving-scale", "-1", "positive"),
         ("--fixed-rpy", "1,2", "roll,pitch,yaw"),
-        ("--direction", "w", "neither three numbers (x,y,z) nor an axis (x, -x,"),
+        ("--direction", "w", "expected three numbers (x,y,z) or an axis (x, -x,"),
     ] {
         let mut arguments = vec!["cast", "cube.off", "cube.off", option, value];
         if option != "--direction" {
@@ -197,7 +197,7 @@ fn scales_angles_and_named_axes() {
 }
 
 #[test]
-fn a_quaternion_of_few_digits_is_normalised_and_that_is_said() {
+fn quaternion_with_few_digits_is_normalised_with_a_note() {
     let folder = folder();
     let pose = "--moving-pose";
     let arguments = ["cast", "cube.off", "cube.off", "--direction", "x", pose];
@@ -211,7 +211,7 @@ fn a_quaternion_of_few_digits_is_normalised_and_that_is_said() {
 }
 
 #[test]
-fn a_scan_gives_one_answer_a_line() {
+fn cast_along_many_directions_prints_one_line_each() {
     let folder = folder();
     let path = folder.path();
     std::fs::write(path.join("d.txt"), "\u{feff}x # ahead\r\n\r\n-x\n0 0 -2\n0,0,0\n").unwrap();
@@ -241,7 +241,7 @@ fn a_scan_gives_one_answer_a_line() {
     std::fs::write(path.join("none.txt"), "# nothing\n").unwrap();
     for (file, word) in [
         ("bad.txt", "bad.txt: line 2: neither three numbers"),
-        ("none.txt", "none.txt: holds no directions"),
+        ("none.txt", "none.txt: contains no directions"),
         ("missing.txt", "missing.txt: cannot be read"),
     ] {
         let output = scan(&[file]);
@@ -350,7 +350,7 @@ fn the_cache_has_a_size() {
 }
 
 #[test]
-fn a_scan_of_clearances_never_says_more_than_is_proven() {
+fn clearances_along_many_directions_are_rounded_down() {
     let folder = folder();
     let path = folder.path();
     std::fs::write(path.join("d.txt"), "x\n0.7,0.01,0.02\n-x\nz\n").unwrap();
@@ -381,7 +381,7 @@ fn a_scan_of_clearances_never_says_more_than_is_proven() {
 }
 
 #[test]
-fn where_sliding_bodies_meet_is_said() {
+fn slide_reports_its_translation() {
     let folder = folder();
     let beside = ["clearance", "cube.off", "cube.off", "--moving-pose=-3,1,0", "--direction", "x"];
     let text = stdout(&run(folder.path(), &beside));
@@ -391,7 +391,7 @@ fn where_sliding_bodies_meet_is_said() {
 }
 
 #[test]
-fn a_mesh_that_is_not_finite_has_no_volume() {
+fn info_of_a_nan_vertex_has_no_volume() {
     let folder = folder();
     let text = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 nan 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
     std::fs::write(folder.path().join("nan.off"), text).unwrap();
@@ -402,11 +402,11 @@ fn a_mesh_that_is_not_finite_has_no_volume() {
 
 /// Help fits the terminal, and says who speaks.
 #[test]
-fn help_fits_the_terminal() {
+fn help_lines_fit_the_terminal() {
     let folder = folder();
     let version = colltrans(folder.path()).arg("--version").output().unwrap();
     assert_eq!(stdout(&version), "colltrans 0.2.0\n");
-    for command in ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay"] {
+    for command in ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay", "files"] {
         for columns in [80, 120] {
             for flag in ["--help", "-h"] {
                 let mut program = colltrans(folder.path());
@@ -425,7 +425,7 @@ fn help_fits_the_terminal() {
 
 /// A closed surface is closed in all that is said of it.
 #[test]
-fn info_does_not_call_a_closed_mesh_open() {
+fn info_reports_inward_faces_as_closed() {
     let folder = folder();
     let turned = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n";
     std::fs::write(folder.path().join("turned.off"), turned).unwrap();
@@ -454,7 +454,7 @@ fn angle(before: &str) -> String {
 }
 
 #[test]
-fn a_vertex_that_no_face_uses_makes_no_part_convex() {
+fn unused_vertex_does_not_affect_convexity() {
     let folder = folder();
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
     write("angle.obj", angle(""));
@@ -468,12 +468,12 @@ fn a_vertex_that_no_face_uses_makes_no_part_convex() {
         let answer = json(&answered(folder.path(), &asked("clearance", &["--json"])));
         assert_eq!(answer["outcome"], "free", "{angle}: {answer}");
         let told = stdout(&run(folder.path(), &["info", angle]));
-        assert!(told.contains("40 x 40 x 10") && told.contains("no; `clearance` takes"), "{told}");
+        assert!(told.contains("40 x 40 x 10") && told.contains("no; `clearance` accepts"), "{told}");
     }
 }
 
 #[test]
-fn a_mesh_that_is_convex_by_tolerance_says_how_deep_its_dent_is() {
+fn dent_within_the_convex_tolerance_is_reported() {
     let folder = folder();
     let cube = std::fs::read_to_string(folder.path().join("dent.off")).unwrap();
     let flat = cube.replace("0.5 0.5 0.75", "0.5 0.5 0.999995");
@@ -514,7 +514,7 @@ fn a_mesh_that_is_convex_by_tolerance_says_how_deep_its_dent_is() {
 /// The runtime opens `/dev/null` in the place of a closed stream; whoever opens it himself wants no output.
 #[cfg(unix)]
 #[test]
-fn a_closed_standard_output_is_an_error() {
+fn closed_standard_output_returns_exit_code_5() {
     let folder = folder();
     let program = assert_cmd::cargo::cargo_bin("colltrans");
     let cube = data().join("cube.off");

@@ -12,7 +12,7 @@ fn files() -> [String; 3] {
 }
 
 #[test]
-fn a_wire_in_the_way_is_met() {
+fn arm_touches_a_wire_on_its_path() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     let text = answered(folder.path(), &["path", &arm, &rows, &wire]);
     assert!(
@@ -33,11 +33,11 @@ fn a_wire_in_the_way_is_met() {
         (&json!("free"), &json!(["tool", "wire"]))
     );
     let alone = answered(folder.path(), &["path", &arm, &rows]);
-    assert!(alone.starts_with("free: no two bodies of those asked about meet on"), "{alone}");
+    assert!(alone.starts_with("free: no two bodies of the checked pairs meet on"), "{alone}");
     assert!(alone.contains("  left out     base, upper; upper, fore; fore, tool\n"), "{alone}");
     let kept = ["path", &arm, &rows, &wire, "--keep", "0.2"];
     let text = answered(folder.path(), &kept);
-    assert!(text.contains("  kept         0.2, a gap"), "{text}");
+    assert!(text.contains("  minimum gap  0.2, at which"), "{text}");
     let kept = read(&answered(folder.path(), &[&kept[..], &["--json"]].concat()));
     assert_eq!((&kept["outcome"], &kept["keep"]), (&json!("contact"), &json!(0.2)));
     let small = ["path", &arm, &rows, &wire, "--scene-scale", "0.001", "--json"];
@@ -45,7 +45,7 @@ fn a_wire_in_the_way_is_met() {
 }
 
 #[test]
-fn what_is_not_asked_is_said() {
+fn skipped_pairs_and_limits_are_noted() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     let said = stderr(&run(folder.path(), &["path", &arm, &rows, &wire]));
     assert!(said.contains("3 pairs of links with one joint between them are not checked"), "{said}");
@@ -68,7 +68,7 @@ fn what_is_not_asked_is_said() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn invalid_inputs_are_rejected_with_their_place() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     fs::write(folder.path().join("short.csv"), "0,0\n").unwrap();
     fs::write(folder.path().join("text.csv"), "0,0,x\n").unwrap();
@@ -83,14 +83,14 @@ fn what_is_wrong_is_told() {
         (vec!["path", &arm, "none.csv"], 3, "none.csv: cannot be read"),
         (vec!["path", &wire, &rows], 3, "URDF"),
         (vec!["path", &arm, "foo.json"], 3, "foo.json: JSON: neither a list of rows nor"),
-        (vec!["path", &arm, &rows, "--ignore", "tool"], 2, "--ignore tool: not A,B"),
+        (vec!["path", &arm, &rows, "--ignore", "tool"], 2, "--ignore tool: expected two names A,B"),
         (vec!["path", &arm, &rows, "--joint", "reach=1mm"], 2, "NAME=VALUE, in radians or metres"),
         (
             vec!["path", &arm, &rows, "--ignore", "tool,hand"],
             2,
             "--ignore: unknown name hand; known names: base, upper",
         ),
-        (vec!["path", &arm, &rows, "--joint", "reach"], 2, "--joint reach: not NAME=VALUE"),
+        (vec!["path", &arm, &rows, "--joint", "reach"], 2, "--joint reach: expected NAME=VALUE"),
         (
             vec!["path", &arm, &rows, "--joint", "reach=0"],
             3,
@@ -105,7 +105,7 @@ fn what_is_wrong_is_told() {
 }
 
 #[test]
-fn a_proof_is_checked_elsewhere() {
+fn path_proof_holds_and_changed_ones_do_not() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     let file = folder.path().join("proof.json");
     answered(folder.path(), &["path", &arm, &rows, &wire, "--save-proof", "proof.json"]);
@@ -143,20 +143,20 @@ fn a_proof_is_checked_elsewhere() {
 }
 
 #[test]
-fn what_is_given_twice_is_refused() {
+fn repeated_columns_and_joints_are_rejected() {
     let (folder, [arm, rows, _]) = (folder(), files());
     fs::write(folder.path().join("twice.csv"), "shoulder,elbow,elbow\n0,0,0\n").unwrap();
     let said = stderr(&run(folder.path(), &["path", &arm, "twice.csv"]));
     assert!(said.contains("twice.csv: names of columns: duplicate name `elbow`"), "{said}");
     let joints = ["path", &arm, &rows, "--joint", "reach=0.1", "--joint", "reach=0.2"];
     let said = stderr(&run(folder.path(), &joints));
-    assert!(said.contains("--joint reach=0.2: this joint is there twice"), "{said}");
+    assert!(said.contains("--joint reach=0.2: this joint has two values"), "{said}");
     let said = stderr(&run(folder.path(), &["path", &arm, &rows, "--joint", "reach=nan"]));
-    assert!(said.contains("--joint reach=nan: not NAME=VALUE"), "{said}");
+    assert!(said.contains("--joint reach=nan: expected NAME=VALUE"), "{said}");
 }
 
 #[test]
-fn bodies_of_one_name_are_told_apart() {
+fn bodies_with_the_same_file_name_are_named_by_path() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     fs::create_dir(folder.path().join("far")).unwrap();
     let far = fs::read_to_string(&wire).unwrap().replace("v ", "v 9");
@@ -193,7 +193,7 @@ fn slide(name: &str, parent: &str, child: &str, x: f64) -> String {
 }
 
 #[test]
-fn all_pairs_that_overlap_at_the_start_are_named_as_options_take_them() {
+fn overlapping_pairs_are_listed_as_options_and_srdf() {
     let folder = folder();
     // Four boxes of size 1, each 0.4 on from the one before: all pairs but the first and the last overlap.
     let joints =
@@ -218,7 +218,7 @@ fn all_pairs_that_overlap_at_the_start_are_named_as_options_take_them() {
 }
 
 #[test]
-fn velocities_that_are_not_used_are_said_and_fail_where_that_is_strict() {
+fn unused_velocities_are_noted_and_fail_with_strict() {
     let folder = folder();
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
@@ -243,7 +243,7 @@ fn velocities_that_are_not_used_are_said_and_fail_where_that_is_strict() {
 }
 
 #[test]
-fn a_path_without_any_pair_is_refused() {
+fn path_without_a_pair_is_rejected() {
     let folder = folder();
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
@@ -252,7 +252,7 @@ fn a_path_without_any_pair_is_refused() {
 }
 
 #[test]
-fn names_of_overlapping_pairs_are_written_for_a_shell_and_for_xml() {
+fn names_of_overlapping_pairs_are_quoted_for_shell_and_xml() {
     let (folder, [arm, rows, _]) = (folder(), files());
     let wall = folder.path().join("a <b> & c.off");
     fs::copy(data().join("cube.off"), &wall).unwrap();
@@ -267,7 +267,7 @@ fn names_of_overlapping_pairs_are_written_for_a_shell_and_for_xml() {
 }
 
 #[test]
-fn pairs_nearer_than_a_gap_at_the_start_are_not_said_to_overlap() {
+fn pairs_within_the_gap_at_the_start_are_too_near() {
     let folder = folder();
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
@@ -279,7 +279,7 @@ fn pairs_nearer_than_a_gap_at_the_start_are_not_said_to_overlap() {
 }
 
 #[test]
-fn meshes_convex_by_tolerance_report_their_dents_under_their_names() {
+fn dents_are_reported_by_name() {
     let folder = folder();
     let dent = fs::read_to_string(folder.path().join("dent.off")).unwrap();
     let flat = |depth: f64| dent.replace("0.5 0.5 0.75", &format!("0.5 0.5 {}", 1.0 - depth));
@@ -309,7 +309,7 @@ fn meshes_convex_by_tolerance_report_their_dents_under_their_names() {
 }
 
 #[test]
-fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
+fn invalid_mesh_needs_the_hull_option() {
     let folder = folder();
     // Its first face crosses itself.
     let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0.5 0.5 1\nf 1 4 2 3\nf 1 2 5\nf 2 3 5\n";
@@ -340,7 +340,7 @@ fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
         assert_eq!((&told["outcome"], &told["hulls"]), (&json!("free"), &json!(["b"])));
     }
     let text = answered(folder.path(), &[&asked[..], &["--hull", "b"]].concat());
-    assert!(text.contains("  hulls        b: a contact of one"), "{text}");
+    assert!(text.contains("  hulls        b: a contact is that"), "{text}");
     let unknown = run(folder.path(), &[&asked[..], &["--hull", "c"]].concat());
     assert!(stderr(&unknown).contains("no link c"), "{}", stderr(&unknown));
     let srdf = "<robot><disable_collisions link1=\"a\" link2=\"hand\" reason=\"Never\"/></robot>";

@@ -55,7 +55,7 @@ fn picture(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn a_contact() {
+fn picture_of_a_contact_has_labels_and_legend() {
     let folder = folder();
     let svg = picture(folder.path(), &CAST);
     for part in [
@@ -71,7 +71,7 @@ fn a_contact() {
 }
 
 #[test]
-fn other_outcomes() {
+fn pictures_of_other_outcomes_state_them() {
     let folder = folder();
     let at = |pose: &str| {
         let more = ["cast", "cube.off", "cube.off", "--direction", "0,0,-1", "--moving-pose", pose];
@@ -95,7 +95,7 @@ fn other_outcomes() {
 
 /// Points, segments, polygons, and sizes that have nothing to do with each other.
 #[test]
-fn odd_bodies() {
+fn pictures_of_degenerate_bodies_are_well_formed() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("point.obj", "v 0.5 0.5 0.5\n");
@@ -114,7 +114,7 @@ fn odd_bodies() {
 }
 
 #[test]
-fn example_parts() {
+fn pictures_of_example_parts_are_well_formed() {
     let folder = folder();
     let part = |name: &str| data().join(name).to_str().unwrap().to_owned();
     let parts =
@@ -129,7 +129,7 @@ fn example_parts() {
 }
 
 #[test]
-fn parts_that_are_not_convex() {
+fn pictures_of_nonconvex_parts_are_well_formed() {
     let folder = folder();
     let [bolt, plate] = ["bolt.stl", "plate.off"].map(|part| data().join(part));
     for part in [&bolt, &plate] {
@@ -147,7 +147,7 @@ fn parts_that_are_not_convex() {
     assert!(svg.contains("stroke-dasharray"), "hidden edges");
     assert!(svg.len() < 100_000, "{} bytes", svg.len());
     let free = ask(&["z", "--moving-pose", "0,0,7"]);
-    assert!(free.contains("Free: nothing stops it along d") && !free.contains(">n<"));
+    assert!(free.contains("Free: nothing stops the body along d") && !free.contains(">n<"));
     assert!(ask(&["1,2,3", "--moving-pose", "1,0,-1"]).contains("Overlapping"));
     // Far larger than what it touches, and far away.
     ask(&["-z", "--moving-pose", "0,0,9000"]);

@@ -28,7 +28,7 @@ pub(crate) fn saved(folder: &Path, arguments: &[&str]) -> Value {
 
 /// The proofs on which the tests of `check.py` stand.
 #[test]
-fn the_proofs_of_the_other_verifier_hold() {
+fn proofs_of_the_python_tests_hold() {
     let saved = fs::read_dir(data().join("../python/tests/proofs")).unwrap();
     for file in saved.map(|file| file.unwrap().path()) {
         let output = run(Path::new("."), &["verify", file.to_str().unwrap()]);
@@ -37,7 +37,7 @@ fn the_proofs_of_the_other_verifier_hold() {
 }
 
 #[test]
-fn a_saved_proof_holds_and_is_told_in_one_line() {
+fn saved_proof_holds_and_prints_one_line() {
     let folder = folder();
     let folder = folder.path();
     let pair = |command, y| {
@@ -79,7 +79,7 @@ fn a_saved_proof_holds_and_is_told_in_one_line() {
 }
 
 #[test]
-fn a_proof_between_solids_holds() {
+fn proof_of_a_solid_clearance_holds() {
     let folder = folder();
     let folder = folder.path();
     let clear = ["clear", "dent.off", "--from", "cube.off", "dent.off", "--direction", "-z"];
@@ -97,10 +97,10 @@ fn a_proof_between_solids_holds() {
 }
 
 #[test]
-fn shrunk_bodies_that_are_inside_out_are_counted() {
+fn inverted_facets_of_offset_bodies_are_reported() {
     let folder = folder();
     let folder = folder.path();
-    // Between the tip of the dent and the bottom there are three quarters.
+    // The wall between the tip of the dent and the bottom is 0.75 thick.
     let clear = ["clear", "dent.off", "--from", "cube.off", "--direction", "-z", "--moving-pose"];
     for (tolerance, inside_out) in [("0.5", false), ("0.9", true)] {
         let mut all = clear.to_vec();
@@ -114,7 +114,7 @@ fn shrunk_bodies_that_are_inside_out_are_counted() {
 }
 
 #[test]
-fn what_does_not_hold_has_a_code_of_its_own() {
+fn changed_proof_returns_exit_code_6() {
     let folder = folder();
     let folder = folder.path();
     let file = saved(folder, &CAST);
@@ -129,7 +129,7 @@ fn what_does_not_hold_has_a_code_of_its_own() {
 }
 
 #[test]
-fn other_files_are_no_proofs() {
+fn files_without_a_proof_are_rejected() {
     let folder = folder();
     let folder = folder.path();
     let text = saved(folder, &CAST).to_string();
@@ -147,13 +147,13 @@ fn other_files_are_no_proofs() {
     let with = |more: &[&'static str]| [&CAST[..], more].concat();
     refused(folder, &with(&["--save-proof", "cube.off"]), 3, &["is the same file", "another name"]);
     let one = with(&["--save-proof", "a.svg", "--picture", "a.svg"]);
-    refused(folder, &one, 2, &["--save-proof and --picture name one file"]);
+    refused(folder, &one, 2, &["--save-proof and --picture name the same file"]);
     let many = ["cast", "cube.off", "cube.off", "--directions", "-", "--save-proof", "a.json"];
     refused(folder, &many, 2, &["--directions"]);
 }
 
 #[test]
-fn the_example_parts_are_proven() {
+fn clearance_of_example_parts_has_a_proof() {
     let folder = TemporaryFolder::new();
     let part = |name: &str| data().join("gearbox_small").join(name).display().to_string();
     let (cover, housing, gear) = (part("cover.off"), part("housing.off"), part("gear.off"));

@@ -67,7 +67,7 @@ fn printed(arguments: &str) -> String {
 }
 
 #[test]
-fn commands_print_what_it_shows() {
+fn readme_shows_the_printed_output() {
     let shown = shown_commands(&blocks(), "cargo run --release -- ");
     for (arguments, output) in &shown {
         assert_eq!(printed(arguments), *output, "{arguments}");
@@ -77,7 +77,7 @@ fn commands_print_what_it_shows() {
 
 /// Every command of a guide that is followed by its output.
 #[test]
-fn guides_show_what_commands_print() {
+fn guides_show_the_printed_output() {
     let mut pages: Vec<PathBuf> = std::fs::read_dir(root().join("docs/guide"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -99,7 +99,7 @@ fn guides_show_what_commands_print() {
 }
 
 #[test]
-fn programs_are_files() {
+fn readme_programs_match_example_files() {
     let mut found = 0;
     for block in blocks().iter().filter(|block| block.language == "rust") {
         let name = block.before.strip_prefix("<!-- ").and_then(|rest| rest.strip_suffix(" -->"));
@@ -112,7 +112,7 @@ fn programs_are_files() {
 }
 
 #[test]
-fn it_is_short() {
+fn readme_has_at_most_200_lines() {
     let lines = std::fs::read_to_string(root().join("README.md")).unwrap().lines().count();
     assert!(lines <= 200, "{lines} lines");
 }

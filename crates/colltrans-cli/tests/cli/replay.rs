@@ -7,7 +7,7 @@ use colltrans_testkit::TemporaryFolder;
 use crate::support::{colltrans, stderr, stdout};
 
 #[test]
-fn a_saved_query_is_answered_again() {
+fn replayed_query_has_the_same_answer() {
     let folder = TemporaryFolder::new();
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
     let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0)).unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::support::{answered, folder, refused};
 
 #[test]
-fn what_is_written_is_said_and_there() {
+fn setup_prints_and_writes_all_files() {
     let folder = folder();
     let said = answered(folder.path(), &["setup", "--prefix", "all"]);
     for file in said.lines() {
@@ -24,7 +24,7 @@ fn what_is_written_is_said_and_there() {
 }
 
 #[test]
-fn every_command_has_a_page() {
+fn each_command_has_a_man_page() {
     let folder = folder();
     answered(folder.path(), &["setup", "--prefix", "."]);
     let page = |name: &str| {
@@ -42,7 +42,7 @@ fn every_command_has_a_page() {
 }
 
 #[test]
-fn one_shell_is_printed_and_nothing_written() {
+fn print_writes_no_file() {
     let folder = folder();
     let printed = answered(folder.path(), &["setup", "--print", "powershell"]);
     assert!(printed.contains("Register-ArgumentCompleter"));
@@ -51,7 +51,7 @@ fn one_shell_is_printed_and_nothing_written() {
 }
 
 #[test]
-fn a_file_in_the_way_is_said() {
+fn unwritable_prefix_returns_exit_code_5() {
     let folder = folder();
     refused(folder.path(), &["setup", "--prefix", "cube.off"], 5, &["cube.off/share"]);
 }

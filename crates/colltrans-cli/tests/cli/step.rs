@@ -17,7 +17,7 @@ fn converter(folder: &Path, line: &str) -> String {
 
 #[cfg(unix)]
 #[test]
-fn step_files_are_converted() {
+fn step_file_is_converted_to_glb() {
     let folder = folder();
     let at = folder.path();
     std::fs::write(at.join("a.step"), "ISO-10303-21;").unwrap();
@@ -69,7 +69,7 @@ fn step_files_are_converted() {
 }
 
 #[test]
-fn several_bodies_are_parts_or_one() {
+fn bodies_of_a_file_are_split_or_joined() {
     let folder = folder();
     let at = folder.path();
     let cube = std::fs::read_to_string(at.join("cube.off")).unwrap();

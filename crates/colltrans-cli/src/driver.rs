@@ -98,7 +98,7 @@ pub(crate) fn answer_directions(
     let (count, mut failed) = (directions.len(), 0);
     for direction in directions {
         let mut line =
-            answer(direction).unwrap_or_else(|failure| Line::error(failure.into_message()));
+            answer(direction).unwrap_or_else(|failure| Line::from_error(failure.into_message()));
         failed += usize::from(line.is_error());
         line.record = line.record.with_direction(direction.to_array());
         print(&if as_json { record::json_line(&line) } else { text(&line, direction) })?;

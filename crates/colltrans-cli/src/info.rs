@@ -1,4 +1,4 @@
-//! `colltrans info`: what a mesh file holds.
+//! `colltrans info`: describes mesh files.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use crate::failure::{Code, Failure, print};
 use crate::numbers::{about, counted, known, six_digits, vector};
 use crate::report::push_line;
 use crate::solid;
-use crate::terminal::shown;
+use crate::terminal::escape_line;
 
-/// Names that are listed.
-const MOST_NAMED: usize = 8;
+/// Maximum number of names that are listed.
+const MAX_NAMES: usize = 8;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
@@ -22,25 +22,30 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
         let options = ReadOptions::default().with_merge_tolerance(arguments.merge_tolerance);
         match colltrans_mesh::read_with(path, options) {
             Ok(mesh) if mesh.vertices.is_empty() => {
-                unreadable.push(format!("{}: holds no vertices", path.display()));
+                unreadable.push(format!("{}: contains no vertices", path.display()));
             }
             Ok(mesh) => {
-                let text = describe(path, &mesh, arguments.convex_tolerance);
+                let text = describe_mesh(path, &mesh, arguments.convex_tolerance);
                 print(&text)?;
             }
             Err(error) => unreadable.push(error.to_string()),
         }
     }
-    if unreadable.is_empty() { Ok(()) } else { Err(Failure::several(Code::Input, unreadable)) }
+    if unreadable.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::with_messages(Code::Input, unreadable))
+    }
 }
 
-fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
-    let mut text = format!("{}\n", shown(path.display()));
-    push_line(&mut text, "vertices", &vertices(mesh));
-    push_line(&mut text, "faces", &faces(mesh));
+/// Returns the description of a mesh, one property per line.
+fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> String {
+    let mut text = format!("{}\n", escape_line(path.display()));
+    push_line(&mut text, "vertices", &vertex_count(mesh));
+    push_line(&mut text, "faces", &face_count(mesh));
     let not_finite = mesh.vertices.iter().position(|v| !v.is_finite());
-    let no_number = not_finite.map(|vertex| format!("none: vertex {vertex} is not finite"));
-    if let Some(why) = &no_number {
+    let not_finite = not_finite.map(|vertex| format!("none: vertex {vertex} is not finite"));
+    if let Some(why) = &not_finite {
         push_line(&mut text, "extent", why);
     } else if let Some([low, high]) = mesh.bounds() {
         let [x, y, z] = (high - low).to_array().map(|c| known(c, 1e-14 * mesh.extent()));
@@ -55,36 +60,36 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         push_line(&mut text, "merged", &merged.to_string());
     }
     if !mesh.faces.is_empty() {
-        push_line(&mut text, "surface", &surface(mesh));
+        push_line(&mut text, "surface", &closedness(mesh));
     }
     let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
     let signed = mesh.signed_volume();
-    let volume = match no_number {
+    let volume = match not_finite {
         Some(why) if !(is_closed && signed.is_finite()) => why,
-        _ if is_closed => computed(signed),
+        _ if is_closed => volume_text(signed),
         _ => "none: the faces do not enclose a body".into(),
     };
     push_line(&mut text, "volume", &volume);
-    for (name, what) in solid::describe(mesh) {
+    for (name, what) in solid::description_lines(mesh) {
         push_line(&mut text, name, &what);
     }
-    for (name, what) in parts(mesh) {
+    for (name, what) in part_lines(mesh) {
         push_line(&mut text, name, &what);
     }
-    // Tolerance 0 makes the library say how deep the worst face lies, however little.
+    // With tolerance 0 the error has the depth of the deepest face.
     match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
         Ok(_) => push_line(&mut text, "convex", "yes, to rounding error"),
         Err(BuildError::NotConvex { face, depth, .. }) => {
-            push_line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
+            push_line(&mut text, "convex", &convexity_text(mesh, face, depth, convex_tolerance));
         }
         Err(error) => push_line(&mut text, "convex", &format!("no: {error}")),
     }
     match body::hull(mesh) {
         Ok(hull) => {
-            push_line(&mut text, "hull", &counts(&hull));
-            push_line(&mut text, "hull volume", &computed(hull.volume()));
+            push_line(&mut text, "hull", &hull_counts(&hull));
+            push_line(&mut text, "hull volume", &volume_text(hull.volume()));
             let excess = Excess::of(mesh, &hull);
-            let tolerance = tolerance(mesh, asked_tolerance);
+            let tolerance = dent_tolerance(mesh, convex_tolerance);
             if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
                 push_line(&mut text, "hull exceeds", &excess.to_string());
             }
@@ -100,42 +105,44 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     text
 }
 
-/// The parts that `assembly` makes of it, if these are several.
-fn parts(mesh: &Mesh) -> Vec<(&'static str, String)> {
+/// Returns lines about the parts into which `assembly` splits the mesh; none if it stays one part.
+fn part_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     let named: Vec<String> = mesh.named().into_iter().map(|(name, _)| name).collect();
     if !named.is_empty() {
-        let more = if named.len() > MOST_NAMED { ", ..." } else { "" };
-        let first = named[..named.len().min(MOST_NAMED)].join(", ");
-        lines.push(("names", format!("{}: {}{more}", named.len(), shown(first))));
+        let more = if named.len() > MAX_NAMES { ", ..." } else { "" };
+        let first = named[..named.len().min(MAX_NAMES)].join(", ");
+        lines.push(("names", format!("{}: {}{more}", named.len(), escape_line(first))));
     }
-    if let Ok(Some(apart)) = body::bodies(mesh, &BodyOptions::default()) {
-        let what = format!("{}, apart with `assembly --split bodies`", apart.meshes.len());
+    if let Ok(Some(split)) = body::bodies(mesh, &BodyOptions::default()) {
+        let what = format!("{}, split with `assembly --split bodies`", split.meshes.len());
         lines.push(("bodies", what));
     }
     lines
 }
 
-fn vertices(mesh: &Mesh) -> String {
+/// Returns the number of vertices, and of those in no face.
+fn vertex_count(mesh: &Mesh) -> String {
     match mesh.stray_vertices() {
         0 => mesh.vertices.len().to_string(),
         unused => {
-            format!("{}, {unused} of them used by no face", mesh.vertices.len())
+            format!("{}, {unused} of them in no face", mesh.vertices.len())
         }
     }
 }
 
-/// How deep a face may lie below the hull.
-fn tolerance(mesh: &Mesh, convex_tolerance: Option<f64>) -> f64 {
+/// Returns the depth below the hull to which a mesh counts as convex.
+fn dent_tolerance(mesh: &Mesh, convex_tolerance: Option<f64>) -> f64 {
     BodyOptions::default().with_convex_tolerance(convex_tolerance).convex_tolerance_of(mesh)
 }
 
-fn faces(mesh: &Mesh) -> String {
+/// Returns the number of faces, and of triangles among them.
+fn face_count(mesh: &Mesh) -> String {
     let count = mesh.faces.len();
     let triangles = mesh.faces.iter().filter(|f| f.len() == 3).count();
     let largest = mesh.faces.iter().map(Vec::len).max().unwrap_or(0);
     if count == 0 {
-        "0 (a cloud of points)".into()
+        "0 (a point cloud)".into()
     } else if triangles == count {
         format!("{count}, all triangles")
     } else {
@@ -143,29 +150,31 @@ fn faces(mesh: &Mesh) -> String {
     }
 }
 
-/// A sum of many products.
-fn computed(volume: f64) -> String {
+/// Returns a volume with the digits that rounding leaves: it is a sum of many products.
+fn volume_text(volume: f64) -> String {
     known(volume, 1e-13 * volume)
 }
 
-fn surface(mesh: &Mesh) -> String {
+/// Describes whether the surface is closed, or one of its open edges.
+fn closedness(mesh: &Mesh) -> String {
     let open = mesh.open_edges();
     match open.as_slice() {
         [] => "closed".into(),
         [[a, b], ..] => format!(
-            "not closed: {} no partner that runs the other way, one of them from vertex {a} to vertex {b}",
+            "not closed: {} no oppositely directed partner, one of them from vertex {a} to vertex {b}",
             counted(open.len(), "edge has", "edges have")
         ),
     }
 }
 
-fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>) -> String {
-    let tolerance = tolerance(mesh, asked_tolerance);
+/// Describes the deepest dent of a mesh.
+fn convexity_text(mesh: &Mesh, face: usize, depth: f64, convex_tolerance: Option<f64>) -> String {
+    let tolerance = dent_tolerance(mesh, convex_tolerance);
     let relative = depth / mesh.extent();
     let verdict = if depth <= tolerance {
         "yes, within tolerance"
     } else {
-        "no; `clearance` takes it as it is, --hull takes its hull"
+        "no; `clearance` accepts it, --hull takes its hull"
     };
     format!(
         "{verdict}: face {face} lies {} below the hull, {} of the extent (tolerated: {})",
@@ -175,7 +184,8 @@ fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>)
     )
 }
 
-fn counts(hull: &ConvexPolyhedron) -> String {
+/// Describes the dimension, the vertices, the edges and the faces of a hull.
+fn hull_counts(hull: &ConvexPolyhedron) -> String {
     let shape = match hull.dimension() {
         0 => "a point: ",
         1 => "a segment: ",

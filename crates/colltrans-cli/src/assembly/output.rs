@@ -57,7 +57,7 @@ fn write_files(
     folder: &Path,
     json: &serde_json::Value,
 ) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|e| Failure::output(folder.display(), &e))?;
+    std::fs::create_dir_all(folder).map_err(|e| Failure::write_error(folder.display(), &e))?;
     let mut outputs = Outputs::default();
     let mut put = |name: &str, bytes: &[u8]| outputs.write(folder.join(name), bytes);
     let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());

@@ -138,7 +138,12 @@ fn invalid_scene_arguments_are_rejected() {
     refused(folder, &three, 2, &["3 meshes given", "cube.off --among dent.off open.off", "--from"]);
     let two = ["distance", "cube.off", "dent.off", "--among", "scene.jsonl"];
     refused(folder, &two, 2, &["one mesh before --among"]);
-    refused(folder, &["distance", "cube.off", "scene.jsonl"], 2, &["give files of obstacles to --among"]);
+    refused(
+        folder,
+        &["distance", "cube.off", "scene.jsonl"],
+        2,
+        &["give files of obstacles to --among"],
+    );
     // Where there are no others to be among, nothing is said of them.
     for command in ["directions", "depth"] {
         for bodies in
@@ -266,7 +271,10 @@ fn graze_tolerance_is_reported() {
     let ask = ["clearance", "cube.off", "--among", "aside.jsonl", "--direction", "1,0,0"];
     let graze = ["--graze-tolerance", "0.5", "--save-proof", "proof.json"];
     let text = answered(folder, &[&ask[..], &graze].concat());
-    assert!(text.contains("obstacles that overlap sideways by no more than 0.5 do not block"), "{text}");
+    assert!(
+        text.contains("obstacles that overlap sideways by no more than 0.5 do not block"),
+        "{text}"
+    );
     let text = answered(folder, &["verify", "proof.json"]);
     assert!(text.contains("passed where they overlap sideways by no more than 0.5"), "{text}");
 }

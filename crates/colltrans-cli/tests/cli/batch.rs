@@ -434,7 +434,10 @@ fn motion_queries_are_answered_or_rejected() {
     let moved = format!(r#""moving_motion":{turn}"#);
     let bad = [
         (asked(there), "\"motion\" needs a `moving_motion` or a `fixed_motion`"),
-        (asked(&format!(r#"{moved},"direction":[1,0,0]"#)), "`direction` does not belong to this query"),
+        (
+            asked(&format!(r#"{moved},"direction":[1,0,0]"#)),
+            "`direction` does not belong to this query",
+        ),
         (asked(&format!(r#"{moved},"keep":1,"tolerance":1"#)), "either `keep` or `tolerance`"),
         (asked(&format!(r#"{moved},"keep":-1"#)), "-1"),
         (asked(&moved.replace("axis\":[0,0,1]", "axis\":[0,0,0]")), "moving_motion: the axis"),

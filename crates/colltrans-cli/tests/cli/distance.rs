@@ -169,7 +169,12 @@ fn invalid_distance_arguments_are_rejected() {
     refused(folder, &within("two"), 2, &["--length"]);
     refused(folder, &["within", "cube.off", "cube.off"], 2, &["--length <L>"]);
     refused(folder, &["distance", "cube.off"], 2, &["fixed meshes with --from"]);
-    refused(folder, &["distance", "cube.off", "cube.off", "cube.off"], 2, &["3 meshes given, expected two"]);
+    refused(
+        folder,
+        &["distance", "cube.off", "cube.off", "cube.off"],
+        2,
+        &["3 meshes given, expected two"],
+    );
     refused(folder, &["distance", "cube.off", "none.off"], 3, &["none.off: cannot be read"]);
     refused(folder, &["distance", "cube.off", "broken.off"], 3, &["broken.off"]);
     refused(folder, &["distance", "cube.off", "open.off"], 3, &["open.off", "--open"]);

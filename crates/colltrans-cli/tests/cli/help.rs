@@ -4,8 +4,23 @@ use crate::support::{answered, folder};
 
 /// Subcommands in the order of `colltrans --help`.
 const COMMANDS: [&str; 17] = [
-    "info", "distance", "within", "depth", "clearance", "cast", "motion", "path", "directions",
-    "assembly", "batch", "verify", "replay", "setup", "files", "json", "",
+    "info",
+    "distance",
+    "within",
+    "depth",
+    "clearance",
+    "cast",
+    "motion",
+    "path",
+    "directions",
+    "assembly",
+    "batch",
+    "verify",
+    "replay",
+    "setup",
+    "files",
+    "json",
+    "",
 ];
 
 #[test]
@@ -20,7 +35,10 @@ fn help_has_at_most_90_lines_and_short_help_at_most_40() {
             if lines > most {
                 too_long.push(format!("{command} {flag}: {lines} lines, at most {most}"));
             }
-            assert!(text.lines().all(|line| line.chars().count() <= 100), "{command} {flag}: {text}");
+            assert!(
+                text.lines().all(|line| line.chars().count() <= 100),
+                "{command} {flag}: {text}"
+            );
         }
     }
     assert!(too_long.is_empty(), "{too_long:#?}");

@@ -62,7 +62,11 @@ fn clearance_permits_sliding_and_stops_at_penetration() {
     let stopped = ["--moving-pose=0,0,1", "--fixed-pose=3,0,1", "--slide", "4,0,0"];
     let cubes = ["motion", "cube.off", "cube.off", "--clearance"];
     let text = answered(folder.path(), &[&cubes[..], &stopped].concat());
-    assert!(text.starts_with("blocked: the body can move until the time below\n") && text.contains("0.5 of"), "{text}");
+    assert!(
+        text.starts_with("blocked: the body can move until the time below\n")
+            && text.contains("0.5 of"),
+        "{text}"
+    );
     let inside = ["--moving-pose=0.25,0,0", "--slide", "4,0,0"];
     let text = answered(folder.path(), &[&cubes[..], &inside].concat());
     assert!(text.contains("cube.off in cube.off: a tolerance of 0.75"), "{text}");
@@ -347,7 +351,9 @@ fn invalid_motion_arguments_are_rejected() {
         stderr(&output)
     };
     assert!(ask(&[]).contains("--turn"));
-    assert!(ask(&["--turn", "0,0", "z", "3"]).contains("--turn: 2 numbers given, expected 3 (x,y,z)"));
+    assert!(
+        ask(&["--turn", "0,0", "z", "3"]).contains("--turn: 2 numbers given, expected 3 (x,y,z)")
+    );
     assert!(ask(&["--turn", "0,0,0", "z", "x"]).contains("--turn: `x` is not a number of degrees"));
     assert!(ask(&["--turn", "0,0,0", "z", "1e9"]).contains("is not a number from -1e5 to 1e5"));
     assert!(ask(&["--slide", "1,0,0", "--turn", "0,0,0", "z", "1"]).contains("cannot be used"));

@@ -36,7 +36,12 @@ fn picture_that_would_overwrite_a_mesh_is_rejected() {
         for (moving, fixed) in [("cube.off", "dent.off"), ("dent.off", "cube.off")] {
             let arguments =
                 ["cast", moving, fixed, "--hull", "--direction", "x", "--picture", picture];
-            refused(folder.path(), &arguments, 3, &[picture, "is the same file as the input cube.off"]);
+            refused(
+                folder.path(),
+                &arguments,
+                3,
+                &[picture, "is the same file as the input cube.off"],
+            );
         }
         assert!(contents(folder.path()) == before);
     }
@@ -240,7 +245,7 @@ fn cast_along_many_directions_prints_one_line_each() {
     std::fs::write(path.join("bad.txt"), "x\nsideways\n").unwrap();
     std::fs::write(path.join("none.txt"), "# nothing\n").unwrap();
     for (file, word) in [
-        ("bad.txt", "bad.txt: line 2: neither three numbers"),
+        ("bad.txt", "bad.txt: line 2: expected three numbers"),
         ("none.txt", "none.txt: contains no directions"),
         ("missing.txt", "missing.txt: cannot be read"),
     ] {
@@ -253,7 +258,7 @@ fn cast_along_many_directions_prints_one_line_each() {
 }
 
 #[test]
-fn clearance_tells_its_cases_apart() {
+fn each_clearance_outcome_is_printed() {
     let folder = folder();
     let clearance = |pose: &str, more: &[&str]| {
         let first = ["clearance", "cube.off", "cube.off", "--direction", "2,0,0", "--moving-pose"];
@@ -305,7 +310,7 @@ fn clearance_tells_its_cases_apart() {
 
 /// Zeros that are rounding errors, as computed corners have them.
 #[test]
-fn what_was_merged_is_said() {
+fn merged_vertices_are_reported() {
     let folder = folder();
     let path = folder.path();
     let cube = std::fs::read_to_string(path.join("cube.off")).unwrap();
@@ -325,7 +330,7 @@ fn what_was_merged_is_said() {
 }
 
 #[test]
-fn contents_that_belie_the_name_are_named() {
+fn file_with_a_wrong_extension_is_rejected() {
     let folder = folder();
     let path = folder.path();
     std::fs::copy(path.join("cube.off"), path.join("cube.stl")).unwrap();
@@ -336,7 +341,7 @@ fn contents_that_belie_the_name_are_named() {
 
 /// A body that is too large for the cache is built once all the same, if it is the last one used.
 #[test]
-fn the_cache_has_a_size() {
+fn results_do_not_depend_on_the_cache_size() {
     let folder = folder();
     let queries = vec![QUERY; 50].join("\n");
     let batch = |size: &str| {
@@ -406,7 +411,9 @@ fn help_lines_fit_the_terminal() {
     let folder = folder();
     let version = colltrans(folder.path()).arg("--version").output().unwrap();
     assert_eq!(stdout(&version), "colltrans 0.2.0\n");
-    for command in ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay", "files"] {
+    for command in
+        ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay", "files"]
+    {
         for columns in [80, 120] {
             for flag in ["--help", "-h"] {
                 let mut program = colltrans(folder.path());
@@ -468,7 +475,10 @@ fn unused_vertex_does_not_affect_convexity() {
         let answer = json(&answered(folder.path(), &asked("clearance", &["--json"])));
         assert_eq!(answer["outcome"], "free", "{angle}: {answer}");
         let told = stdout(&run(folder.path(), &["info", angle]));
-        assert!(told.contains("40 x 40 x 10") && told.contains("no; `clearance` accepts"), "{told}");
+        assert!(
+            told.contains("40 x 40 x 10") && told.contains("no; `clearance` accepts"),
+            "{told}"
+        );
     }
 }
 

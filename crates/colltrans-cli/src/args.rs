@@ -114,7 +114,7 @@ pub(crate) enum Command {
     Batch(BatchArguments),
     /// Check a proof that --save-proof has written, without a search
     ///
-    /// Prints in one line what is proven about the bodies in the file. Exit code 6 if the proof does not hold.
+    /// Prints the proven statement about the bodies in the file in one line. Exit code 6 if the proof does not hold.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[VERIFY_NOTES]))]
     Verify(VerifyArguments),
     /// Answer a saved query again

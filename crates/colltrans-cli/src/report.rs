@@ -292,7 +292,7 @@ pub(crate) fn push_min_gap(text: &mut String, keep: Option<f64>) {
     }
 }
 
-/// Appends by how much hulls exceed their meshes, and what the answer means for the meshes.
+/// Appends the excess of hulls over their meshes, and the meaning of the answer for the meshes.
 pub(crate) fn push_hulls(text: &mut String, hulls: Option<Hulls>, outcome: Ending, is_depth: bool) {
     let Some(hulls) = hulls else { return };
     for (name, excess) in hulls.named_excesses() {

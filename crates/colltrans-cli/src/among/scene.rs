@@ -50,7 +50,7 @@ pub(super) struct Scene {
     pub(super) names: Vec<String>,
     precisions: Vec<f64>,
     dents: Vec<Option<f64>>,
-    /// Notes about repairs, and by how much hulls exceed their meshes.
+    /// Notes about repairs, and about hulls that exceed their meshes.
     pub(super) notes: Vec<String>,
 }
 

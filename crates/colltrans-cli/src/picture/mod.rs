@@ -198,7 +198,7 @@ impl PictureBodies {
         }
     }
 
-    /// Returns the moving body as it is drawn solid: at its start, or at its stop if it has no other start.
+    /// Returns the solid moving body: at its start, or at its stop if both places agree.
     fn solid(&self) -> &Solid {
         self.start.as_ref().unwrap_or(&self.stop)
     }

@@ -46,8 +46,9 @@ fn score(view: &View, bodies: [&Solid; 2], d: DVec3, n: DVec3) -> f64 {
     2.0 * shown_length(d) + 1.5 * shown_length(n) + 0.6 * shapes + 1.2 * against
 }
 
-/// How evenly the visible area is spread over the faces: the entropy of their projected
-/// areas, 1 if all of one half are seen alike.
+/// Returns how evenly the visible area is distributed over the faces: the entropy of their projected areas, which is 1 if
+/// half of the faces are visible with equal areas. Returns 0 for fewer than four faces or more than
+/// [`MAX_SHAPE_FACES`], except for flat bodies.
 fn shape_score(view: &View, body: &Solid) -> f64 {
     match body.areas.as_slice() {
         // Of a flat body, the cosine between its normal and the view.

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::proof::{checked_in_fractions, saved};
 use crate::support::{answered, folder, json as read, refused, run, stderr, stdout};
 
-/// A row of cubes, one in two units, a body that is not convex, and a cube of points without a name.
+/// Writes a scene: a row of cubes at distances of 2, a body that is not convex, and points without a name.
 fn scene(folder: &std::path::Path) {
     let cube = |k: usize| {
         format!(
@@ -51,14 +51,14 @@ fn scene_queries_find_nearest_near_and_first_obstacles() {
     let kept = ask("clearance", &["--direction", "-z", "--keep", "0.5"]);
     assert!((number(&kept, "distance") - 2.5).abs() < 1e-9 && kept["keep"] == 0.5, "{kept}");
     assert_eq!(ask("clearance", &["--direction", "z"])["outcome"], "free");
-    // The one that is not convex, and the one of points, by the line of its file.
+    // The body that is not convex is named by its file, the points by their line.
     let place = |pose: &str| {
         let asked = ["distance", "cube.off", "--among", "scene.jsonl", "--json", "--moving-pose"];
         read(&answered(folder, &[&asked[..], &[pose]].concat()))
     };
     assert_eq!(place("0,40,5")["fixed"], "dent.off");
     assert_eq!(place("0,95,0")["fixed"], "line 23");
-    // Meshes in place, and a scene beside them.
+    // Meshes in place, and a file of obstacles.
     let meshes =
         ["distance", "cube.off", "--among", "cube.off", "dent.off", "scene.jsonl", "--json"];
     let told = read(&answered(folder, &[&meshes[..], &["--moving-pose", "2.2,0,3"]].concat()));
@@ -111,7 +111,7 @@ fn scene_proofs_hold_in_both_checkers() {
         let told = read(&answered(folder, &["verify", "proof.json", "--json"]));
         assert_eq!((&told["holds"], &told["obstacles"]), (&json!(true), &json!(22)));
         checked_in_fractions(folder, code);
-        // A cube where the moving one is.
+        // An obstacle is moved to the place of the moving body.
         let mut changed = file;
         let places = &mut changed["placement"]["poses"];
         places[2]["pose"] = places[0]["pose"].clone();
@@ -144,7 +144,7 @@ fn invalid_scene_arguments_are_rejected() {
         2,
         &["give files of obstacles to --among"],
     );
-    // Where there are no others to be among, nothing is said of them.
+    // Commands without scenes do not mention them.
     for command in ["directions", "depth"] {
         for bodies in
             [&["cube.off"][..], &["a.off", "b.off", "c.off"], &["cube.off", "scene.jsonl"]]
@@ -205,7 +205,7 @@ fn unknown_options_suggest_their_command() {
     );
 }
 
-/// How the independent checker ends; nothing where there is no Python.
+/// Returns the exit code of the independent checker; `None` without a Python.
 fn checked(folder: &std::path::Path, proof: &Value) -> Option<i32> {
     std::fs::write(folder.join("proof.json"), proof.to_string()).unwrap();
     let checker = crate::support::data().join("../python/src/colltrans/check.py");
@@ -223,7 +223,7 @@ fn forged_rounding_in_a_scene_proof_is_rejected() {
     let ask = ["clearance", "cube.off", "--among", "behind.jsonl", "--direction", "1,0,0"];
     let mut proof = saved(folder, &ask);
     assert!(checked(folder, &proof).is_none_or(|code| code == 0));
-    // Moved ahead, and said to be behind to within rounding.
+    // The obstacle is moved ahead, and forged bounds claim that it is behind to within rounding.
     proof["placement"]["poses"][1]["pose"]["translation"] = json!([3.0, 0.0, 0.0]);
     let free = &mut proof["statement"]["scene_clearance"]["passed"][0][1]["convex"]["free"];
     let certificate = &mut free["behind"]["certificate"];
@@ -241,7 +241,7 @@ fn convex_proof_of_a_nonconvex_body_is_rejected() {
     scene(folder);
     let asked = ["distance", "cube.off", "--among", "scene.jsonl", "--moving-pose", "0,40,5"];
     let mut proof = saved(folder, &asked);
-    // Weights may not mix vertices of a body that is not convex.
+    // Convex combinations of vertices may lie outside of a body that is not convex.
     let pairs: Vec<Value> = (0..4).map(|k| json!({ "moving": k, "fixed": k })).collect();
     let near = json!({ "convex": {
         "pairs": pairs, "weights": [0.25, 0.25, 0.25, 0.25], "distance": 100.0,

@@ -1,4 +1,4 @@
-//! `colltrans assembly`: the small gearbox of `data/`, and small files that the tests write.
+//! `colltrans assembly`: the small gearbox of `data/`, and small generated files.
 
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::support::{self, colltrans, data, folder, json, stderr, stdout};
 
-/// A cube from 0 to 1, one upon it, and what places them: as URDF and as manifests.
+/// Returns a folder with a unit cube on another one, as a manifest and as URDF files.
 fn stacked() -> TemporaryFolder {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
@@ -114,7 +114,7 @@ fn free_travels_have_bounds_and_blockers() {
     encloses(&found["plan"][0], "travel", 1e-12);
     assert_eq!(room("high", 1.0)["outcome"], "free");
     assert_eq!(room("low", 1.0)["by"], "high");
-    // Grown to keep apart they overlap.
+    // With a minimum gap they overlap.
     let tight = facts(folder.path(), &["two.toml", "--keep-apart", "0.1", "--direction", "z"]);
     assert_eq!(tight["rooms"][0]["outcome"], "overlapping");
     assert_eq!((&tight["keep_apart"], tight.get("tolerance")), (&0.1.into(), None));
@@ -174,12 +174,12 @@ fn output_files_are_self_contained() {
     let out = folder.path().join("out");
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.starts_with("<!doctype html>") || page.starts_with("<!DOCTYPE html>"));
-    // Nothing is fetched; the viewer's program is part of the page.
+    // The page references no other file; the viewer is part of it.
     for word in ["<script src", "src=\"http", "href=\"http", "@import", "url("] {
         assert!(!page.contains(word), "{word}");
     }
     assert!(page.contains("<svg") && page.contains("high"));
-    // The animation is an assembly too: its nodes are the parts.
+    // The animation can be read as an assembly: its nodes are the parts.
     let back = facts(&out, &["disassembly.glb"]);
     let found: Vec<&str> =
         back["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
@@ -210,14 +210,14 @@ fn outputs_that_would_overwrite_inputs_are_rejected() {
     std::fs::write(place.join("matrix.csv"), "z\n").unwrap();
     let arguments = ["two.toml", "--directions", "matrix.csv", "-o", "."];
     refused(place, &arguments, 3, &["matrix.csv: is the same file as the input matrix.csv"]);
-    // A mesh may be reached by any name.
+    // An input may have another name by a hard link.
     #[cfg(unix)]
     {
         std::fs::create_dir(place.join("out")).unwrap();
         std::fs::hard_link(place.join("cube.off"), place.join("out/report.html")).unwrap();
         refused(place, &["two.toml", "-o", "out"], 3, &["is the same file as the input cube.off"]);
     }
-    // Where a file stands no folder can be made.
+    // A folder cannot replace a file.
     refused(place, &["two.toml", "-o", "open.off"], 5, &["open.off"]);
 }
 
@@ -385,7 +385,7 @@ fn pipes_and_devices_are_rejected() {
     }
 }
 
-/// Codes in names reach neither the terminal nor, as formulas or markup, the files.
+/// Control characters in names are escaped on the terminal; formulas and markup are escaped in files.
 #[test]
 fn control_characters_in_names_are_escaped() {
     let folder = stacked();
@@ -428,7 +428,7 @@ fn control_characters_in_names_are_escaped() {
     let output = run(place, &["m.json", "--map", "\u{1b}[31m"]);
     assert_eq!(output.status.code(), Some(2));
     clean(&stderr(&output));
-    // As the name of a file, too.
+    // The same for names of files.
     let file = "c\u{1b}[31m\n.off";
     std::fs::copy(place.join("cube.off"), place.join(file)).unwrap();
     std::fs::copy(place.join("broken.off"), place.join("b\u{7}.off")).unwrap();
@@ -483,7 +483,7 @@ fn full_disk_returns_exit_code_5_and_leaves_no_file() {
             String::from_utf8_lossy(&output.stderr).contains("standard output: cannot be written")
         );
     }
-    // A picture that cannot be written whole: the limit on the size of files is that of a full disk.
+    // A limit of the file size simulates a full disk.
     std::fs::write(place.join("old.svg"), "old").unwrap();
     let script = format!(
         "trap '' XFSZ; ulimit -f 1; {0} cast cube.off cube.off --direction x --picture new.svg; echo $?; \
@@ -553,7 +553,7 @@ fn manifest_constraints_change_the_plan() {
     assert!(kept["plan"][0]["direction"][2].as_f64().unwrap() < 0.8);
 }
 
-/// A block and a ring beside it that overlaps it by 0.05, on a floor.
+/// Returns a folder with a block and a ring that overlaps it by 0.05, on a floor.
 fn pressed() -> TemporaryFolder {
     let folder = folder();
     let mut parts = String::from("unit = 'mm'\n");

@@ -1,4 +1,4 @@
-//! `colltrans batch`: order, threads, bad lines, one line after the other.
+//! `colltrans batch`: order, threads, invalid lines, streams.
 
 use colltrans_testkit::TemporaryFolder;
 use std::fmt::Write as _;
@@ -11,7 +11,7 @@ use serde_json::Value;
 const BOX: &str =
     r#"{"points":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[0.5,0.5,0.5]]}"#;
 
-/// Queries with ever other distances; every seventh is separated.
+/// Returns queries with increasing distances; every seventh is separated.
 fn queries(count: usize) -> String {
     let mut text = String::new();
     for i in 0..count {
@@ -107,7 +107,7 @@ fn invalid_line_returns_one_error() {
 
 #[test]
 fn many_blank_lines_are_skipped() {
-    // More of them than fit in what is read at once.
+    // More lines than one read returns.
     let text = format!("{}{}", " \n".repeat(2 << 20), queries(2));
     let (output, results) = run(&text, &["--threads", "2"]);
     assert!(output.status.success(), "{}", stderr(&output));
@@ -193,7 +193,7 @@ fn queries_and_results_use_files_or_standard_streams() {
     }
 }
 
-/// A result comes as soon as its query is there, before the next one is.
+/// Each result is written before the next query is read.
 #[test]
 fn each_query_is_answered_before_the_next_arrives() {
     let folder = folder();
@@ -294,7 +294,7 @@ fn type_errors_use_terms_of_json() {
 #[test]
 fn merged_vertices_are_noted_in_the_result() {
     let folder = folder();
-    // The tetrahedron's first corner once more, a little off, for one of its faces.
+    // One face of the tetrahedron has a nearby copy of the first corner.
     let text = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1e-17 0 0\n\
         3 0 2 1\n3 0 1 3\n3 4 3 2\n3 1 2 3\n";
     std::fs::write(folder.path().join("twins.off"), text).unwrap();
@@ -315,7 +315,7 @@ fn merged_vertices_are_noted_in_the_result() {
     }
 }
 
-/// Somebody ends it in the middle: what was there stays, and no file looks like results.
+/// A killed run leaves the old file, and only a partial file with another name.
 #[cfg(unix)]
 #[test]
 fn killed_batch_leaves_the_old_results() {
@@ -333,7 +333,7 @@ fn killed_batch_leaves_the_old_results() {
             .unwrap();
         let mut input = child.stdin.take().unwrap();
         input.write_all(queries(600).as_bytes()).unwrap();
-        // Until some results are written.
+        // Waits until some results are written.
         let partial = || {
             let entries = std::fs::read_dir(folder.path()).unwrap();
             let mut paths = entries.map(|entry| entry.unwrap().path());
@@ -355,7 +355,7 @@ fn killed_batch_leaves_the_old_results() {
     }
 }
 
-/// What touches may leave, and is stopped where it is pushed in.
+/// Bodies in contact may separate, and are blocked if they are pushed into each other.
 #[test]
 fn motion_clearance_queries_are_answered() {
     let line = |body: &str, more: &str| {
@@ -480,7 +480,7 @@ fn motion_queries_are_answered_or_rejected() {
     }
 }
 
-/// As of `--moving-pose`: one rule for quaternions of few digits, and a note for each field.
+/// The rule for quaternions with few digits is that of `--moving-pose`, with one note for each field.
 #[test]
 fn quaternions_with_few_digits_are_normalised_with_a_note() {
     let line = |body: &str, fields: &str| format!(r#"{{"moving":{body},"fixed":{BOX},{fields}}}"#);

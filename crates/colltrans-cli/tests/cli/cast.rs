@@ -1,10 +1,10 @@
-//! `colltrans cast` and `colltrans info`, run as a user runs them.
+//! `colltrans cast` and `colltrans info`.
 
 use std::process::Output;
 
 use crate::support::{CAST, CONTACT_FIELDS, colltrans, fields, folder, json, stderr, stdout};
 
-/// One line on standard error that says all of `words`, nothing on standard output.
+/// Asserts an exit code, an error message with all `words`, and an empty standard output.
 fn assert_error(output: &Output, code: i32, words: &[&str]) {
     let message = stderr(output);
     assert_eq!(output.status.code(), Some(code), "{message}");
@@ -132,7 +132,7 @@ fn separated_and_grazing_casts_in_json() {
     assert_eq!((&tolerant["overlap"], tolerant.get("margin")), (&0.25.into(), None));
     let opposite = outcome("0.75,0,9", &["--fixed-pose", "-1,-2,-3"]);
     assert_eq!(opposite["outcome"], "separated", "poses may begin with a minus sign");
-    // A quarter turn about z takes the cube to x from -1 to 0.
+    // A quarter turn about z moves the cube to x from -1 to 0.
     let turned = outcome("0.25,0,9,0,0,0.7071067811865476,0.7071067811865476", &[]);
     assert_eq!(turned["outcome"], "contact");
     let turned_away = outcome("-0.25,0,9,0,0,0.7071067811865476,0.7071067811865476", &[]);
@@ -319,7 +319,7 @@ fn hull_ignores_an_unused_vertex() {
 #[test]
 fn closed_pipe_does_not_panic() {
     let folder = folder();
-    // `true` reads nothing; the message of a panic would be the last line.
+    // `true` does not read the pipe. A panic would print a message.
     let binary = assert_cmd::cargo::cargo_bin("colltrans");
     let script =
         format!("{} info cube.off cube.off | true; echo ${{PIPESTATUS[0]}}", binary.display());

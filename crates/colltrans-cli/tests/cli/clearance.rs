@@ -1,4 +1,4 @@
-//! `colltrans clearance`, and solids in `batch` and `info`: small parts that the tests write.
+//! `colltrans clearance`, and solids in `batch` and `info`, with small generated parts.
 
 use std::path::Path;
 use std::process::Output;
@@ -14,7 +14,7 @@ fn pin(radius: f64, sides: usize, z: [f64; 2]) -> Mesh {
     extruded(&ring(sides, radius, 0.0).collect::<Vec<_>>(), z)
 }
 
-/// A plate from -4 to 4 with a round hole, a multiple of four sides.
+/// Returns a plate from -4 to 4 with a round hole; its number of sides is a multiple of four.
 fn plate(radius: f64, sides: u32, z: [f64; 2]) -> Mesh {
     let corners = [[4.0, 4.0], [-4.0, 4.0], [-4.0, -4.0], [4.0, -4.0]];
     let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0)).into_iter();
@@ -43,8 +43,7 @@ fn write(mesh: &Mesh, folder: &Path, name: &str) {
     std::fs::write(folder.join(name), colltrans_mesh::to_off(&mesh)).unwrap();
 }
 
-/// Binary STL, in which each triangle has its corners to itself, off by up to one step of single
-/// precision.
+/// Writes binary STL. Some corners of triangles are displaced by one unit in the last place of single precision.
 fn write_with_twins(mesh: &Mesh, folder: &Path, name: &str) {
     let triangles: Vec<[u32; 3]> = mesh.triangles().collect();
     let mut bytes = vec![0; 80];
@@ -63,8 +62,8 @@ fn write_with_twins(mesh: &Mesh, folder: &Path, name: &str) {
     std::fs::write(folder.join(name), bytes).unwrap();
 }
 
-/// A pin of radius 1 above a plate whose hole has the same radius and other sides; a block; an open
-/// block; a file that is none.
+/// Returns a folder with a pin of radius 1, a plate with a hole of the same radius and another number of sides, a block, a
+/// table, an open block, and a broken file.
 fn folder() -> TemporaryFolder {
     let folder = TemporaryFolder::new();
     write(&pin(1.0, 32, [0.0, 6.0]), folder.path(), "pin.off");
@@ -82,7 +81,7 @@ fn run(folder: &Path, words: &str, more: &[&str]) -> Output {
     colltrans(folder).arg("clear").args(words.split_whitespace()).args(more).output().unwrap()
 }
 
-/// The answer as JSON, and what is said beside it.
+/// Returns the answer as JSON, and the notes on standard error.
 fn ask(folder: &Path, words: &str) -> (Value, String) {
     let output = run(folder, words, &["--json"]);
     assert_eq!(output.status.code(), Some(0), "{words}: {}", stderr(&output));
@@ -108,7 +107,7 @@ fn bounds(value: &Value, name: &str) -> [f64; 2] {
     [0, 1].map(|k| bounds[k].as_f64().unwrap_or_else(|| panic!("{name}: {value}")))
 }
 
-/// The fields of a part that is blocked.
+/// The fields of the answer for blocked parts.
 const BLOCKED_FIELDS: [&str; 12] = [
     "distance",
     "exit",
@@ -136,7 +135,7 @@ fn bolt_is_blocked_by_its_head() {
     let tolerance = number(&answer, "tolerance");
     assert!(tolerance > 1e-7 && tolerance < 1e-5, "single precision: {answer}");
     assert!((number(&answer, "shrunk_distance") - 7.0 - tolerance).abs() < 1e-9, "{answer}");
-    // The head's top leaves the plate's underside after 12.
+    // The top of the head leaves the underside of the plate after 12.
     for (name, right) in [("translation", 7.0), ("exit", 12.0)] {
         let [lower, upper] = bounds(&answer, name);
         assert!(lower <= right && right <= upper && upper - lower < 1e-11, "{name}: {answer}");
@@ -190,7 +189,7 @@ fn pin_passes_a_hole_of_its_radius_with_chord_tolerance() {
     let (free, _) = ask(folder.path(), &format!("{words} --tolerance 0.01"));
     assert_eq!(fields(&free), ["exit", "exit_bounds", "outcome", "tolerance"], "{free}");
     assert_eq!((&free["outcome"], number(&free, "tolerance")), (&"free".into(), 0.01));
-    // Beside the hole it stops, whatever is tolerated.
+    // Next to the hole it is blocked with any tolerance.
     let beside = format!("{words} --tolerance 0.01").replace("0,0,3", "0.5,0,3");
     assert_eq!(ask(folder.path(), &beside).0["outcome"], "blocked");
 }
@@ -208,7 +207,7 @@ fn block_on_a_table_is_blocked_only_downwards() {
     let turned = "--moving-rpy 0,0,30 --fixed-rpy 90,0,0 --fixed-pose 0,0.0,0 --fixed-scale 2";
     let (turned, _) =
         ask(folder.path(), &format!("block.off --from table.off --direction y {turned}"));
-    // The table stands at y from 2 to 4; the block's corner is at cos 30 + sin 30.
+    // The table occupies y from 2 to 4; the corner of the block is at cos 30 + sin 30.
     let expected = 2.0 - (30.0_f64.to_radians().cos() + 0.5);
     assert!((number(&turned, "translation") - expected).abs() < 1e-9, "{turned}");
 }
@@ -231,7 +230,7 @@ fn start_overlaps_are_listed_by_file() {
     assert!((number(table, "least_tolerance") - 0.25).abs() < 1e-9, "{answer}");
     assert!(answer.get("distance").is_none() && answer.get("point").is_none(), "{answer}");
     let alone = "block.off --from table.off --direction z --moving-pose 0,0,-0.25";
-    // That tolerance parts them; then the block rests.
+    // That tolerance separates them; then the block rests on the table.
     let (up, _) = ask(folder.path(), &format!("{alone} --tolerance 0.2501"));
     assert_eq!(up["outcome"], "free");
     let down = format!("{alone} --tolerance 0.2501").replace("direction z", "direction -z");
@@ -244,7 +243,7 @@ fn start_overlaps_are_listed_by_file() {
         assert!(text.contains(part), "{part:?} is not in {text}");
     }
     assert!(text.contains("--tolerance permits it"), "{text}");
-    // A body within itself is parted by none, so none is advised.
+    // No tolerance separates a body from itself, so none is suggested.
     let itself = stdout(&run(folder.path(), "block.off --from block.off --direction z", &[]));
     assert!(itself.contains("no tolerance would separate them"), "{itself}");
     assert!(!itself.contains("--tolerance permits it"), "{itself}");
@@ -258,14 +257,14 @@ fn files_and_vertices_in_contact_are_named() {
     let words = "block.off high.off near.off --from table.off plate.off --direction -z \
                  --moving-pose 0,0,9";
     let (answer, _) = ask(folder.path(), words);
-    // The block is 8 above the plate, the near one 13 above the table.
+    // The block is 8 above the plate, the near block 13 above the table.
     assert!((number(&answer, "translation") - 8.0).abs() < 1e-9, "{answer}");
     assert_eq!((&answer["moving"], &answer["fixed"]), (&"block.off".into(), &"plate.off".into()));
     let aside = words.replace("0,0,9", "-10.5,-10.5,9").replace("-z --", "-z --tolerance 0 --");
     let (answer, _) = ask(folder.path(), &aside);
     assert!((number(&answer, "translation") - 13.0).abs() < 1e-9, "{answer}");
     assert_eq!((&answer["moving"], &answer["fixed"]), (&"near.off".into(), &"table.off".into()));
-    // The numbers of features are those of the file.
+    // Vertices of features are numbered as in their file.
     let text = stdout(&run(folder.path(), &aside, &[]));
     let line = text.lines().find(|line| line.contains("of near.off")).unwrap();
     let last = line.split_whitespace().filter_map(|word| word.parse::<usize>().ok()).max().unwrap();
@@ -303,7 +302,7 @@ fn open_surface_requires_open_flag() {
     let surface = "open.off: an open surface (4 open edges, the first from vertex 3 to vertex 1 of";
     assert!(notes.contains(surface), "{notes}");
     assert_eq!(answer["surfaces"], serde_json::json!(["moving"]));
-    // Nothing is inside it, but its walls block from both sides.
+    // It has no interior, but its walls block from both sides.
     let inside = "block.off --from open.off --direction -z --moving-scale 0.5 --open";
     let (within, _) = ask(folder.path(), inside);
     assert_eq!(within["surfaces"], serde_json::json!(["fixed"]));
@@ -325,7 +324,7 @@ fn convex_meshes_become_convex_bodies_and_others_parts() {
     let parts = placed("block.off table.off --tolerance 0.1");
     assert_eq!(parts["tolerance"], 0.1, "{parts}");
     assert_eq!(placed("pin.off plate.off --hull")["solver"], "portal");
-    // Nothing is left of the table, but something of both together.
+    // The offset removes the table, but not the union of both.
     let thin = placed("table.off block.off --from plate.off --tolerance 1.5");
     assert!(thin["notes"][0].as_str().unwrap().contains("inside out"), "{thin}");
 }
@@ -340,7 +339,7 @@ fn tolerance_beyond_the_thickness_is_rejected() {
         let said = ["leaves nothing of the fixed body, which is 1 thick", tolerance];
         refused(folder, &format!("{words} {tolerance}"), 2, &said);
     }
-    // Of a file among others nothing is left, which is told; what it overlaps as it is is named.
+    // The offset removes one of several files, which is noted. The overlap of its nominal surface is reported.
     let words = "table.off block.off --from plate.off --direction z --tolerance 1.5";
     let (within, notes) = ask(folder, words);
     assert_eq!(within["outcome"], "overlapping", "{within}");

@@ -1,4 +1,4 @@
-//! `colltrans directions` and `colltrans assembly --free`.
+//! `colltrans directions` and `colltrans assembly --free`, with proofs.
 
 use std::fs;
 use std::path::Path;
@@ -43,7 +43,7 @@ fn bolt_directions_have_a_proof_that_both_checkers_accept() {
     let told = read(&answered(folder.path(), &["verify", "proof.json", "--json"]));
     assert_eq!(told["outcome"], "free");
     checked_in_fractions(folder.path(), 7);
-    // Another facet blocks elsewhere.
+    // A changed facet does not block this cell.
     let cells = proof["statement"]["free_directions"]["cells"].as_array_mut().unwrap();
     let cell = cells.iter_mut().find(|cell| cell.get("blocked").is_some()).unwrap();
     let facet = cell["blocked"][0].as_u64().unwrap();
@@ -63,7 +63,7 @@ fn overlaps_are_reported_and_invalid_inputs_rejected() {
     let text =
         answered(folder, &["directions", "cube.off", "cube.off", "--moving-pose", "0.5,0,0"]);
     assert!(text.contains("--tolerance permits it"), "{text}");
-    // No tolerance parts a body from itself.
+    // No tolerance separates a body from itself.
     let text = answered(folder, &["directions", "cube.off", "cube.off"]);
     assert!(text.contains("no tolerance would separate them"), "{text}");
     assert!(!text.contains("--tolerance permits it") && text.contains("ignores it"), "{text}");
@@ -102,7 +102,7 @@ fn free_directions_of_assembly_parts_list_blockers() {
     assert_eq!(cover["cells"], 6, "six pairs of facets");
     assert_eq!(cover["blocked_by"][0]["fixed"], "shaft");
     assert_eq!(bolt["parts"], json!(["bolt_0"]));
-    // The files are doubles, so the bolt fills its hole; with a tolerance it leaves along a narrow cone.
+    // With the precision of doubles the bolt fills its hole. With a tolerance it can leave along a narrow cone.
     assert_eq!(bolt["also_free"], json!([[0.0, 0.0, 1.0]]));
     let asked = ["assembly", "gearbox_small", "--free", "bolt_0", "--tolerance", "2e-5"];
     let narrow = &facts(&data(), &asked)["free"][0];
@@ -140,7 +140,7 @@ fn oversized_coordinates_are_an_input_error() {
         fs::write(folder.join("wild.off"), wild).unwrap();
         refused(folder, &["directions", "wild.off", "cube.off"], 3, &["wild.off", words]);
     }
-    // A tolerance that somebody chose is a fault of the command line.
+    // A given tolerance that is too large is an error of the command line.
     let chosen = ["directions", "cube.off", "cube.off", "--tolerance", "1e40"];
     refused(folder, &chosen, 2, &["leaves nothing"]);
 }

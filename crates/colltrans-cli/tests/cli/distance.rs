@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 use crate::proof::{checked_in_fractions, saved};
 use crate::support::{answered, colltrans, folder, json as read, refused, run, stderr, stdout};
 
-/// A unit cube 3 to the left of another, and a little aside.
+/// A unit cube at a distance of 3 along x from another, offset along y and z.
 const APART: [&str; 4] = ["cube.off", "cube.off", "--moving-pose", "-3,0.25,-0.5"];
-/// Overlapping by a quarter along x.
+/// Two cubes that overlap by 0.25 along x.
 const DEEP: [&str; 4] = ["cube.off", "cube.off", "--moving-pose", "-0.75,0.25,-0.5"];
-/// A body that is not convex, over the tip of whose dent the cube stands.
+/// A cube above the tip of the dent of a body that is not convex.
 const PARTS: [&str; 4] = ["cube.off", "dent.off", "--moving-pose", "0,0,3"];
 
 fn ask(command: &str, bodies: &[&str], more: &[&str]) -> Value {
@@ -38,7 +38,7 @@ fn distance_has_bounds_points_and_features() {
     assert!(number(&told["steps"], "supports") > 0.0, "{told}");
     let told = ask("distance", &PARTS, &[]);
     assert!(number(&told, "lower") <= 2.0 && number(&told, "upper") >= 2.0, "{told}");
-    // As of their clearances.
+    // Answers for parts have no steps.
     assert!(told.get("steps").is_none(), "{told}");
     assert_eq!((&told["moving"], &told["fixed"]), (&json!("cube.off"), &json!("dent.off")));
     let told = ask("distance", &DEEP, &[]);
@@ -58,7 +58,7 @@ fn depth_has_bounds_and_direction() {
     let mut apart = ask("depth", &APART, &[]);
     assert!(number(&apart["steps"].take(), "supports") > 0.0, "{apart}");
     assert_eq!(apart, json!({"outcome": "apart", "lower": 0.0, "upper": 0.0, "steps": null}));
-    // Of parts another measure, under the name that a clearance has for it.
+    // For parts the answer is the least tolerance, as for a clearance.
     let told = ask("depth", &["cube.off", "dent.off", "--moving-pose", "0.9,0,0"], &[]);
     let depth = number(&told["start_overlaps"][0], "least_tolerance");
     assert!((depth - 0.1).abs() < 1e-6 && told.get("upper").is_none(), "{told}");
@@ -121,11 +121,11 @@ fn saved_proofs_hold_in_both_checkers() {
         saved(folder, &[&[command], &bodies[..], more].concat());
         let text = answered(folder, &["verify", "proof.json"]);
         assert!(text.starts_with(&format!("holds: {said}")), "{text}");
-        // That no two points of parts are nearer is not checked there.
+        // The checker in fractions does not check lower bounds of distances of parts.
         let is_part = bodies == &PARTS && said.contains("between");
         checked_in_fractions(folder, if is_part { 7 } else { 0 });
     }
-    // The answer is the same to the bit.
+    // The answer with a proof has the same bits.
     for (bodies, more) in [(&PARTS, &[][..]), (&PARTS, &within("1")), (&DEEP, &[])] {
         let command = if more.is_empty() { "distance" } else { "within" };
         let with =
@@ -149,7 +149,7 @@ fn pictures_show_the_shortest_way() {
         let picture = std::fs::read_to_string(folder.join("a.svg")).unwrap();
         assert!(picture.contains(said) && !picture.contains("NaN"), "{picture}");
     }
-    // A point, far from a segment.
+    // A point at a large distance from a segment.
     std::fs::write(folder.join("point.off"), "OFF\n1 0 0\n0 0 0\n").unwrap();
     std::fs::write(folder.join("segment.off"), "OFF\n2 0 0\n0 0 0\n1 1 1\n").unwrap();
     let bodies = ["point.off", "segment.off", "--hull", "--moving-pose", "0,0,1e6"];
@@ -220,7 +220,7 @@ fn batch_answers_equal_those_of_the_commands() {
     for (line, (_, alone)) in told.lines().zip(&asked) {
         let (mut told, mut alone) = (read(line), alone.clone());
         for answer in [&mut told, &mut alone] {
-            // Names of files are the commands' alone.
+            // Only the commands report names of files.
             let fields = answer.as_object_mut().unwrap();
             fields.retain(|name, _| !["id", "moving", "fixed"].contains(&name.as_str()));
             if let Some(overlap) = fields.get_mut("start_overlaps") {

@@ -1,4 +1,4 @@
-//! The committed example parts are what the program writes.
+//! The committed example parts equal the output of the program that writes them.
 
 #[path = "../../examples/make_parts.rs"]
 mod make_parts;

@@ -19,7 +19,7 @@ fn casts_and_clearances_use_the_minimum_gap() {
     assert!(with(&["--json"])["keep"].is_null());
     let text = answered(folder.path(), &[&CAST[..], &["--keep", "0.25"]].concat());
     assert!(text.contains("minimum gap  0.25, at which"), "{text}");
-    // Of convex meshes, and of parts.
+    // For convex meshes, and for parts.
     for parts in [&[][..], &["--tolerance", "0"]] {
         let clearance = |gap: &str| {
             let asked = ["clearance", "cube.off", "cube.off", "--direction", "x", "--json"];
@@ -54,7 +54,7 @@ fn saved_proofs_include_the_minimum_gap() {
         answered(folder.path(), &[&asked[..], &save].concat());
         let said = answered(folder.path(), &["verify", name]);
         assert!(said.starts_with("holds") && said.contains("0.5 apart or nearer"), "{said}");
-        // Of parts a plane is checked there at most, and here is none.
+        // The checker in fractions checks only planes of parts, and this proof has no plane.
         if name == "convex.json" {
             std::fs::copy(folder.path().join(name), folder.path().join("proof.json")).unwrap();
             checked_in_fractions(folder.path(), 0);

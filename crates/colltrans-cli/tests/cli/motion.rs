@@ -1,4 +1,4 @@
-//! `colltrans motion`.
+//! `colltrans motion`: answers, pictures, proofs and errors.
 
 use std::fs;
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::support::{answered, data, folder, json as read, refused, run, stderr};
 
-/// A door's answer in JSON: `cube.off` of side 1, turned about z through the origin.
+/// Returns the answer in JSON for two unit cubes with these arguments.
 fn told(arguments: &[&str]) -> Value {
     let folder = folder();
     let all = [&["motion", "cube.off", "cube.off", "--json"], arguments].concat();
@@ -44,7 +44,7 @@ fn angles_are_in_degrees() {
     assert_eq!(told(&["--slide", "1,0,0"])["outcome"], "overlapping");
 }
 
-/// On what it stands it turns freely, and is not tipped into it; as parts, too.
+/// A cube on another one turns freely about the vertical, and cannot be tipped into it; as convex bodies and as parts.
 #[test]
 fn clearance_permits_sliding_and_stops_at_penetration() {
     let folder = folder();
@@ -147,7 +147,7 @@ fn fixed_mesh_may_move() {
     let met = told(&[&apart[..], &["--fixed-slide=-2,0,0"]].concat());
     let [lower, upper] = ["lower", "upper"].map(|end| met["time"][end].as_f64().unwrap());
     assert!(lower <= 0.75 && 0.75 <= upper && upper - lower < 1e-13, "{met}");
-    // The same turn about the same axis carries both.
+    // Both bodies turn together about the same axis.
     let carried = ["--fixed-pose=2,0,0", "--turn", "1.5,0.5,0", "z", "200"];
     assert_eq!(told(&carried)["outcome"], "contact");
     let both = [&carried[..], &["--fixed-turn", "1.5,0.5,0", "z", "200"]].concat();
@@ -165,7 +165,7 @@ fn first_contact_of_several_meshes_is_reported() {
     let folder = folder();
     let cube = fs::read_to_string(folder.path().join("cube.off")).unwrap();
     let lines: Vec<&str> = cube.lines().collect();
-    // The same cube, farther away.
+    // Returns the cube translated along x.
     let moved = |by: f64| {
         let mut out = vec![lines[0].to_owned(), lines[1].to_owned()];
         let count: usize = lines[1].split_whitespace().next().unwrap().parse().unwrap();
@@ -202,7 +202,7 @@ fn picture_shows_start_contact_and_end() {
     };
     let met =
         draw(&["--moving-pose=2,0,0", "--fixed-pose=-2,0.1,0", "--turn", "0,0,0", "z", "180"]);
-    // The corner (2, 1), at an angle of atan 1/2, comes down on the top at a height of 1.1.
+    // The corner (2, 1), at an angle of atan 1/2, touches the top at a height of 1.1.
     assert!(
         met.contains("Contact at 0.688706")
             && ["at the start", "at contact", "at the end"].iter().all(|place| met.contains(place)),
@@ -211,7 +211,7 @@ fn picture_shows_start_contact_and_end() {
     // Each ghost is a group: the contact and the end, or only one of them.
     let ghosts = |svg: &str| svg.matches(r#"<g opacity="0.75">"#).count();
     assert_eq!(ghosts(&met), 2);
-    // The way is one line, of as many dashes as are seen.
+    // The path is one dashed polyline.
     let way = met.lines().find(|line| line.contains(r#"stroke-dasharray="5 4""#)).unwrap();
     assert!(way.matches('M').count() == 1 && way.matches('L').count() > 100, "{way}");
     let free = draw(&["--moving-pose=2,0,0", "--turn", "5,0,0", "z", "90"]);
@@ -224,7 +224,7 @@ fn picture_shows_start_contact_and_end() {
     refused(folder.path(), &words, 2, &["pictures are SVG files"]);
 }
 
-/// Every group that is opened is closed.
+/// Asserts that the SVG is complete and its groups are closed.
 fn is_whole(svg: &str) {
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     assert_eq!(svg.matches("<g").count(), svg.matches("</g>").count());
@@ -239,7 +239,7 @@ fn screw_of_a_bolt_stops_as_its_slide() {
         let words = ["motion", bolt, plate, "--moving-pose=0,0,9", "--json"];
         read(&answered(folder.path(), &[&words[..], more].concat()))
     };
-    // It goes down its hole while it turns, as far as it does when it does not.
+    // The bolt turns down its hole by the same distance as without a turn.
     let down = ask(&["--screw", "0,0,0", "z", "90", "-20"]);
     assert_eq!(down["fixed"], json!(plate));
     let straight = ask(&["--slide", "0,0,-20"]);
@@ -265,7 +265,7 @@ fn screw_of_a_bolt_stops_as_its_slide() {
 #[ignore = "long: solids that overlap as they turn"]
 fn ignored_start_overlap_allows_motion() {
     let folder = folder();
-    // A cube of side 1, sunk in by a quarter, is turned out of the other one about its edge.
+    // A unit cube that overlaps the other by 0.25 turns out of it about an edge.
     let ask = |more: &[&str]| {
         let words = ["motion", "cube.off", "cube.off", "--moving-pose=0,0,0.75"];
         answered(folder.path(), &[&words[..], &["--turn", "0,0,1", "-y", "90"], more].concat())

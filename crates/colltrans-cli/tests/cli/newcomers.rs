@@ -1,4 +1,4 @@
-//! What newcomers do: outputs on top of inputs, parts that are not convex, poses by hand, scans.
+//! Typical mistakes and first steps: outputs over inputs, parts that are not convex, poses, files of directions, help.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,7 +15,7 @@ fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// Other names of a file: the same, a symbolic link, a hard link.
+/// Returns names of a file: the same, a relative one, a symbolic link, a hard link.
 #[cfg(unix)]
 fn names_of(folder: &Path, file: &str, extension: &str) -> Vec<String> {
     let (symbolic, hard) = (format!("symbolic.{extension}"), format!("hard.{extension}"));
@@ -30,7 +30,7 @@ fn names_of(folder: &Path, file: &str, extension: &str) -> Vec<String> {
 #[test]
 fn picture_that_would_overwrite_a_mesh_is_rejected() {
     let folder = folder();
-    // A mesh may have any name that a link to it has not.
+    // Links have the extension of a picture, which the mesh itself does not have.
     for picture in &names_of(folder.path(), "cube.off", "svg")[2..] {
         let before = contents(folder.path());
         for (moving, fixed) in [("cube.off", "dent.off"), ("dent.off", "cube.off")] {
@@ -140,7 +140,7 @@ fn hull_excess_and_its_meaning_are_reported() {
     assert_eq!(record["hull"]["moving"]["depth"], 0.25, "{record}");
     assert_eq!(record["hull"]["moving"]["hull_volume"], 1.0);
     assert!(record["hull"].get("fixed").is_none());
-    // A face is missing: nobody knows the volume.
+    // A face is missing, so the volume is unknown.
     let open = ["cast", "open.off", "cube.off", "--direction", "x", "--hull", "--json"];
     let record = json(&answered(path, &open));
     assert!(record["hull"]["moving"].get("part_volume").is_none(), "{record}");
@@ -181,7 +181,7 @@ fn scales_angles_and_axis_names_are_applied() {
         cast(&[&right[..], &["--fixed-scale", "0.5", "--fixed-pose", "1,0,0"]].concat()),
         4.0
     );
-    // A quarter turn about z takes the cube to x from -1 to 0.
+    // A quarter turn about z moves the cube to x from -1 to 0.
     let turned = cast(&[&right[..], &["--moving-rpy", "0,0,90"]].concat());
     assert!((turned - 4.0).abs() < 1e-12, "{turned}");
     let both = ["--moving-pose", "0,0,0,0,0,0,1", "--moving-rpy", "0,0,90"];
@@ -286,7 +286,7 @@ fn each_clearance_outcome_is_printed() {
         assert_eq!(record["outcome"], outcome, "{record}");
         assert_eq!(record.get("distance").is_some(), outcome == "blocked", "{record}");
     }
-    // The first number is on the safe side.
+    // The printed distance is rounded to the safe side.
     let after = |text: &str, name: &str| -> f64 {
         let line = text.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
         line.split_whitespace().next().unwrap().parse().unwrap()
@@ -308,13 +308,13 @@ fn each_clearance_outcome_is_printed() {
     assert!(folder.path().join("free.svg").is_file());
 }
 
-/// Zeros that are rounding errors, as computed corners have them.
+/// Near-zero coordinates from rounding, as in computed corners.
 #[test]
 fn merged_vertices_are_reported() {
     let folder = folder();
     let path = folder.path();
     let cube = std::fs::read_to_string(path.join("cube.off")).unwrap();
-    // The first corner once more for the last side.
+    // The last side has a copy of the first corner.
     let twins = cube
         .replace("8 6 12\n", "9 6 12\n")
         .replace("0 1 1\n", "0 1 1\n5e-17 0 0\n")
@@ -339,7 +339,7 @@ fn file_with_a_wrong_extension_is_rejected() {
     refused(path, &["info", "cube.stl"], 3, &["holds an OFF file"]);
 }
 
-/// A body that is too large for the cache is built once all the same, if it is the last one used.
+/// Results are equal with a large cache and with the minimum of two bodies.
 #[test]
 fn results_do_not_depend_on_the_cache_size() {
     let folder = folder();
@@ -405,7 +405,7 @@ fn info_of_a_nan_vertex_has_no_volume() {
     assert!(text.contains("extent       none: vertex 2 is not finite"), "{text}");
 }
 
-/// Help fits the terminal, and says who speaks.
+/// Lines of help are no longer than the terminal, and name the program.
 #[test]
 fn help_lines_fit_the_terminal() {
     let folder = folder();
@@ -430,7 +430,7 @@ fn help_lines_fit_the_terminal() {
     }
 }
 
-/// A closed surface is closed in all that is said of it.
+/// All lines about a closed surface call it closed.
 #[test]
 fn info_reports_inward_faces_as_closed() {
     let folder = folder();
@@ -443,7 +443,7 @@ fn info_reports_inward_faces_as_closed() {
     assert!(text.contains("the part's is unknown (its faces are oriented inwards)"), "{text}");
 }
 
-/// An L of 40 in a place of the UTM grid as OBJ, after another text.
+/// Returns an L of size 40 at UTM coordinates as OBJ, after the text `before`.
 fn angle(before: &str) -> String {
     let outline = [[0, 0], [40, 0], [40, 10], [10, 10], [10, 40], [0, 40]];
     let mut text = before.to_owned();
@@ -467,7 +467,7 @@ fn unused_vertex_does_not_affect_convexity() {
     write("angle.obj", angle(""));
     write("stray.obj", angle("v 0 0 0\n"));
     for angle in ["angle.obj", "stray.obj"] {
-        // Down through the notch, which the hull of the L fills.
+        // The cube moves down through the notch, which the hull of the L fills.
         let pose = ["--moving-pose", "500012,4649788,20", "--direction", "-z"];
         let asked =
             |query, json: &'static [&str]| [&[query, "cube.off", angle], &pose[..], json].concat();
@@ -496,7 +496,7 @@ fn dent_within_the_convex_tolerance_is_reported() {
     assert!((depth - 5e-6).abs() < 1e-12 && answer["dents"]["moving"].is_null(), "{answer}");
     let exact = json(&answered(folder.path(), &[&CAST[..], &["--json"]].concat()));
     assert!(exact["dents"].is_null(), "{exact}");
-    // One body among many: of the body that is named, and of each in a list.
+    // In a scene: for the named body, and for each body of a list.
     let line = r#"{"body":{"mesh":"flat.off"},"pose":{"translation":[3,0,0]}}"#;
     std::fs::write(folder.path().join("scene.jsonl"), line).unwrap();
     let is_depth = |depth: &serde_json::Value| (depth.as_f64().unwrap() - 5e-6).abs() < 1e-12;
@@ -521,7 +521,7 @@ fn dent_within_the_convex_tolerance_is_reported() {
     assert!(is_depth(&moving["dents"]["moving"]) && moving["dents"]["fixed"].is_null(), "{moving}");
 }
 
-/// The runtime opens `/dev/null` in the place of a closed stream; whoever opens it himself wants no output.
+/// The runtime replaces a closed stream by `/dev/null`. A user who opens `/dev/null` wants no output.
 #[cfg(unix)]
 #[test]
 fn closed_standard_output_returns_exit_code_5() {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::support::{answered, data, folder, json as read, refused, run, stderr};
 
-/// The files of the arm, its path and a wire in its way.
+/// Returns the files of the arm, its path and a wire in its way.
 fn files() -> [String; 3] {
     ["arm.urdf", "arm.csv", "wire.obj"].map(|name| data().join(name).to_str().unwrap().to_owned())
 }
@@ -23,7 +23,7 @@ fn arm_touches_a_wire_on_its_path() {
     assert_eq!((&told["pair"], &told["pairs"]), (&json!(["tool", "wire"]), &json!(6)));
     assert_eq!(told["place"]["row"], 0);
     assert!(told.get("keep").is_none());
-    // Links with a joint between them touch: they are not asked about, and that is said.
+    // Links with a joint between them touch, so they are skipped and reported.
     let touching = json!([["base", "upper"], ["upper", "fore"], ["fore", "tool"]]);
     assert_eq!(told["left_out"], touching);
     let free = ["path", &arm, &rows, &wire, "--ignore", "wire, tool", "--json"];
@@ -173,7 +173,7 @@ fn bodies_with_the_same_file_name_are_named_by_path() {
     assert!(same.contains("duplicate name tool.obj of a link or scene body"), "{same}");
 }
 
-/// A robot of boxes on joints, whose rows are in `rows.csv`.
+/// Writes a robot of boxes with these links and joints.
 fn boxes(folder: &std::path::Path, links: &[&str], joints: &str) {
     let link = |name: &&str| {
         format!(
@@ -195,7 +195,7 @@ fn slide(name: &str, parent: &str, child: &str, x: f64) -> String {
 #[test]
 fn overlapping_pairs_are_listed_as_options_and_srdf() {
     let folder = folder();
-    // Four boxes of size 1, each 0.4 on from the one before: all pairs but the first and the last overlap.
+    // Four boxes of size 1 at distances of 0.4: all pairs except for the first and the last overlap.
     let joints =
         slide("p", "a", "b", 0.4) + &slide("q", "b", "c", 0.4) + &slide("r", "c", "d", 0.4);
     boxes(folder.path(), &["a", "b", "c", "d"], &joints);
@@ -207,7 +207,7 @@ fn overlapping_pairs_are_listed_as_options_and_srdf() {
     assert!(text.contains(element), "{text}");
     let told = read(&answered(folder.path(), &["path", "boxes.urdf", "rows.csv", "--json"]));
     assert_eq!(told["overlaps"], json!([["a", "c"], ["b", "d"]]));
-    // What is said is taken: nothing overlaps any more.
+    // With the printed options no pair overlaps.
     let rest = ["path", "boxes.urdf", "rows.csv", "--ignore", "a,c", "--ignore", "b,d", "--json"];
     assert_eq!(read(&answered(folder.path(), &rest))["outcome"], "free");
     let srdf = "<robot name=\"r\"><disable_collisions link1=\"a\" link2=\"c\" reason=\"Default\"/></robot>";
@@ -222,7 +222,7 @@ fn unused_velocities_are_noted_and_fail_with_strict() {
     let folder = folder();
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
-    // From 0 to 0 with velocities that lead beyond, in MoveIt's form.
+    // Velocities that would lead beyond the rows, in the format of MoveIt.
     let rows = r#"{"joint_trajectory": {"joint_names": ["s"], "points": [
         {"positions": [0], "velocities": [3], "time_from_start": {"sec": 0, "nanosec": 0}},
         {"positions": [0.3], "velocities": [-3], "time_from_start": {"sec": 1, "nanosec": 0}}]}}"#;
@@ -236,7 +236,7 @@ fn unused_velocities_are_noted_and_fail_with_strict() {
     let strict = run(folder.path(), &[&asked[..], &["--strict"]].concat());
     assert_eq!(strict.status.code(), Some(7));
     assert!(stderr(&strict).contains(said));
-    // Rows without velocities are all that there is.
+    // Rows without velocities have no limitation.
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     let plain = ["path", "boxes.urdf", "rows.csv", "--srdf", "none.srdf", "--strict", "--json"];
     assert!(read(&answered(folder.path(), &plain)).get("notes").is_none());
@@ -298,7 +298,7 @@ fn dents_are_reported_by_name() {
     let asked = ["path", "flat.urdf", "rows.csv", "flatter.off", "cube.off", "--json"];
     let told = read(&answered(folder.path(), &asked));
     let dents = told["dents"].as_object().unwrap_or_else(|| panic!("{told}"));
-    // Of two meshes of a link the deeper dent counts; the cube has none.
+    // The deeper dent of the two meshes of a link is reported; the cube has no dent.
     assert_eq!(dents.keys().collect::<Vec<_>>(), ["b", "flatter"], "{told}");
     let depths = dents.values().map(|depth| depth.as_f64().unwrap());
     let is_near = |(depth, wanted): (f64, f64)| (depth - wanted).abs() < 1e-12;
@@ -311,7 +311,7 @@ fn dents_are_reported_by_name() {
 #[test]
 fn invalid_mesh_needs_the_hull_option() {
     let folder = folder();
-    // Its first face crosses itself.
+    // The first face intersects itself.
     let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0.5 0.5 1\nf 1 4 2 3\nf 1 2 5\nf 2 3 5\n";
     fs::create_dir(folder.path().join("meshes")).unwrap();
     fs::write(folder.path().join("meshes/fan.obj"), fan).unwrap();
@@ -324,7 +324,7 @@ fn invalid_mesh_needs_the_hull_option() {
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
     refused(folder.path(), &["path", "fan.urdf", "rows.csv"], 3, &["fan.obj", "--package DIR"]);
-    // A joint whose parent has no geometry leaves out no pair, so no note says that it does.
+    // A joint whose parent has no geometry skips no pair, so there is no note about it.
     let alone = box_.replace("\"a\"", "\"c\"") + "<link name=\"w\"/>" + &slide("s", "w", "c", 0.0);
     fs::write(folder.path().join("one.urdf"), format!("<robot name=\"r\">{alone}</robot>"))
         .unwrap();

@@ -1,10 +1,10 @@
-//! `--picture`: well-formed, finite, and with what belongs in it, for any pair of bodies.
+//! `--picture`: pictures of all pairs of bodies are well formed, finite and complete.
 
 use std::path::Path;
 
 use crate::support::{CAST, colltrans, data, folder, stderr};
 
-/// The elements of a well-formed XML document, in order of their start; panics on any other.
+/// Returns the names of the elements of an XML document in order of their start. Panics if it is not well formed.
 fn elements(svg: &str) -> Vec<String> {
     let mut open: Vec<String> = Vec::new();
     let mut found = Vec::new();
@@ -33,7 +33,7 @@ fn elements(svg: &str) -> Vec<String> {
     found
 }
 
-/// Runs a cast and returns its picture, checked.
+/// Runs a command with a picture, checks the picture and returns it.
 fn picture(folder: &Path, arguments: &[&str]) -> String {
     let output = colltrans(folder).args(arguments).args(["--picture", "out.svg"]).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
@@ -44,7 +44,7 @@ fn picture(folder: &Path, arguments: &[&str]) -> String {
     for word in ["NaN", "nan", "inf"] {
         assert!(!svg.contains(word), "{word} in the picture of {arguments:?}");
     }
-    // What lies far away is cut: renderers keep coordinates in few bits.
+    // Far coordinates are clipped, because renderers use few bits.
     for path in svg.split(" d=\"").skip(1) {
         let data = path.split('"').next().unwrap();
         for number in data.split(['M', 'L', 'Z', 'h', 'v', 'z', ' ']).filter(|n| !n.is_empty()) {
@@ -93,7 +93,7 @@ fn pictures_of_other_outcomes_state_them() {
     assert!(at("0,0,1e6").contains("drawn shortened"), "far away");
 }
 
-/// Points, segments, polygons, and sizes that have nothing to do with each other.
+/// Points, segments, polygons, and very different sizes.
 #[test]
 fn pictures_of_degenerate_bodies_are_well_formed() {
     let folder = folder();
@@ -149,7 +149,7 @@ fn pictures_of_nonconvex_parts_are_well_formed() {
     let free = ask(&["z", "--moving-pose", "0,0,7"]);
     assert!(free.contains("Free: nothing stops the body along d") && !free.contains(">n<"));
     assert!(ask(&["1,2,3", "--moving-pose", "1,0,-1"]).contains("Overlapping"));
-    // Far larger than what it touches, and far away.
+    // Very different sizes, and large distances.
     ask(&["-z", "--moving-pose", "0,0,9000"]);
     ask(&["-z", "--moving-pose", "0,0,5000", "--fixed-scale", "1000"]);
     ask(&["1,0.3,-0.2", "--moving-pose", "-30,-9,6", "--moving-rpy", "20,30,40"]);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::support::{CAST, answered, data, folder, json as read, refused, run, stderr, stdout};
 
-/// The checker in fractions agrees, where there is a Python to run it; with 7 that it checks a part.
+/// Asserts that the checker in fractions accepts `proof.json`, if there is a Python. Code 7 means a partial check.
 pub(crate) fn checked_in_fractions(folder: &Path, code: i32) {
     let checker = data().join("../python/src/colltrans/check.py");
     let mut python = Command::new("python3");
@@ -19,6 +19,7 @@ pub(crate) fn checked_in_fractions(folder: &Path, code: i32) {
     assert!(stdout(&output).starts_with("holds: "), "{}", stdout(&output));
 }
 
+/// Runs a command with `--save-proof`. Returns the proof.
 pub(crate) fn saved(folder: &Path, arguments: &[&str]) -> Value {
     let mut all = arguments.to_vec();
     all.extend(["--save-proof", "proof.json"]);
@@ -26,7 +27,7 @@ pub(crate) fn saved(folder: &Path, arguments: &[&str]) -> Value {
     read(&fs::read_to_string(folder.join("proof.json")).unwrap())
 }
 
-/// The proofs on which the tests of `check.py` stand.
+/// The proofs that the tests of `check.py` use.
 #[test]
 fn proofs_of_the_python_tests_hold() {
     let saved = fs::read_dir(data().join("../python/tests/proofs")).unwrap();

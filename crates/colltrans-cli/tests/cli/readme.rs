@@ -1,4 +1,4 @@
-//! The README: its commands print what it shows, and its programs are the files it names.
+//! The README and the guides show the output of their commands, and programs of the examples.
 
 use colltrans_testkit::TemporaryFolder;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// A fenced block: its language, its text, and the line before it.
+/// A fenced block with its language, its text, and the line before it.
 struct Block {
     language: String,
     text: String,
@@ -75,7 +75,7 @@ fn readme_shows_the_printed_output() {
     assert!(shown.len() >= 2, "the README shows {} answers", shown.len());
 }
 
-/// Every command of a guide that is followed by its output.
+/// All commands of guides that are followed by their output.
 #[test]
 fn guides_show_the_printed_output() {
     let mut pages: Vec<PathBuf> = std::fs::read_dir(root().join("docs/guide"))

@@ -1,4 +1,4 @@
-//! Completions and man pages, as `setup` installs them.
+//! `colltrans setup`: completions and man pages.
 
 use std::fs;
 use std::path::Path;

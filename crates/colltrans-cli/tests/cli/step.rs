@@ -1,11 +1,11 @@
-//! STEP files: the converter that is called, and what is said where there is none; and several bodies in one file.
+//! STEP files and their converter, and files with several bodies.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::support::{answered, colltrans, folder, json, refused, stderr};
 
-/// A converter that runs a line of the shell, `$1` being the file, `$3` where to write, `$5` the chord.
+/// Writes a converter that runs a line of shell: `$1` is the file, `$3` the output, `$5` the chord. Returns its path.
 #[cfg(unix)]
 fn converter(folder: &Path, line: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
@@ -38,7 +38,7 @@ fn step_file_is_converted_to_glb() {
         (&found["parts"][0]["name"], &found["parts"][0]["facets"]),
         (&"cube".into(), &12.into())
     );
-    // The file itself must not be written over.
+    // The output must not overwrite the STEP file.
     std::fs::create_dir(at.join("o")).unwrap();
     std::os::unix::fs::symlink(at.join("a.step"), at.join("o/report.html")).unwrap();
     let output = run(&good, &["--chord", "0.2", "-o", "o"]);

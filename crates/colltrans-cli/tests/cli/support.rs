@@ -1,4 +1,4 @@
-//! The real binary and small files for it.
+//! Runs the program in folders with small mesh files.
 
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -7,25 +7,26 @@ use assert_cmd::Command;
 use colltrans_testkit::TemporaryFolder;
 use serde_json::Value;
 
-/// The binary, with the current folder where the test's files are.
+/// Returns the program with a current folder.
 pub(crate) fn colltrans(folder: &Path) -> Command {
     let mut command = Command::cargo_bin("colltrans").unwrap();
     command.current_dir(folder);
     command
 }
 
+/// Runs the program.
 pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
     colltrans(folder).args(arguments).output().unwrap()
 }
 
-/// What is printed; nothing else is expected than success.
+/// Runs the program, asserts success, and returns its output.
 pub(crate) fn answered(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     stdout(&output)
 }
 
-/// Fails with a code, prints nothing, and says all these words.
+/// Runs the program, and asserts its exit code, an empty output and words of its message.
 pub(crate) fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
     let output = run(folder, arguments);
     let message = stderr(&output);
@@ -36,7 +37,7 @@ pub(crate) fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&st
     }
 }
 
-/// A folder with a unit cube (`cube.off`), a body that is not convex (`dent.off`), an open one
+/// Returns a folder with a unit cube (`cube.off`), a body that is not convex (`dent.off`), an open one
 /// (`open.off`), a broken file (`broken.off`) and a point cloud (`points.ply`).
 pub(crate) fn folder() -> TemporaryFolder {
     let folder = TemporaryFolder::new();
@@ -54,7 +55,7 @@ pub(crate) fn folder() -> TemporaryFolder {
     folder
 }
 
-/// Two unit cubes, the moving one 3 to the left and a little aside: contact after 2.
+/// Two unit cubes with centers at a distance of 3 along x, offset along y and z: contact after 2.
 pub(crate) const CAST: [&str; 7] =
     ["cast", "cube.off", "cube.off", "--direction", "1,0,0", "--moving-pose", "-3,0.25,-0.5"];
 
@@ -73,14 +74,14 @@ pub(crate) const CONTACT_FIELDS: [&str; 11] = [
     "translation_bounds",
 ];
 
-/// The names of an object's fields, in order.
+/// Returns the names of an object's fields, sorted.
 pub(crate) fn fields(value: &Value) -> Vec<&str> {
     let mut names: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
     names.sort_unstable();
     names
 }
 
-/// The same but for some that are wanted.
+/// Returns the names of an object's fields without some that must be present.
 pub(crate) fn fields_without<'a>(value: &'a Value, others: &[&str]) -> Vec<&'a str> {
     let names = fields(value);
     assert!(others.iter().all(|name| names.contains(name)), "{value}");
@@ -99,7 +100,7 @@ pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
 }
 
-/// The folder of the example parts.
+/// Returns the folder of the example parts.
 pub(crate) fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
 }

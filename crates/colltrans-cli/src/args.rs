@@ -66,13 +66,13 @@ pub(crate) enum Command {
     /// Faster than the distance, because the search ends as soon as the comparison is proven.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[WITHIN_NOTES]))]
     Within(Box<WithinArguments>),
-    /// Compute the penetration depth of two meshes: the shortest translation that separates them
+    /// Compute the shortest translation that separates two overlapping meshes
     ///
-    /// Over all directions, with proven bounds, for convex bodies. For parts that are not convex the answer is
+    /// The penetration depth over all directions, with proven bounds, for convex bodies. For parts that are not convex the answer is
     /// the least tolerance at which they would not overlap.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[DEPTH_NOTES]))]
     Depth(Box<PlacedArguments>),
-    /// Compute how far a mesh can move along a direction before another blocks it
+    /// Compute how far a mesh can move before another blocks it
     ///
     /// Two convex meshes are convex bodies. Meshes that are not convex, several meshes on one side, and
     /// everything with --from are parts: closed surfaces with their holes and cavities. Several files on one
@@ -91,7 +91,7 @@ pub(crate) enum Command {
     /// `clearance`.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[MOTION_NOTES]))]
     Motion(Box<MotionArguments>),
-    /// Compute which links of a robot first touch each other or a scene on a path of joint values
+    /// Compute which links of a robot first touch each other or a scene on a path
     ///
     /// The bounds of the time are proven for the whole path, not for samples. The robot is a URDF file. A row of
     /// the path has one value for each joint, in radians or metres.
@@ -103,9 +103,9 @@ pub(crate) enum Command {
     /// others are blocked. Meshes are parts, as for `clearance --from`.
     #[command(visible_alias = "free", after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[DIRECTIONS_NOTES]))]
     Directions(Box<DirectionsArguments>),
-    /// Plan which parts of an assembly come out, in which order and direction, and what holds the rest
+    /// Plan in which order and directions the parts of an assembly come out
     ///
-    /// Parts are solids of any shape. Without --direction, candidate directions are computed: contact normals
+    /// Parts are solids of any shape. The answer also names the parts that hold interlocked ones. Without --direction, candidate directions are computed: contact normals
     /// and directions orthogonal to them, cylinder axes, the world's axes.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[ASSEMBLY_NOTES]))]
     Assembly(Box<AssemblyArguments>),

@@ -45,7 +45,7 @@ impl<'a> Request<'a> {
         files: [&[PathBuf]; 2],
     ) -> Result<Self, Failure> {
         let PairArguments { json, save_proof, picture, places, directions, .. } = arguments;
-        let inputs = load::input_files(files);
+        let inputs = load::input_paths(files);
         let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &inputs)?;
         let poses = places.poses()?;
         Ok(Self { arguments, targets, poses, directions: Directions::from_arguments(directions)? })

@@ -13,7 +13,7 @@ struct Group {
 }
 
 /// All groups. Each subcommand is in exactly one.
-const GROUPS: [Group; 5] = [
+const GROUPS: [Group; 4] = [
     Group {
         question: "Where bodies are",
         commands: &["info", "distance", "within", "depth"],
@@ -30,14 +30,9 @@ const GROUPS: [Group; 5] = [
         example: "colltrans assembly parts/ -o plan",
     },
     Group {
-        question: "Many queries, saved queries and proofs",
-        commands: &["batch", "verify", "replay"],
+        question: "Many queries, proofs, formats and this program",
+        commands: &["batch", "verify", "replay", "setup", "files", "json"],
         example: "colltrans batch queries.jsonl -o results.jsonl",
-    },
-    Group {
-        question: "This program",
-        commands: &["setup", "files", "json"],
-        example: "colltrans help files",
     },
 ];
 
@@ -67,7 +62,7 @@ impl Group {
         };
         let lines: Vec<_> = self.commands.iter().map(line).collect();
         let text = format!("{}:\n{}", self.question, lines.join("\n"));
-        format!("{}\n\n    {}", fit_to_terminal(&[&text]), self.example)
+        format!("{}\n    {}", fit_to_terminal(&[&text]), self.example)
     }
 }
 

@@ -26,7 +26,7 @@ use colltrans_picture::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Page, View};
 
 use crate::solid::placed_surface;
 use layout::Layout;
-pub(crate) use motion::{Moved, draw_motion};
+pub(crate) use motion::{MotionPicture, draw_motion};
 use notes::Notes;
 pub(crate) use pair::draw_pair;
 pub(crate) use parts::draw_solids;

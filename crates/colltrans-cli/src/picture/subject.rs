@@ -149,24 +149,24 @@ impl Subject {
     }
 
     /// Returns the ends of the gap between separated bodies at the stop, along the normal; `None` for other answers.
-    pub(super) fn margin_ends(&self, cast: &PictureBodies) -> Option<[DVec3; 2]> {
-        let from = cast.stop.support_center(self.normal);
+    pub(super) fn margin_ends(&self, bodies: &PictureBodies) -> Option<[DVec3; 2]> {
+        let from = bodies.stop.support_center(self.normal);
         self.margin.map(|margin| [from, from + margin * self.normal])
     }
 
     /// Returns the points that must be visible in addition to the bodies.
-    pub(super) fn extra_points(&self, cast: &PictureBodies) -> Vec<DVec3> {
+    pub(super) fn extra_points(&self, bodies: &PictureBodies) -> Vec<DVec3> {
         let link = self.link.iter().flat_map(|(ends, _)| *ends);
-        self.plane_corners(cast).into_iter().flatten().chain(link).collect()
+        self.plane_corners(bodies).into_iter().flatten().chain(link).collect()
     }
 
     /// Returns the corners of a square of the separating plane in the middle of the gap; `None` for other answers.
-    pub(super) fn plane_corners(&self, cast: &PictureBodies) -> Option<[DVec3; 4]> {
-        let [from, to] = self.margin_ends(cast)?;
-        let along = cast.way.normalize_or(self.normal.any_orthonormal_vector());
+    pub(super) fn plane_corners(&self, bodies: &PictureBodies) -> Option<[DVec3; 4]> {
+        let [from, to] = self.margin_ends(bodies)?;
+        let along = bodies.way.normalize_or(self.normal.any_orthonormal_vector());
         let across = self.normal.cross(along);
-        let half =
-            1.1 * working_size(cast.stop.bounding_sphere().1, cast.fixed.bounding_sphere().1, 0.0);
+        let half = 1.1
+            * working_size(bodies.stop.bounding_sphere().1, bodies.fixed.bounding_sphere().1, 0.0);
         let middle = 0.5 * (from + to);
         let corner = |a: f64, b: f64| middle + a * half * along + b * half * across;
         Some([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)])

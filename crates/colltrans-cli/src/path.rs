@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     match &limitations[..] {
         [] => Ok(()),
         _ if !arguments.strict => Ok(()),
-        _ => Err(Failure::several(Code::Partial, limitations)),
+        _ => Err(Failure::with_messages(Code::Partial, limitations)),
     }
 }
 

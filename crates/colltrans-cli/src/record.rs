@@ -120,7 +120,7 @@ fn write_json_line(record: &impl Serialize, text: &mut Vec<u8>) {
     let line = &text[start..];
     // The maximum of all bytes is computed in SIMD lanes, which a search that ends early would prevent.
     if line.iter().fold(0, |highest, &byte| byte.max(highest)) >= 0x7f {
-        let safe = escape_json_line(&String::from_utf8_lossy(line)).into_owned();
+        let safe = escape_json(&String::from_utf8_lossy(line)).into_owned();
         text.truncate(start);
         text.extend_from_slice(safe.as_bytes());
     }

@@ -171,7 +171,7 @@ mod tests {
     /// Returns the number of bodies that were built after each of these uses.
     fn build_counts(capacity: usize, uses: &[f64]) -> Vec<u32> {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        let body: BuildResult = Ok(Arc::new(Shape::Convex(Part::of(body))));
+        let body: BuildResult = Ok(Arc::new(Shape::Convex(Part::from_body(body))));
         let cache = Cache::new(capacity);
         let mut builds = 0;
         let count = |&x: &f64| {
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn memory_of_a_grown_body_is_updated_at_its_next_use() {
         let body = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
-        let shape = Arc::new(Shape::Convex(Part::of(body)));
+        let shape = Arc::new(Shape::Convex(Part::from_body(body)));
         let cache = Cache::new(1 << 20);
         let total = || {
             let _ = cache.get_or_build(key(1.0), |_| Ok(Arc::clone(&shape)));
@@ -224,7 +224,7 @@ mod tests {
             let point = DVec3::splat(f64::from(k));
             let built = cache.get_or_build(key(point.x), |_| {
                 let body = ConvexPolyhedron::from_points(&[point]).unwrap();
-                Ok(Arc::new(Shape::Convex(Part::of(body))))
+                Ok(Arc::new(Shape::Convex(Part::from_body(body))))
             });
             drop(built.unwrap());
             let state = cache.lock();

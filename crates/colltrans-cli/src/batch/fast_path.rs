@@ -79,7 +79,7 @@ impl<'a> Fields<'a> {
 }
 
 /// Sets a value; returns `None` if it was set before.
-fn once<T>(place: &mut Option<T>, value: T) -> Option<()> {
+fn set_once<T>(place: &mut Option<T>, value: T) -> Option<()> {
     place.replace(value).is_none().then_some(())
 }
 

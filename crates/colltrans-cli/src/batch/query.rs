@@ -196,7 +196,7 @@ fn checked_scale(scale: Option<f64>) -> Result<f64, String> {
 fn hull_of_points(points: &[[f64; 3]]) -> BuildResult {
     let points: Vec<DVec3> = points.iter().copied().map(DVec3::from_array).collect();
     let body = ConvexPolyhedron::from_points(&points).map_err(|e| e.to_string())?;
-    Ok(Arc::new(Shape::Convex(Part::of(body))))
+    Ok(Arc::new(Shape::Convex(Part::from_body(body))))
 }
 
 /// Calls `answer`. Returns its error, or a panic as an error, with the number of the line, so that other lines are still

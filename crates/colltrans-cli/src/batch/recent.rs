@@ -56,7 +56,7 @@ mod tests {
 
     fn shape() -> Arc<Shape> {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        Arc::new(Shape::Convex(Part::of(body)))
+        Arc::new(Shape::Convex(Part::from_body(body)))
     }
 
     #[test]

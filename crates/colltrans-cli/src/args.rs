@@ -89,7 +89,7 @@ pub(crate) enum Command {
     /// The time is 0 at the start and 1 at the end of the motion. Its bounds are proven for the whole motion,
     /// not for samples. Both sides may move. All meshes convex: convex bodies. Otherwise: parts, as for
     /// `clearance`.
-    #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[MOTION_NOTES]))]
+    #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[MOTION_NOTES]), mut_arg("hull", |hull| hull.hide_short_help(true)))]
     Motion(Box<MotionArguments>),
     /// Compute which links of a robot first touch each other or a scene on a path
     ///
@@ -353,7 +353,7 @@ pub(crate) struct DirectionArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Poses and scales")]
 pub(crate) struct PlaceArguments {
-    /// Start of the moving mesh: x,y,z or x,y,z,qx,qy,qz,qw
+    /// Start of the moving mesh: x,y,z or with qx,qy,qz,qw
     #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0")]
     pub(crate) moving_pose: Place,
     /// Pose of the fixed mesh
@@ -365,7 +365,7 @@ pub(crate) struct PlaceArguments {
     /// Rotation of the fixed mesh in degrees
     #[arg(long, value_name = "ROLL,PITCH,YAW", allow_hyphen_values = true, value_parser = angles, hide_short_help = true)]
     pub(crate) fixed_rpy: Option<Angles>,
-    /// Factor of the moving mesh: 0.001 turns millimetres into metres
+    /// Factor of the moving mesh, 0.001 for mm to m
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = factor, default_value = "1", hide_short_help = true)]
     pub(crate) moving_scale: f64,
     /// Factor of the fixed mesh
@@ -395,7 +395,7 @@ impl PlaceArguments {
 #[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = BODY_HEADING)]
 pub(crate) struct HullArguments {
-    /// Replace both meshes by the convex hulls of their vertices; the answer states the difference
+    /// Replace both meshes by convex hulls; the answer states the difference
     #[arg(long)]
     hull: bool,
     /// Replace the moving mesh by its convex hull
@@ -410,10 +410,10 @@ pub(crate) struct HullArguments {
 #[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = BODY_HEADING)]
 pub(crate) struct BodyArguments {
-    /// Depth of a dent that still counts as convex [default: 1e-5 of the mesh's extent]
+    /// Depth of a dent that counts as convex [default: 1e-5 of the extent]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, hide_short_help = true)]
     convex_tolerance: Option<f64>,
-    /// Distance of vertices on open edges that are merged [default: rounding of the file]
+    /// Distance at which vertices on open edges are merged [default: rounding]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, hide_short_help = true)]
     merge_tolerance: Option<f64>,
 }

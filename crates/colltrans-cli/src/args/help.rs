@@ -213,7 +213,7 @@ Examples:
   Many directions, one JSON object per line:
     printf 'x\\n-x\\n1,1,0\\n' | colltrans cast a.obj b.obj --directions - --json
 
-`colltrans help files`: mesh formats, units, poses, tolerances, exit codes; `colltrans help json`: fields.";
+`colltrans help files`: formats, units, poses, bodies, exit codes; `colltrans help json`: fields.";
 
 pub(super) const SETUP_NOTES: &str = "\
 Examples:
@@ -264,7 +264,7 @@ Examples:
   Which body of a scene does it meet first?
     colltrans clearance hand.stl --among table.stl scene.jsonl --direction -z
 
-`colltrans help files`: mesh formats, units, poses, tolerances, exit codes; `colltrans help json`: fields.";
+`colltrans help files`: formats, units, poses, bodies, exit codes; `colltrans help json`: fields.";
 
 pub(super) const DIRECTIONS_NOTES: &str = "\
 Answers:
@@ -378,7 +378,7 @@ Examples:
   Which body of a scene is nearest?
     colltrans distance hand.stl --among table.stl scene.jsonl
 
-`colltrans help files`: mesh formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
+`colltrans help files`: formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
 
 pub(super) const DEPTH_NOTES: &str = "\
 Answers:
@@ -405,7 +405,7 @@ Examples:
   Which bodies of a scene are closer than 0.1?
     colltrans within hand.stl --among scene.jsonl --length 0.1
 
-`colltrans help files`: mesh formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
+`colltrans help files`: formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,

@@ -28,13 +28,13 @@ pub(crate) struct MotionArguments {
     motion: MovingMotionArguments,
     #[command(flatten)]
     fixed_motion: FixedMotionArguments,
-    /// Compute how far the mesh can go: bodies in contact may slide, turn and separate
+    /// Compute how far the mesh can go; contacts may slide, turn and separate
     #[arg(long, conflicts_with = "save_proof", help_heading = OPTIONS)]
     pub(crate) clearance: bool,
-    /// The minimum gap: bodies count as touching at this distance
+    /// The minimum gap, at which bodies count as touching
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0", help_heading = OPTIONS)]
     pub(crate) keep: f64,
-    /// Permitted overlap [default: 0; parts: from the precision of the files]
+    /// Permitted overlap [default: 0; parts: precision of the files]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, help_heading = OPTIONS)]
     pub(crate) tolerance: Option<f64>,
     /// Take meshes as parts, ignore overlaps at the start, and list them
@@ -43,10 +43,10 @@ pub(crate) struct MotionArguments {
     /// Print the answer as one JSON object
     #[arg(long, help_heading = OPTIONS)]
     pub(crate) json: bool,
-    /// Draw the moving mesh at the start, where it touches and at the end, as an SVG picture
+    /// Draw the mesh at the start, the contact and the end, as an SVG picture
     #[arg(long, value_name = "OUT.svg", value_parser = picture, help_heading = OPTIONS)]
     pub(crate) picture: Option<PathBuf>,
-    /// Write the proof, the bodies and their motions as a file for `colltrans verify`
+    /// Write the proof and the bodies as a file for `colltrans verify`
     #[arg(long, value_name = "OUT.json", value_parser = proof, help_heading = OPTIONS)]
     pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]

@@ -353,11 +353,11 @@ pub(crate) struct DirectionArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Poses and scales")]
 pub(crate) struct PlaceArguments {
-    /// Start of the moving mesh: x,y,z or with qx,qy,qz,qw
-    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0")]
+    /// Start of the moving mesh: x,y,z or x,y,z,qx,qy,qz,qw
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0", hide_default_value = true)]
     pub(crate) moving_pose: Place,
     /// Pose of the fixed mesh
-    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0")]
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0", hide_default_value = true)]
     pub(crate) fixed_pose: Place,
     /// Rotation of the moving mesh in degrees, instead of a quaternion
     #[arg(long, value_name = "ROLL,PITCH,YAW", allow_hyphen_values = true, value_parser = angles)]

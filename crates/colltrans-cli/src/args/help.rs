@@ -408,26 +408,30 @@ Examples:
 `colltrans help files`: formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
-  {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within"|"motion"|
-   "motion_clearance", "length": L (of "within"),
-   "moving_motion": MOTION, "fixed_motion": MOTION (of "motion" and "motion_clearance"),
+  {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE,
+   "fixed_pose": POSE, "direction": [x,y,z],
+   "query": "contact"|"clearance"|"distance"|"depth"|"within"|"motion"
+            |"motion_clearance",
+   "length": L (of "within"), "keep": GAP (the minimum gap),
+   "moving_motion": MOTION, "fixed_motion": MOTION (of motions),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
    "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
-   "tolerance": L (of solids and motions), "ignore_start_overlaps": true|false (of solids),
-   "keep": GAP (the minimum gap)}
+   "tolerance": L (of solids and motions),
+   "ignore_start_overlaps": true|false (of solids)}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
        or {"mesh": "path", "hull": true|false, "scale": FACTOR} (convex)
-       or {"solid": "path", "scale": FACTOR, "open": true|false} (need not be convex; open: nor closed)
+       or {"solid": "path", "scale": FACTOR, "open": true|false} (any shape)
   (defaults of hull and scale: as --hull, and 1)
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, each optional. A quaternion with few
          digits is normalised, with a note in the result
   MOTION = {"slide": {"by": [x,y,z]}}
-       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE}} (or "degrees")
-       or {"screw": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE, "rise": L}}
-       or {"thrown": {"center": [x,y,z], "velocity": [x,y,z], "angular_velocity": [x,y,z]}}
-       or {"between": {"from": POSE, "to": POSE}} or {"through": {"poses": [POSE,...]}}
-       or {"still": {}}, from the pose of the body, unless the motion has poses
+       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE}}
+       or {"screw": {"point", "axis", "radians": as a turn, "rise": L}}
+       or {"thrown": {"center", "velocity", "angular_velocity": [x,y,z] each}}
+       or {"between": {"from": POSE, "to": POSE}}
+       or {"through": {"poses": [POSE,...]}}
+       or {"still": {}}
+         (from the pose of the body, unless it has poses; "degrees" replaces "radians")
 moving and fixed are required; so are the direction of "contact" and "clearance", and one MOTION of
 "motion". The default query is "contact", or "clearance" if a body is a solid; solids have no "contact". Paths are relative to the folder of
 the query file, or to the current folder for standard input. Blank lines are skipped, unknown fields
@@ -439,7 +443,7 @@ a query reads it.
 
 Examples:
     colltrans batch queries.jsonl -o results.jsonl
-    printf '{"moving":{"mesh":"a.stl"},"fixed":{"mesh":"b.stl"},"direction":[1,0,0]}' | colltrans batch -
+    colltrans batch - --threads 1 < queries.jsonl
 
 `colltrans help files`: mesh formats, units, tolerances, exit codes."#;
 
@@ -497,7 +501,7 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
      "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch", "phase",
        "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",
      "ignored", "passed", "surfaces", "subassembly"}],
-   "wanted" (of --remove): {"parts", "others", "least", "out"}, "rounds": [[step, ...]],
+   "wanted" (of --remove): {"parts", "others", "least", "out"}, "rounds": [...],
    "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
    "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},
      "moves": {"legs", "directions", "places", "complete"} or {"proven": cells} or

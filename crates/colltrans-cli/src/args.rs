@@ -413,7 +413,7 @@ pub(crate) struct BodyArguments {
     /// Depth of a dent that counts as convex [default: 1e-5 of the extent]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, hide_short_help = true)]
     convex_tolerance: Option<f64>,
-    /// Distance at which vertices on open edges are merged [default: rounding]
+    /// Distance of vertices at open edges to merge [default: rounding]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, hide_short_help = true)]
     merge_tolerance: Option<f64>,
 }

@@ -28,7 +28,7 @@ pub(crate) struct MotionArguments {
     motion: MovingMotionArguments,
     #[command(flatten)]
     fixed_motion: FixedMotionArguments,
-    /// Compute how far the mesh can go; contacts may slide, turn and separate
+    /// Compute how far the mesh can go; contacts may slide and separate
     #[arg(long, conflicts_with = "save_proof", help_heading = OPTIONS)]
     pub(crate) clearance: bool,
     /// The minimum gap, at which bodies count as touching
@@ -43,7 +43,7 @@ pub(crate) struct MotionArguments {
     /// Print the answer as one JSON object
     #[arg(long, help_heading = OPTIONS)]
     pub(crate) json: bool,
-    /// Draw the mesh at the start, the contact and the end, as an SVG picture
+    /// Draw the mesh at the start, the contact and the end, as SVG
     #[arg(long, value_name = "OUT.svg", value_parser = picture, help_heading = OPTIONS)]
     pub(crate) picture: Option<PathBuf>,
     /// Write the proof and the bodies as a file for `colltrans verify`

@@ -103,7 +103,7 @@ impl Cache {
         body.clone()
     }
 
-    /// Locks the state. A poisoned lock is usable, because no thread panics while it changes the state.
+    /// Locks the state, also if the lock is poisoned.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -297,7 +297,7 @@ impl Output {
     }
 }
 
-/// Locks a state. A poisoned lock is usable, because no thread panics while it changes the state.
+/// Locks a state. A poisoned lock is usable, because no thread leaves the shared state half changed.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -18,7 +18,7 @@ const AZIMUTHS: u32 = 72;
 const MAX_SHAPE_FACES: usize = 1000;
 
 /// Returns the view with the best score. It shows `d` and `n` with little foreshortening and many faces of both bodies, if
-/// possible from the side against which `n` points.
+/// possible from the side from which `n` points away.
 pub(super) fn best_view(bodies: [&Solid; 2], d: DVec3, n: DVec3) -> View {
     let mut best = (f64::NEG_INFINITY, View::new(0.0, 0.0));
     for elevation in ELEVATIONS {

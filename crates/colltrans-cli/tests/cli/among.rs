@@ -190,7 +190,7 @@ fn unknown_options_suggest_their_command() {
     let folder = folder();
     let folder = folder.path();
     let two = |command, more: &[&'static str]| [&[command, "cube.off", "cube.off"], more].concat();
-    let keep = ["--keep belongs to `colltrans cast`, `colltrans clearance`"];
+    let keep = ["--keep belongs to `colltrans clearance`, `colltrans cast`"];
     refused(folder, &two("distance", &["--keep", "0.5"]), 2, &keep);
     refused(folder, &two("cast", &["--length=3"]), 2, &["--length belongs to `colltrans within`"]);
     let third = two("cast", &["dent.off", "--direction", "x"]);

@@ -108,6 +108,6 @@ fn bodies_of_a_file_are_split_or_joined() {
         &["none of auto, never, names, bodies"],
     );
     let told = answered(at, &["info", "two.obj"]);
-    assert!(told.contains("2: low, high") && told.contains("2, apart with"), "{told}");
-    assert!(!answered(at, &["info", "cube.off"]).contains("apart with"));
+    assert!(told.contains("2: low, high") && told.contains("2, split with"), "{told}");
+    assert!(!answered(at, &["info", "cube.off"]).contains("split with"));
 }

@@ -410,8 +410,8 @@ Examples:
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE,
    "fixed_pose": POSE, "direction": [x,y,z],
-   "query": "contact"|"clearance"|"distance"|"depth"|"within"|"motion"
-            |"motion_clearance",
+   "query": "contact"|"clearance"|"distance"|"depth"|
+            "within"|"motion"|"motion_clearance",
    "length": L (of "within"), "keep": GAP (the minimum gap),
    "moving_motion": MOTION, "fixed_motion": MOTION (of motions),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),

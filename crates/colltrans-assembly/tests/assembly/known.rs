@@ -727,10 +727,7 @@ fn defective_surfaces_are_repaired_or_rejected() {
         assert!(!planned(&assembly).steps.is_empty(), "{name}");
         let refused =
             read(&source, &ReadOptions::default().with_as_is(true)).unwrap_err().to_string();
-        assert!(
-            refused.contains(&format!("part {mended}: the mesh needs repair")),
-            "{refused}"
-        );
+        assert!(refused.contains(&format!("part {mended}: the mesh needs repair")), "{refused}");
         assert!(refused.contains(&said), "{refused}");
     }
 }

@@ -122,7 +122,10 @@ fn manifest_splits_each_part_on_its_own() {
     let all = open("m.toml", &files, Split::Bodies).unwrap();
     assert_eq!(parts(&all), [("a/x", 6), ("a/y", 6), ("b/x", 6), ("b/y", 6)]);
     let error = open("n.toml", &files, Split::Auto).unwrap_err().to_string();
-    assert_eq!(error, "n.toml: part 1 (a): split: unknown split no; accepted: auto, never, names, bodies");
+    assert_eq!(
+        error,
+        "n.toml: part 1 (a): split: unknown split no; accepted: auto, never, names, bodies"
+    );
     // A file that the manifest lists is one part.
     files.insert("one.toml".into(), b"[[part]]\nfile = 'a.obj'\n".to_vec());
     assert_eq!(parts(&open("one.toml", &files, Split::Auto).unwrap()), [("a", 12)]);

@@ -151,7 +151,10 @@ fn gltf_with_false_counts_is_rejected_without_allocation() {
         (set("/bufferViews/0/byteLength", json!(most)), "positions extend beyond"),
         (set("/bufferViews/0/buffer", json!(7)), "positions extend beyond"),
         (set("/buffers/0/byteLength", json!(most)), "168 bytes, expected"),
-        (set("/accessors/0/sparse", sparse(600_000_000, 1)), "600000000 sparse positions replace only 8"),
+        (
+            set("/accessors/0/sparse", sparse(600_000_000, 1)),
+            "600000000 sparse positions replace only 8",
+        ),
         (set("/accessors/0/sparse", sparse(8, 1)), "must be increasing"),
         (set("/accessors/0/sparse", sparse(8, 9)), "no such buffer view 9"),
         (set("/accessors/0/bufferView", Value::Null), "without a buffer view"),
@@ -205,7 +208,10 @@ fn gltf_uris_are_decoded_and_confined_to_folder() {
     says(&refused("../a.bin"), &["rejected reference ../a.bin"]);
     says(&refused("%2e%2e/a.bin"), &["rejected reference ../a.bin"]);
     says(&refused("/etc/passwd"), &["rejected reference /etc/passwd"]);
-    says(&refused("https://example.org/a.bin"), &["https://example.org/a.bin is a network address"]);
+    says(
+        &refused("https://example.org/a.bin"),
+        &["https://example.org/a.bin is a network address"],
+    );
     says(&refused("file:///etc/passwd"), &["is a network address (file)"]);
     says(&refused("a%2"), &["a%2: % at the end"]);
     says(&refused("a%zz"), &["expected two hexadecimal digits after %"]);
@@ -491,15 +497,15 @@ fn invalid_3mf_files_and_unknown_extensions_are_rejected() {
     let of = |text: String| refused(&[("3D/3dmodel.model", text)]);
     says(&refusal("a.3mf", &[("a.3mf", b"no zip".to_vec())]), &["not a 3MF file"]);
     says(&refused(&[("word/document.xml", "<x/>".into())]), &["none of the 1 files", "is a model"]);
-    says(
-        &of("<html><body/></html>".into()),
-        &["line 1: not a 3MF model", "root element is html"],
-    );
+    says(&of("<html><body/></html>".into()), &["line 1: not a 3MF model", "root element is html"]);
     says(&of("no xml".into()), &["3D/3dmodel.model", "no XML element"]);
     let lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" requiredextensions=\"b\"";
     let item = "<item objectid=\"1\"/>";
     let cube = object(1, [1.0, 1.0, 1.0]);
-    says(&of(model(lattice, &cube, item)), &["extension b", "beamlattice/2017/02", "not supported"]);
+    says(
+        &of(model(lattice, &cube, item)),
+        &["extension b", "beamlattice/2017/02", "not supported"],
+    );
     says(&of(model("requiredextensions=\"q\"", &cube, item)), &["extension q (q)"]);
     let shapeless = "<object id=\"1\" type=\"model\"><other/></object>";
     says(&of(model("", shapeless, item)), &["object 1 has neither a mesh nor components"]);
@@ -514,7 +520,10 @@ fn invalid_3mf_files_and_unknown_extensions_are_rejected() {
     // A package that unpacks to far more than its size.
     let bomb = package(&[("3D/3dmodel.model", " ".repeat(100 << 20))]);
     assert!(bomb.len() < 1 << 20);
-    says(&refusal("a.3mf", &[("a.3mf", bomb)]), &["unpacks to more than the accepted 256 times its size"]);
+    says(
+        &refusal("a.3mf", &[("a.3mf", bomb)]),
+        &["unpacks to more than the accepted 256 times its size"],
+    );
     // Elements of extensions are not elements of the core.
     let other = "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"";
     let sliced = cube.replace("</mesh>", "</mesh><s:vertex x=\"9\" y=\"9\" z=\"9\"/>");
@@ -535,7 +544,10 @@ fn invalid_urdf_files_are_rejected() {
     says(&refused("<sdf version='1.6'><model/></sdf>".into()), &["sdf, expected robot"]);
     says(&refused("{}".into()), &["no XML element"]);
     says(&refused("<robot name='r'/>".into()), &["no parts found", "none of its 0 links"]);
-    says(&refused("<robot><link name='a'/></robot>".into()), &["none of its 1 links has collision geometry"]);
+    says(
+        &refused("<robot><link name='a'/></robot>".into()),
+        &["none of its 1 links has collision geometry"],
+    );
     says(&refused("<robot>\n<xacro:include/></robot>".into()), &["line 2", "run xacro first"]);
     let deep = format!("<robot name='r'>{}", "<link name='a'>".repeat(50_000));
     says(&refused(deep), &["nested deeper than 64"]);
@@ -545,7 +557,10 @@ fn invalid_urdf_files_are_rejected() {
     };
     says(&refused(geometry("<torus/>")), &["link a", "unknown geometry torus"]);
     says(&refused(geometry("<box/>")), &["<box> has no attribute size"]);
-    says(&refused(geometry("<box size='1 2'/>")), &["size=\"1 2\" of <box> is invalid; expected 3 numbers"]);
+    says(
+        &refused(geometry("<box size='1 2'/>")),
+        &["size=\"1 2\" of <box> is invalid; expected 3 numbers"],
+    );
     says(
         &refused(geometry("<mesh filename='http://x/a.stl'/>")),
         &["http://x/a.stl is a network address"],
@@ -613,9 +628,18 @@ fn manifest_errors_contain_no_names_of_the_program() {
         let files = [(name, text.as_bytes().to_vec()), ("c.off", CUBE.as_bytes().to_vec())];
         assert_eq!(from_memory(name, &files).unwrap().parts().len(), 1, "with a mark");
     }
-    says(&refused("a.json", "{\"parts\": [{\"file\": \"../c.off\"}]}"), &["rejected reference ../c.off"]);
-    says(&refused("a.json", "{\"parts\": [{\"file\": \"/c.off\"}]}"), &["rejected reference /c.off"]);
-    says(&refused("a.json", "{\"parts\": [{\"file\": \"https://x/c.off\"}]}"), &["is a network address"]);
+    says(
+        &refused("a.json", "{\"parts\": [{\"file\": \"../c.off\"}]}"),
+        &["rejected reference ../c.off"],
+    );
+    says(
+        &refused("a.json", "{\"parts\": [{\"file\": \"/c.off\"}]}"),
+        &["rejected reference /c.off"],
+    );
+    says(
+        &refused("a.json", "{\"parts\": [{\"file\": \"https://x/c.off\"}]}"),
+        &["is a network address"],
+    );
     let wide = [0xff, 0xfe, b'{', 0];
     says(&refusal("a.json", &[("a.json", wide.to_vec())]), &["UTF-16"]);
 }

@@ -228,7 +228,12 @@ fn invalid_sources_are_rejected_with_their_place() {
     let write = |name: &str, text: &str| std::fs::write(place.join(name), text).unwrap();
     refused(place, &["nowhere"], 3, &["nowhere: cannot be read"]);
     write("notes.txt", "no parts");
-    refused(place, &["notes.txt"], 3, &["notes.txt: unknown kind of source; accepted: a folder of meshes", ".urdf"]);
+    refused(
+        place,
+        &["notes.txt"],
+        3,
+        &["notes.txt: unknown kind of source; accepted: a folder of meshes", ".urdf"],
+    );
     refused(place, &["."], 3, &["broken.off"]);
     refused(place, &["broken.off"], 3, &["broken.off", "line"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nscale = 'big'\n");

@@ -335,7 +335,12 @@ fn file_with_a_wrong_extension_is_rejected() {
     let path = folder.path();
     std::fs::copy(path.join("cube.off"), path.join("cube.stl")).unwrap();
     let arguments = ["cast", "cube.stl", "cube.off", "--direction", "x"];
-    refused(path, &arguments, 3, &["cube.stl: contains an OFF file, but its extension stands for STL"]);
+    refused(
+        path,
+        &arguments,
+        3,
+        &["cube.stl: contains an OFF file, but its extension stands for STL"],
+    );
     refused(path, &["info", "cube.stl"], 3, &["holds an OFF file"]);
 }
 

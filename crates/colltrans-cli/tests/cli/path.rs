@@ -48,9 +48,15 @@ fn arm_touches_a_wire_on_its_path() {
 fn skipped_pairs_and_limits_are_noted() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     let said = stderr(&run(folder.path(), &["path", &arm, &rows, &wire]));
-    assert!(said.contains("3 pairs of links with one joint between them are not checked"), "{said}");
+    assert!(
+        said.contains("3 pairs of links with one joint between them are not checked"),
+        "{said}"
+    );
     assert!(said.contains("links that no joint moves are not checked against the scene"), "{said}");
-    assert!(said.contains("a cylinder of radius 0.002 is replaced by a circumscribed polyhedron"), "{said}");
+    assert!(
+        said.contains("a cylinder of radius 0.002 is replaced by a circumscribed polyhedron"),
+        "{said}"
+    );
     let srdf = folder.path().join("arm.srdf");
     let pair = |a: &str, b: &str| format!("<disable_collisions link1=\"{a}\" link2=\"{b}\"/>");
     let pairs = [("base", "upper"), ("upper", "fore"), ("fore", "tool")].map(|(a, b)| pair(a, b));
@@ -79,7 +85,11 @@ fn invalid_inputs_are_rejected_with_their_place() {
             3,
             "short.csv: rows have 2 values, expected 3, one for each joint",
         ),
-        (vec!["path", &arm, "text.csv"], 3, "text.csv: line 1: `0,0,x` has a value that is not a finite number"),
+        (
+            vec!["path", &arm, "text.csv"],
+            3,
+            "text.csv: line 1: `0,0,x` has a value that is not a finite number",
+        ),
         (vec!["path", &arm, "none.csv"], 3, "none.csv: cannot be read"),
         (vec!["path", &wire, &rows], 3, "URDF"),
         (vec!["path", &arm, "foo.json"], 3, "foo.json: JSON: neither a list of rows nor"),

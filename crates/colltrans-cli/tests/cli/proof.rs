@@ -58,12 +58,7 @@ fn saved_proof_holds_and_prints_one_line() {
             "the bodies first meet at a translation between 1.9",
             "translation_bounds",
         ),
-        (
-            "clearance",
-            "1",
-            "the bodies slide along each other, their shadows overlap",
-            "overlap",
-        ),
+        ("clearance", "1", "the bodies slide along each other, their shadows overlap", "overlap"),
     ] {
         let arguments = pair(command, y);
         let plain = answered(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());

@@ -5,7 +5,7 @@ use colltrans::{Options, Outcome, QueryError, Solver, cta};
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
 use colltrans_testkit::tally::Tally;
 
-use crate::{Asked, print};
+use crate::{Asked, print_tally};
 
 /// The solvers: each one, and the collision translation algorithm as a first guess only.
 const WHO: [(&str, Solver, Option<cta::Options>); 4] = [
@@ -112,7 +112,7 @@ pub(crate) fn replay(family: &str, seed: u64) -> bool {
     if let Err(what) = examine_setting(&setting, true, &mut tally) {
         tally.disagree(format!("{setting} {what}"));
     }
-    print(family, &tally, COLUMNS)
+    print_tally(family, &tally, COLUMNS)
 }
 
 /// Prints the answers of single queries and of the oracle.

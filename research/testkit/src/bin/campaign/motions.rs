@@ -80,7 +80,7 @@ fn draw_spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Rando
             let way = unit * (random.range(-1.0, 1.0) * size);
             Spin { start, arm: from - between, axis: unit, angle, way }
         }
-        2 => Spin { way: way * random.range(0.2, 4.0), ..rest(start) },
+        2 => Spin { way: way * random.range(0.2, 4.0), ..motion_at_rest(start) },
         _ => {
             let omega = axis * angle;
             let (axis, angle) = (omega / omega.length(), omega.length());

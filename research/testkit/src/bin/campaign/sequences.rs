@@ -10,7 +10,7 @@ use colltrans_testkit::oracle::tracked::{Finding, Lanes};
 use colltrans_testkit::tally::Tally;
 
 use crate::casts::{self, print_answers};
-use crate::{Asked, print};
+use crate::{Asked, print_tally};
 
 /// Number of steps of a sequence, including the first setting.
 const STEPS: u32 = 60;
@@ -114,5 +114,5 @@ pub(crate) fn replay(family: &str, seed: u64, step: u32) -> bool {
         record_finding(&walk, &finding, &mut tally);
     }
     print_answers(&walk.setting, &bodies);
-    print(family, &tally, COLUMNS)
+    print_tally(family, &tally, COLUMNS)
 }
